@@ -1,0 +1,125 @@
+!> The instant at which a pair closes within an increment, from which its slip counts.
+!>
+!> A pair that was open at gap gamma_i and is closed at the end would, alone relieved of its contact forces, end at the
+!> gap gamma* < 0 and the tangential position d_t*. It closes at the fraction f = gamma_i/(gamma_i - gamma*) of the
+!> increment, and its slip counts from the position that lies there between d_t,i and d_t*:
+!>
+!>    slip = d_t - d_t,i - f (d_t* - d_t,i).
+!>
+!> With C the compliance of the pair while all others keep their conditions (those that close with it, their places),
+!> gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that slip = (1 - f) (d_t - d_t,i) + f C_t.lambda. The contact system
+!> is solved with C and f frozen; both are then computed anew, until they stay.
+module closing_instant
+   use contact_system, only: closing_law_type, contact_state_type, contact_system_type
+   use errors, only: error_type, set_error, status_no_convergence
+   use kinds, only: dp
+   use records, only: status_open, status_stick
+   implicit none
+   private
+   public :: solve_increment
+
+   integer, parameter :: most_passes = 60                 !! passes over the closing laws
+   real(dp), parameter :: settled = 1.0e-13_dp            !! relative change of a law that counts as none
+
+contains
+
+   !> Contact state at the end of an increment, with the references of the pairs that close in it.
+   !> Error: as contact_system's solve, or closing laws that do not settle.
+   subroutine solve_increment(system, previous, load, state, error)
+      type(contact_system_type), intent(inout) :: system  !! the reduced system
+      type(contact_state_type), intent(in) :: previous    !! state at the start of the increment
+      real(dp), intent(in) :: load(:)                     !! (tail) condensed load [force]
+      type(contact_state_type), intent(inout) :: state    !! guess in, solution out
+      type(error_type), allocatable, intent(out) :: error !! see above
+      real(dp) :: change
+      integer :: k, pass
+
+      do pass = 1, most_passes
+         call system%solve(load, state, error)
+         if (allocated(error)) return
+         call update_laws(system, previous, state, change, error)
+         if (allocated(error)) return
+         if (change <= settled) then
+            do k = 1, size(state%status)
+               if (system%closing(k)%acts) &
+                  state%reference(k) = state%tangential(k) - system%slip(state, k)
+            end do
+            return
+         end if
+      end do
+      call set_error(error, status_no_convergence, &
+         'the instants at which pairs close do not settle')
+   end subroutine solve_increment
+
+   !> Closing laws of the pairs that are closed now and were open at the start of the increment.
+   subroutine update_laws(system, previous, state, change, error)
+      type(contact_system_type), intent(inout) :: system
+      type(contact_state_type), intent(in) :: previous
+      type(contact_state_type), intent(in) :: state
+      real(dp), intent(out) :: change
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_system_type) :: held
+      type(contact_state_type) :: held_state
+      type(closing_law_type) :: law
+      logical :: closes(size(state%status))
+      integer :: k
+
+      change = 0.0_dp
+      closes = previous%status == status_open .and. state%status /= status_open .and. &
+         system%tangent > 0
+      if (.not. any(closes .or. system%closing%acts)) return
+      held = system
+      held%closing = closing_law_type()
+      call held%forget_factors()
+      held_state = state
+      where (closes) held_state%status = status_stick
+      call held%factor_set(held_state, error)
+      if (allocated(error)) return
+      do k = 1, size(closes)
+         law = closing_law_type()
+         if (closes(k)) call make_law(held, previous, state, k, law)
+         change = max(change, law_change(system%closing(k), law))
+         system%closing(k) = law
+      end do
+      if (change > settled) call system%forget_factors()
+   end subroutine update_laws
+
+   !> Relative change from one law to another.
+   pure function law_change(old, new) result(change)
+      type(closing_law_type), intent(in) :: old, new
+      real(dp) :: change
+
+      change = 0.0_dp
+      if (old%acts .neqv. new%acts) change = 1.0_dp
+      if (.not. (old%acts .and. new%acts)) return
+      change = max(abs(new%fraction - old%fraction), &
+         maxval(abs(new%compliance - old%compliance))/maxval(abs(new%compliance)))
+   end function law_change
+
+   !> The closing law of one pair.
+   pure subroutine make_law(held, previous, state, k, law)
+      type(contact_system_type), intent(in) :: held
+      type(contact_state_type), intent(in) :: previous
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: k
+      type(closing_law_type), intent(out) :: law
+      real(dp) :: response(size(held%schur, 1), 2), stiffness(2, 2), compliance(2, 2), overlap
+      integer :: place(2)
+
+      place = [held%normal(k), held%tangent(k)]
+      response = -held%schur(:, place)
+      call held%solve_free(response)
+      stiffness = held%schur(place, place) + &
+         matmul(held%schur(place, held%free), response(held%free, :))
+      compliance = reshape([stiffness(2, 2), -stiffness(2, 1), -stiffness(1, 2), &
+         stiffness(1, 1)], [2, 2])/ &
+         (stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1))
+      overlap = dot_product(compliance(1, :), [state%force(k), -state%shear_force(k)])
+      law%acts = .true.
+      law%start = previous%tangential(k)
+      law%compliance = compliance(2, :)
+      if (previous%gap(k) > 0.0_dp) &
+         law%fraction = previous%gap(k)/(previous%gap(k) + max(overlap, 0.0_dp))
+   end subroutine make_law
+
+end module closing_instant

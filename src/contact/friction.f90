@@ -1,0 +1,60 @@
+!> Coulomb's law for one pair, eq. (1.6), in increments: pure functions of numbers.
+module friction
+   use kinds, only: dp
+   use records, only: status_open, status_slip, status_stick
+   implicit none
+   private
+   public :: next_status
+
+contains
+
+   !> Contact condition that a pair must have, given what it did under its present one. A stuck pair slips once its
+   !> friction force would leave the cone; a slipping pair sticks once friction would drive it instead of resisting. A pair
+   !> that closes first shows without friction (slip, direction 0) which way it slides.
+   pure subroutine next_status(status, direction, gap, force, shear_force, slip, friction, &
+      has_tangent, gap_tolerance, force_tolerance, excess)
+      integer, intent(inout) :: status        !! status_open, status_slip or status_stick
+      integer, intent(inout) :: direction     !! sign of the friction force on the slave where it slips, 0 unknown
+      real(dp), intent(in) :: gap             !! gamma [length]
+      real(dp), intent(in) :: force           !! normal force, positive in compression [force]
+      real(dp), intent(in) :: shear_force     !! tangential force on the slave [force]
+      real(dp), intent(in) :: slip            !! tangential motion since the start of this increment [length]
+      real(dp), intent(in) :: friction        !! mu [-]
+      logical, intent(in) :: has_tangent      !! whether the pair can move along its tangent
+      real(dp), intent(in) :: gap_tolerance   !! rounding of gap and slip [length]
+      real(dp), intent(in) :: force_tolerance !! rounding of the forces [force]
+      real(dp), intent(out) :: excess         !! relative violation of the present condition, 0 where it holds
+
+      excess = 0.0_dp
+      select case (status)
+       case (status_open)
+         if (gap >= -gap_tolerance) return
+         excess = -gap/gap_tolerance
+         status = status_slip
+         direction = 0
+       case default
+         if (force < -force_tolerance) then
+            excess = -force/force_tolerance
+            status = status_open
+         else if (status == status_stick .and. has_tangent) then
+            if (abs(shear_force) <= friction*max(force, 0.0_dp) + force_tolerance) return
+            excess = (abs(shear_force) - friction*force)/force_tolerance
+            status = status_slip
+            direction = merge(1, -1, shear_force > 0.0_dp)
+         else if (status == status_slip .and. direction == 0 .and. friction > 0.0_dp) then
+            excess = 1.0_dp
+            if (has_tangent .and. abs(slip) > gap_tolerance) then
+               direction = merge(-1, 1, slip > 0.0_dp)
+            else
+               status = status_stick
+            end if
+         else if (status == status_slip .and. friction > 0.0_dp) then
+            if (direction*slip <= gap_tolerance) return
+            excess = direction*slip/gap_tolerance
+            status = status_stick
+            direction = 0
+         end if
+      end select
+   end subroutine next_status
+
+end module friction

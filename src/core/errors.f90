@@ -1,0 +1,37 @@
+!> The one error type of the program. A procedure that can fail has
+!> `type(error_type), allocatable, intent(out) :: error` as its last argument; its caller checks it
+!> on the next line.
+module errors
+   implicit none
+   private
+   public :: error_type, set_error
+   public :: status_ok, status_deck, status_no_convergence, status_internal
+   public :: status_verify, status_interrupted
+
+   integer, parameter :: status_ok = 0              !! solved
+   integer, parameter :: status_deck = 1            !! the deck is wrong
+   integer, parameter :: status_no_convergence = 2  !! an increment did not converge
+   integer, parameter :: status_internal = 3        !! internal or I/O error
+   integer, parameter :: status_verify = 4          !! a *VERIFY check failed
+   integer, parameter :: status_interrupted = 5     !! ended by SIGINT or SIGTERM
+
+   !> What went wrong, and the exit status that says so.
+   type :: error_type
+      integer :: status = status_internal      !! one of the status_* constants
+      character(:), allocatable :: message     !! one sentence in plain words
+   end type error_type
+
+contains
+
+   !> Raises an error.
+   subroutine set_error(error, status, message)
+      type(error_type), allocatable, intent(out) :: error !! the error that is raised
+      integer, intent(in) :: status                       !! one of the status_* constants
+      character(*), intent(in) :: message                 !! one sentence in plain words
+
+      allocate(error)
+      error%status = status
+      error%message = message
+   end subroutine set_error
+
+end module errors

@@ -1,0 +1,241 @@
+!> Strings of any length, and numbers as text and back.
+module text
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use kinds, only: dp, long
+   implicit none
+   private
+   public :: string_type
+   public :: to_text, to_upper, without_blanks, read_integer, read_real, append
+   public :: nearest_name, nearest_known, edit_distance
+
+   integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
+
+   !> A string in a list.
+   type :: string_type
+      character(:), allocatable :: value   !! the text
+   end type string_type
+
+   !> A number as text without blanks around it.
+   interface to_text
+      module procedure integer_to_text
+      module procedure real_to_text
+   end interface to_text
+
+contains
+
+   !> An integer without blanks.
+   pure function integer_to_text(number) result(string)
+      integer, intent(in) :: number          !! the number
+      character(:), allocatable :: string    !! its decimal digits
+      character(12) :: buffer
+
+      write (buffer, '(i0)') number
+      string = trim(buffer)
+   end function integer_to_text
+
+   !> A real with six significant digits, plain where that is short, else with an exponent.
+   pure function real_to_text(number) result(string)
+      real(dp), intent(in) :: number         !! the number
+      character(:), allocatable :: string    !! such as 540 or 0.155 or 1.2E-05
+      character(24) :: buffer
+      integer :: exponent, last
+
+      write (buffer, '(1p,g0.6)') number
+      buffer = adjustl(buffer)
+      exponent = index(buffer, 'E')
+      if (exponent == 0) exponent = len_trim(buffer) + 1
+      last = exponent - 1
+      if (index(buffer(:last), '.') > 0) then
+         last = verify(buffer(:last), '0', back=.true.)
+         if (buffer(last:last) == '.') last = last - 1
+      end if
+      string = buffer(:last)//trim(buffer(exponent:))
+   end function real_to_text
+
+   !> A string with its letters a-z in upper case.
+   pure function to_upper(string) result(upper)
+      character(*), intent(in) :: string    !! any text
+      character(len(string)) :: upper       !! the same, a-z as A-Z
+      integer :: i
+
+      upper = string
+      do i = 1, len(string)
+         if (string(i:i) >= 'a' .and. string(i:i) <= 'z') &
+            upper(i:i) = achar(iachar(string(i:i)) - 32)
+      end do
+   end function to_upper
+
+   !> A string without any of its blanks and tabs.
+   pure function without_blanks(string) result(squeezed)
+      character(*), intent(in) :: string         !! any text
+      character(:), allocatable :: squeezed      !! the same without blanks
+      character(len(string)) :: buffer
+      integer :: i, n
+
+      n = 0
+      do i = 1, len(string)
+         if (string(i:i) == ' ' .or. string(i:i) == achar(9)) cycle
+         n = n + 1
+         buffer(n:n) = string(i:i)
+      end do
+      squeezed = buffer(:n)
+   end function without_blanks
+
+   !> Reads a whole number: an optional sign and digits, nothing else.
+   pure subroutine read_integer(string, number, valid)
+      character(*), intent(in) :: string   !! text without blanks around it
+      integer, intent(out) :: number       !! its value, 0 when not valid
+      logical, intent(out) :: valid        !! whether it is a number that a default integer holds
+      integer(long) :: magnitude
+      integer :: i, first
+
+      number = 0
+      magnitude = 0
+      valid = .false.
+      first = 1
+      if (len(string) > 1) then
+         if (scan(string(1:1), '+-') == 1) first = 2
+      end if
+      if (len(string) < first) return
+      do i = first, len(string)
+         if (string(i:i) < '0' .or. string(i:i) > '9') return
+         magnitude = 10*magnitude + (iachar(string(i:i)) - iachar('0'))
+         if (magnitude > huge(number)) return
+      end do
+      number = int(magnitude)
+      if (string(1:1) == '-') number = -number
+      valid = .true.
+   end subroutine read_integer
+
+   !> Reads a real number: sign, digits with at most one point, exponent with E or D of at most 300.
+   pure subroutine read_real(string, number, valid)
+      character(*), intent(in) :: string   !! text without blanks around it
+      real(dp), intent(out) :: number      !! its value, 0 when not valid
+      logical, intent(out) :: valid        !! whether it is a finite number
+      integer :: status, mark, exponent
+
+      number = 0.0_dp
+      valid = has_form_of_real(string)
+      if (.not. valid) return
+      mark = scan(string, 'eEdD')
+      if (mark > 0) then
+         call read_integer(string(mark + 1:), exponent, valid)
+         if (valid) valid = abs(exponent) <= largest_exponent
+         if (.not. valid) return
+      end if
+      read (string, *, iostat=status) number
+      valid = status == 0
+      if (valid) valid = ieee_is_finite(number)
+      if (.not. valid) number = 0.0_dp
+   end subroutine read_real
+
+   !> Whether a text is written as a real; list-directed input alone would also take "1*2", "5/3" or "1-5".
+   pure function has_form_of_real(string) result(valid)
+      character(*), intent(in) :: string
+      logical :: valid
+      integer :: mark, before, after
+
+      valid = .false.
+      mark = scan(string, 'eEdD')
+      if (mark > 0) then
+         if (.not. is_whole(string(mark + 1:))) return
+      else
+         mark = len(string) + 1
+      end if
+      before = scan(string(:mark - 1), '.')
+      if (before == 0) then
+         valid = is_whole(string(:mark - 1))
+         return
+      end if
+      after = mark - before - 1
+      if (verify(string(before + 1:mark - 1), '0123456789') /= 0) return
+      select case (string(:before - 1))
+       case ('', '+', '-')
+         valid = after > 0
+       case default
+         valid = is_whole(string(:before - 1))
+      end select
+   end function has_form_of_real
+
+   !> Whether a text is an optional sign and at least one digit.
+   pure function is_whole(string) result(valid)
+      character(*), intent(in) :: string
+      logical :: valid
+      integer :: first
+
+      valid = .false.
+      if (len(string) == 0) return
+      first = 1
+      if (scan(string(1:1), '+-') == 1) first = 2
+      if (len(string) < first) return
+      valid = verify(string(first:), '0123456789') == 0
+   end function is_whole
+
+   !> Adds a string at the end of a short list; lists that grow card by card keep a capacity of their own.
+   pure subroutine append(list, string)
+      type(string_type), allocatable, intent(inout) :: list(:)   !! the list, or unallocated for none so far
+      character(*), intent(in) :: string                         !! what is added
+      type(string_type), allocatable :: longer(:)
+      integer :: i, n
+
+      n = 0
+      if (allocated(list)) n = size(list)
+      allocate(longer(n + 1))
+      do i = 1, n
+         call move_alloc(list(i)%value, longer(i)%value)
+      end do
+      longer(n + 1)%value = string
+      call move_alloc(longer, list)
+   end subroutine append
+
+   !> Index of the name in a list that is nearest to a given one, whatever their cases; 0 for an empty list.
+   pure function nearest_name(name, names) result(nearest)
+      character(*), intent(in) :: name            !! what was written
+      type(string_type), intent(in) :: names(:)   !! what is known
+      integer :: nearest                          !! index of the first with the smallest distance
+      integer :: i, distance, smallest
+
+      nearest = 0
+      smallest = huge(smallest)
+      do i = 1, size(names)
+         distance = edit_distance(to_upper(name), to_upper(names(i)%value))
+         if (distance >= smallest) cycle
+         smallest = distance
+         nearest = i
+      end do
+   end function nearest_name
+
+   !> The end of a message on an unknown name; empty where nothing is known.
+   pure function nearest_known(name, names) result(hint)
+      character(*), intent(in) :: name             !! what was written
+      type(string_type), intent(in) :: names(:)    !! what is known
+      character(:), allocatable :: hint            !! such as "; the nearest known is TOP"
+
+      hint = ''
+      if (size(names) > 0) hint = '; the nearest known is '//names(nearest_name(name, names))%value
+   end function nearest_known
+
+   !> Number of letters to insert, delete, replace or swap with their neighbour that make one word of another:
+   !> the restricted Damerau-Levenshtein distance.
+   pure function edit_distance(a, b) result(distance)
+      character(*), intent(in) :: a    !! one word
+      character(*), intent(in) :: b    !! another
+      integer :: distance              !! steps from one to the other
+      integer :: row(0:len(b), 0:len(a))
+      integer :: i, j, change
+
+      row(:, 0) = [(j, j=0, len(b))]
+      do i = 1, len(a)
+         row(0, i) = i
+         do j = 1, len(b)
+            change = merge(0, 1, a(i:i) == b(j:j))
+            row(j, i) = min(row(j, i - 1) + 1, row(j - 1, i) + 1, row(j - 1, i - 1) + change)
+            if (i < 2 .or. j < 2) cycle
+            if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) &
+               row(j, i) = min(row(j, i), row(max(j - 2, 0), max(i - 2, 0)) + 1)
+         end do
+      end do
+      distance = row(len(b), len(a))
+   end function edit_distance
+
+end module text

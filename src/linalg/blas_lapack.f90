@@ -1,0 +1,44 @@
+!> Explicit interfaces of the BLAS and LAPACK routines that are called.
+module blas_lapack
+   use kinds, only: dp
+   implicit none
+   private
+   public :: ddot, daxpy, dgetrf, dgetrs
+
+   interface
+      !> Scalar product x.y.
+      pure function ddot(n, x, stride_x, y, stride_y) result(product)
+         import :: dp
+         integer, intent(in) :: n, stride_x, stride_y
+         real(dp), intent(in) :: x(*), y(*)
+         real(dp) :: product
+      end function ddot
+
+      !> y = y + a x.
+      pure subroutine daxpy(n, a, x, stride_x, y, stride_y)
+         import :: dp
+         integer, intent(in) :: n, stride_x, stride_y
+         real(dp), intent(in) :: a, x(*)
+         real(dp), intent(inout) :: y(*)
+      end subroutine daxpy
+
+      !> LU factors of a general matrix, with row exchanges.
+      pure subroutine dgetrf(m, n, a, lda, ipiv, info)
+         import :: dp
+         integer, intent(in) :: m, n, lda
+         real(dp), intent(inout) :: a(lda, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine dgetrf
+
+      !> Solution from the factors of dgetrf.
+      pure subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: dp
+         character, intent(in) :: trans
+         integer, intent(in) :: n, nrhs, lda, ipiv(*), ldb
+         real(dp), intent(in) :: a(lda, *)
+         real(dp), intent(inout) :: b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine dgetrs
+   end interface
+
+end module blas_lapack

@@ -1,0 +1,93 @@
+!> What the solution asks of a direct solver for a symmetric positive definite matrix whose last unknowns, the tail, are
+!> the contact's: factor the leading block once, then only ever work on the tail.
+module linear_solver
+   use errors, only: error_type
+   use kinds, only: dp, long
+   use sparse_matrix, only: sparse_matrix_type
+   implicit none
+   private
+   public :: linear_solver_type
+
+   !> A direct solver. Order of calls: factor; then condense and recover at any time; refactor_tail before solve_tail.
+   type, abstract :: linear_solver_type
+      integer :: order = 0               !! unknowns
+      integer :: tail = 0                !! tail unknowns, the last ones
+      integer(long) :: full_flops = 0    !! operations of a factorisation of the leading block
+      integer(long) :: factor_bytes = 0  !! memory of the factors [byte]
+   contains
+      procedure(factor_interface), deferred :: factor
+      procedure(schur_interface), deferred :: schur_complement
+      procedure(condense_interface), deferred :: condense
+      procedure(recover_interface), deferred :: recover
+      procedure(refactor_interface), deferred :: refactor_tail
+      procedure(solve_interface), deferred :: solve_tail
+      procedure(flops_interface), deferred :: tail_flops
+      procedure(release_interface), deferred :: release
+   end type linear_solver_type
+
+   abstract interface
+      !> Orders the leading unknowns, factors their block and forms its Schur complement on the tail.
+      !> Error: the matrix is not positive definite (the message begins with "singular"), or the solver failed.
+      subroutine factor_interface(self, lower, tail, error)
+         import :: linear_solver_type, sparse_matrix_type, error_type
+         class(linear_solver_type), intent(inout) :: self   !! the solver
+         type(sparse_matrix_type), intent(in) :: lower      !! lower triangle by rows
+         integer, intent(in) :: tail                        !! number of tail unknowns
+         type(error_type), allocatable, intent(out) :: error !! failure
+      end subroutine factor_interface
+
+      !> The Schur complement of the leading block on the tail.
+      function schur_interface(self) result(schur)
+         import :: linear_solver_type, dp
+         class(linear_solver_type), intent(in) :: self      !! the solver
+         real(dp) :: schur(self%tail, self%tail)            !! full symmetric
+      end function schur_interface
+
+      !> Right-hand sides condensed on the tail: f_tail - K_tail,lead K_lead^-1 f_lead.
+      subroutine condense_interface(self, rhs, condensed)
+         import :: linear_solver_type, dp
+         class(linear_solver_type), intent(inout) :: self   !! the solver
+         real(dp), intent(in) :: rhs(:, :)                  !! (order, columns)
+         real(dp), intent(out) :: condensed(:, :)           !! (tail, columns)
+      end subroutine condense_interface
+
+      !> Solutions in full from the solution on the tail: K_lead x_lead = f_lead - K_lead,tail x_tail.
+      subroutine recover_interface(self, rhs, on_tail, solution)
+         import :: linear_solver_type, dp
+         class(linear_solver_type), intent(inout) :: self   !! the solver
+         real(dp), intent(in) :: rhs(:, :)                  !! (order, columns); tail rows are not used
+         real(dp), intent(in) :: on_tail(:, :)              !! (tail, columns)
+         real(dp), intent(out) :: solution(:, :)            !! (order, columns)
+      end subroutine recover_interface
+
+      !> Factors Schur complement + diagonal on the tail, from the first changed column on.
+      subroutine refactor_interface(self, diagonal, first_changed)
+         import :: linear_solver_type, dp
+         class(linear_solver_type), intent(inout) :: self   !! the solver
+         real(dp), intent(in) :: diagonal(:)                !! (tail) added to the diagonal
+         integer, intent(in) :: first_changed               !! first tail column that changed
+      end subroutine refactor_interface
+
+      !> Solves on the tail with the factors of refactor_tail.
+      subroutine solve_interface(self, x)
+         import :: linear_solver_type, dp
+         class(linear_solver_type), intent(in) :: self      !! the solver
+         real(dp), intent(inout) :: x(:)                    !! (tail) condensed right-hand side, then solution
+      end subroutine solve_interface
+
+      !> Operations of refactor_tail.
+      function flops_interface(self, first_changed) result(flops)
+         import :: linear_solver_type, long
+         class(linear_solver_type), intent(in) :: self      !! the solver
+         integer, intent(in) :: first_changed               !! first tail column that changed
+         integer(long) :: flops                             !! floating-point operations
+      end function flops_interface
+
+      !> Frees what the solver holds outside Fortran.
+      subroutine release_interface(self)
+         import :: linear_solver_type
+         class(linear_solver_type), intent(inout) :: self   !! the solver
+      end subroutine release_interface
+   end interface
+
+end module linear_solver

@@ -1,0 +1,38 @@
+!> Nested dissection by METIS.
+module metis
+   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
+   use sparse_matrix, only: sparse_matrix_type
+   implicit none
+   private
+   public :: nested_dissection
+
+   interface
+      function metis_nodend(nvtxs, xadj, adjncy, vwgt, options, perm, iperm) &
+         result(status) bind(c, name='METIS_NodeND')
+         import :: c_int, c_ptr
+         integer(c_int), intent(in) :: nvtxs, xadj(*), adjncy(*)
+         type(c_ptr), value :: vwgt, options
+         integer(c_int), intent(out) :: perm(*), iperm(*)
+         integer(c_int) :: status
+      end function metis_nodend
+   end interface
+
+contains
+
+   !> Fill-reducing place of each vertex of a graph. METIS's default options fix its random seed.
+   subroutine nested_dissection(graph, place, failed)
+      type(sparse_matrix_type), intent(in) :: graph !! both triangles without the diagonal
+      integer, intent(out) :: place(:)              !! (rows) new place of each vertex
+      logical, intent(out) :: failed                !! METIS refused
+      integer(c_int), allocatable :: order(:)
+      integer(c_int) :: status
+      integer(c_int), parameter :: metis_ok = 1
+
+      allocate (order(graph%row_count))
+      status = metis_nodend(int(graph%row_count, c_int), graph%row_start - 1, graph%column - 1, &
+         c_null_ptr, c_null_ptr, order, place)
+      place(:) = place + 1
+      failed = status /= metis_ok
+   end subroutine nested_dissection
+
+end module metis

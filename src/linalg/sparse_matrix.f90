@@ -1,0 +1,134 @@
+!> Sparse matrices by rows, neutral between the solvers. A symmetric matrix for a solver is given by its lower triangle.
+module sparse_matrix
+   use kinds, only: dp
+   implicit none
+   private
+   public :: sparse_matrix_type, triplet_list_type
+
+   !> A matrix in compressed rows, columns ascending in each row.
+   type :: sparse_matrix_type
+      integer :: row_count = 0                !! number of rows
+      integer :: column_count = 0             !! number of columns
+      integer, allocatable :: row_start(:)    !! (rows + 1) place of each row's first entry
+      integer, allocatable :: column(:)       !! (entries) column of an entry
+      real(dp), allocatable :: value(:)       !! (entries) its value
+   contains
+      procedure :: multiply
+   end type sparse_matrix_type
+
+   !> Entries as they come from the elements, in any order; equal places add up.
+   type :: triplet_list_type
+      integer :: length = 0                   !! entries in use
+      integer, allocatable :: row(:)          !! (capacity) row of an entry
+      integer, allocatable :: column(:)       !! (capacity) its column
+      real(dp), allocatable :: value(:)       !! (capacity) its value
+   contains
+      procedure :: reserve
+      procedure :: add
+      procedure :: compress
+   end type triplet_list_type
+
+contains
+
+   !> y = A x.
+   pure function multiply(self, x) result(y)
+      class(sparse_matrix_type), intent(in) :: self !! A
+      real(dp), intent(in) :: x(:)                  !! (columns)
+      real(dp) :: y(self%row_count)                 !! (rows)
+      real(dp) :: total
+      integer :: i, k
+
+      do i = 1, self%row_count
+         total = 0.0_dp
+         do k = self%row_start(i), self%row_start(i + 1) - 1
+            total = total + self%value(k)*x(self%column(k))
+         end do
+         y(i) = total
+      end do
+   end function multiply
+
+   !> Makes room for entries; what the list held is dropped.
+   pure subroutine reserve(self, capacity)
+      class(triplet_list_type), intent(inout) :: self !! the list
+      integer, intent(in) :: capacity                 !! entries expected
+
+      self%length = 0
+      if (allocated(self%row)) deallocate (self%row, self%column, self%value)
+      allocate (self%row(capacity), self%column(capacity), self%value(capacity))
+   end subroutine reserve
+
+   !> Adds one entry; the list must have room for it.
+   pure subroutine add(self, row, column, value)
+      class(triplet_list_type), intent(inout) :: self !! the list
+      integer, intent(in) :: row                      !! row
+      integer, intent(in) :: column                   !! column
+      real(dp), intent(in) :: value                   !! value
+
+      self%length = self%length + 1
+      self%row(self%length) = row
+      self%column(self%length) = column
+      self%value(self%length) = value
+   end subroutine add
+
+   !> The matrix of a list of entries: a counting sort by column and then by row, equal places summed.
+   pure function compress(self, row_count, column_count) result(matrix)
+      class(triplet_list_type), intent(in) :: self !! the entries
+      integer, intent(in) :: row_count             !! rows of the matrix
+      integer, intent(in) :: column_count          !! columns of the matrix
+      type(sparse_matrix_type) :: matrix           !! compressed rows
+      integer, allocatable :: by_column(:), by_row(:)
+      integer :: k, entry, row, filled
+
+      allocate (by_column(self%length), by_row(self%length))
+      by_column(:) = [(k, k=1, self%length)]
+      by_column(:) = counting_sort(self%column(:self%length), by_column, column_count)
+      by_row(:) = counting_sort(self%row(:self%length), by_column, row_count)
+      matrix%row_count = row_count
+      matrix%column_count = column_count
+      allocate (matrix%row_start(row_count + 1))
+      allocate (matrix%column(self%length), matrix%value(self%length))
+      filled = 0
+      row = 0
+      do k = 1, self%length
+         entry = by_row(k)
+         if (self%row(entry) /= row) then
+            matrix%row_start(row + 1:self%row(entry)) = filled + 1
+            row = self%row(entry)
+         else if (self%column(entry) == matrix%column(filled)) then
+            matrix%value(filled) = matrix%value(filled) + self%value(entry)
+            cycle
+         end if
+         filled = filled + 1
+         matrix%column(filled) = self%column(entry)
+         matrix%value(filled) = self%value(entry)
+      end do
+      matrix%row_start(row + 1:) = filled + 1
+      matrix%column = matrix%column(:filled)
+      matrix%value = matrix%value(:filled)
+   end function compress
+
+   !> Stable order of entries by key.
+   pure function counting_sort(keys, entries, key_count) result(sorted)
+      integer, intent(in) :: keys(:)        !! (all) key of each entry, 1..key_count
+      integer, intent(in) :: entries(:)     !! (n) entries in the order so far
+      integer, intent(in) :: key_count      !! largest key
+      integer :: sorted(size(entries))      !! (n) entries, keys ascending
+      integer, allocatable :: place(:)
+      integer :: k, key
+
+      allocate (place(key_count + 1), source=0)
+      do k = 1, size(entries)
+         key = keys(entries(k)) + 1
+         place(key) = place(key) + 1
+      end do
+      do k = 2, key_count + 1
+         place(k) = place(k) + place(k - 1)
+      end do
+      do k = 1, size(entries)
+         key = keys(entries(k))
+         place(key) = place(key) + 1
+         sorted(place(key)) = entries(k)
+      end do
+   end function counting_sort
+
+end module sparse_matrix

@@ -1,0 +1,66 @@
+!> Bodies: elements that share nodes hang together.
+module bodies
+   use mesh, only: mesh_type
+   implicit none
+   private
+   public :: find_bodies
+
+contains
+
+   !> Fills element_body, node_body and body_count of a mesh; bodies are numbered by their first element.
+   pure subroutine find_bodies(mesh)
+      type(mesh_type), intent(inout) :: mesh   !! elements and nodes; nodes without elements get body 0
+      integer :: parent(size(mesh%node_number)), body(size(mesh%node_number))
+      integer :: e, q, root
+
+      parent = [(q, q=1, size(parent))]
+      do e = 1, size(mesh%element_nodes, 2)
+         do q = 2, size(mesh%element_nodes, 1)
+            call join(parent, mesh%element_nodes(1, e), mesh%element_nodes(q, e))
+         end do
+      end do
+      body = 0
+      mesh%body_count = 0
+      if (allocated(mesh%element_body)) deallocate(mesh%element_body)
+      allocate(mesh%element_body(size(mesh%element_nodes, 2)))
+      do e = 1, size(mesh%element_body)
+         call find_root(parent, mesh%element_nodes(1, e), root)
+         if (body(root) == 0) then
+            mesh%body_count = mesh%body_count + 1
+            body(root) = mesh%body_count
+         end if
+         mesh%element_body(e) = body(root)
+      end do
+      if (allocated(mesh%node_body)) deallocate(mesh%node_body)
+      allocate(mesh%node_body(size(parent)))
+      do q = 1, size(parent)
+         call find_root(parent, q, root)
+         mesh%node_body(q) = body(root)
+      end do
+   end subroutine find_bodies
+
+   !> Joins the groups of two nodes.
+   pure subroutine join(parent, a, b)
+      integer, intent(inout) :: parent(:)   !! (nodes) another node of the group, or itself
+      integer, intent(in) :: a, b           !! nodes
+      integer :: root_a, root_b
+
+      call find_root(parent, a, root_a)
+      call find_root(parent, b, root_b)
+      parent(max(root_a, root_b)) = min(root_a, root_b)
+   end subroutine join
+
+   !> The node that stands for a group; the way to it is halved on the walk.
+   pure subroutine find_root(parent, node, root)
+      integer, intent(inout) :: parent(:)   !! (nodes) another node of the group, or itself
+      integer, intent(in) :: node           !! node of the group
+      integer, intent(out) :: root          !! its root
+
+      root = node
+      do while (parent(root) /= root)
+         parent(root) = parent(parent(root))
+         root = parent(root)
+      end do
+   end subroutine find_root
+
+end module bodies

@@ -1,0 +1,24 @@
+!> What the deck says of contact: surface interactions and contact pairs of surfaces.
+module contact_definitions
+   use conductance_laws, only: conductance_law_type
+   use kinds, only: dp
+   implicit none
+   private
+   public :: interaction_type, contact_definition_type
+
+   !> One *SURFACE INTERACTION.
+   type :: interaction_type
+      character(:), allocatable :: name       !! name in upper case
+      real(dp) :: friction = 0.0_dp           !! coefficient of friction mu [-]
+      type(conductance_law_type) :: law       !! conductance law
+   end type interaction_type
+
+   !> One *CONTACT PAIR: two surfaces that may meet.
+   type :: contact_definition_type
+      character(:), allocatable :: name       !! name as the deck writes it
+      integer :: slave = 0                    !! index of the slave surface, the paper's body xi
+      integer :: master = 0                   !! index of the master surface, the paper's body eta
+      integer :: interaction = 0              !! index into model%interactions
+   end type contact_definition_type
+
+end module contact_definitions

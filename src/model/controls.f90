@@ -1,0 +1,34 @@
+!> Controls of the numerical method: fixed point, scheme of (3.4), solver.
+module controls
+   use kinds, only: dp
+   implicit none
+   private
+   public :: fixed_point_type, thermal_scheme_type, implicit_scheme
+   public :: method_picard, method_zaitsev, solver_skyline, solver_mumps
+
+   integer, parameter :: method_picard = 1    !! eq. (4.1)
+   integer, parameter :: method_zaitsev = 2   !! eq. (4.2)
+   integer, parameter :: solver_skyline = 1   !! Crout LDL^T on a skyline
+   integer, parameter :: solver_mumps = 2     !! MUMPS with METIS ordering
+
+   !> *FIXED POINT.
+   type :: fixed_point_type
+      integer :: method = method_zaitsev      !! method_picard or method_zaitsev
+      real(dp) :: tolerance = 1.0e-8_dp       !! on max |U(w) - w|/w [-]
+      integer :: max_iterations = 50          !! passes of U in an increment
+      real(dp) :: g = 0.5_dp                  !! constant g of the first iterations, in (0, 1]
+      integer :: constant = 3                 !! number of iterations with the constant g
+   end type fixed_point_type
+
+   !> Coefficients of eq. (3.4).
+   type :: thermal_scheme_type
+      real(dp) :: a(3)   !! a1, a2, a3
+      real(dp) :: b(3)   !! b1, b2, b3
+      real(dp) :: c(2)   !! c1, c2
+   end type thermal_scheme_type
+
+   !> The implicit scheme of the paper: a1 = a3 = c2 = 1.
+   type(thermal_scheme_type), parameter :: implicit_scheme = &
+      thermal_scheme_type([1.0_dp, 0.0_dp, 1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp])
+
+end module controls

@@ -1,0 +1,44 @@
+!> The finite-element mesh of a model: nodes, eight-node elements, sets and surfaces.
+!> Nodes and elements are known inside the program by their index; the deck's numbers are kept for
+!> messages and output.
+module mesh
+   use kinds, only: dp
+   implicit none
+   private
+   public :: mesh_type, set_type, surface_type
+   public :: nodes_per_element, face_nodes
+
+   integer, parameter :: nodes_per_element = 8 !! four corners, then four midside nodes
+
+   !> Local nodes of faces S1..S4, as first corner, midside node, second corner; the body lies on
+   !> their left.
+   integer, parameter :: face_nodes(3, 4) = reshape([1, 5, 2, 2, 6, 3, 3, 7, 4, 4, 8, 1], [3, 4])
+
+   !> A named set of node or element indexes.
+   type :: set_type
+      character(:), allocatable :: name     !! name in upper case
+      integer, allocatable :: members(:)    !! indexes, each once, ascending
+   end type set_type
+
+   !> A named set of element faces.
+   type :: surface_type
+      character(:), allocatable :: name     !! name in upper case
+      integer, allocatable :: faces(:, :)   !! (2, face count): element index, face 1..4
+   end type surface_type
+
+   !> Nodes and elements, with what is grouped over them.
+   type :: mesh_type
+      integer, allocatable :: node_number(:)          !! (nodes) numbers in the deck
+      real(dp), allocatable :: coordinates(:, :)      !! (2, nodes) x and y [length]
+      integer, allocatable :: element_number(:)       !! (elements) numbers in the deck
+      integer, allocatable :: element_nodes(:, :)     !! (8, elements) indexes, corners, midsides
+      integer, allocatable :: element_section(:)      !! (elements) index into model%sections
+      integer, allocatable :: element_body(:)         !! (elements) 1..body_count: share nodes
+      integer, allocatable :: node_body(:)            !! (nodes) body, 0 where no element uses it
+      integer :: body_count = 0                       !! number of bodies
+      type(set_type), allocatable :: node_sets(:)     !! node sets
+      type(set_type), allocatable :: element_sets(:)  !! element sets
+      type(surface_type), allocatable :: surfaces(:)  !! surfaces
+   end type mesh_type
+
+end module mesh

@@ -1,0 +1,59 @@
+!> The model: all that the deck says, built once by the deck builder and read-only afterwards.
+module model
+   use amplitudes, only: amplitude_type
+   use contact_definitions, only: contact_definition_type, interaction_type
+   use controls, only: solver_skyline
+   use kinds, only: dp
+   use materials, only: material_type, section_type
+   use mesh, only: mesh_type
+   use steps, only: step_type
+   use text, only: string_type
+   implicit none
+   private
+   public :: model_type, verify_type, unit_labels_type
+
+   !> Labels of the deck's units (*OPTIONS, UNITS=); empty when not given.
+   type :: unit_labels_type
+      character(:), allocatable :: length        !! such as cm
+      character(:), allocatable :: stress        !! such as MPa
+      character(:), allocatable :: power         !! such as W
+      character(:), allocatable :: temperature   !! such as C
+   end type unit_labels_type
+
+   !> One *VERIFY data card.
+   type :: verify_type
+      character(:), allocatable :: kind       !! ANALYTIC, EXTERNAL, LEGACY, FIGURE or REGRESSION
+      character(:), allocatable :: source     !! where the value comes from
+      character(:), allocatable :: quantity   !! dataset or nodal quantity
+      character(:), allocatable :: where      !! as written; empty for /history
+      logical :: at_last = .false.            !! LAST
+      real(dp) :: when = 0.0_dp               !! total time, unless at_last [time]
+      real(dp) :: value = 0.0_dp              !! expected value
+      real(dp) :: tolerance = 0.0_dp          !! allowed deviation
+      logical :: relative = .true.            !! REL, else ABS
+      integer :: line = 0                     !! card number in the deck
+   end type verify_type
+
+   !> All that the deck says.
+   type :: model_type
+      character(:), allocatable :: heading                       !! first *HEADING line
+      type(mesh_type) :: mesh                                    !! nodes, elements, sets, surfaces
+      type(material_type), allocatable :: materials(:)           !! materials
+      type(section_type), allocatable :: sections(:)             !! sections
+      type(amplitude_type), allocatable :: amplitudes(:)         !! load curves
+      type(interaction_type), allocatable :: interactions(:)     !! surface interactions
+      type(contact_definition_type), allocatable :: contacts(:)  !! contact pairs of surfaces
+      real(dp), allocatable :: initial_temperature(:)            !! (nodes) [temperature]
+      type(step_type), allocatable :: steps(:)                   !! steps in their order
+      type(verify_type), allocatable :: verifications(:)         !! *VERIFY cards
+      type(unit_labels_type) :: units                            !! labels of units
+      integer :: solver = solver_skyline                         !! solver_skyline or solver_mumps
+      integer :: refinement_levels = 0                           !! *REFINE, already applied
+      integer :: load_node = 0                                   !! LOAD=: node index, 0 for time
+      integer :: load_dof = 0                                    !! LOAD=: 1, 2, dof_temperature
+      character(:), allocatable :: load_label                    !! label of the load axis
+      type(string_type), allocatable :: notes(:)                 !! defaults used, cards not needed
+      type(string_type), allocatable :: warnings(:)              !! warnings, as printed
+   end type model_type
+
+end module model

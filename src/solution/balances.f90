@@ -1,0 +1,125 @@
+!> Balances of heat and force that can fail: the reactions of each body alone, on the recovered fields, against what the
+!> reduced system says crosses the contacts.
+module balances
+   use contact_system, only: contact_state_type
+   use interface_operators, only: pair_row_type
+   use kinds, only: dp
+   use records, only: status_open, status_slip, status_stick
+   implicit none
+   private
+   public :: heat_residual, force_residual, imbalance, contact_violation
+
+contains
+
+   !> Heat that the supports of each node must supply: K T - Q plus what leaves through the pairs, by the reduced system.
+   pure function heat_residual(conducted, load, pairs, pair_heat) result(residual)
+      real(dp), intent(in) :: conducted(:)       !! (nodes) K T of the bodies alone [power]
+      real(dp), intent(in) :: load(:)            !! (nodes) Q [power]
+      type(pair_row_type), intent(in) :: pairs   !! the pairs
+      real(dp), intent(in) :: pair_heat(:)       !! (m) heat from slave to master [power]
+      real(dp) :: residual(size(conducted))      !! (nodes) zero where no temperature is prescribed [power]
+      integer :: k
+
+      residual = conducted - load
+      do k = 1, size(pair_heat)
+         residual(pairs%slave(k)) = residual(pairs%slave(k)) + pair_heat(k)
+         residual(pairs%master(k)) = residual(pairs%master(k)) - pair_heat(k)
+      end do
+   end function heat_residual
+
+   !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces of the reduced system.
+   pure function force_residual(internal, load, pairs, state) result(residual)
+      real(dp), intent(in) :: internal(:)            !! (2 nodes) K u less the thermal load, bodies alone [force]
+      real(dp), intent(in) :: load(:)                !! (2 nodes) applied forces [force]
+      type(pair_row_type), intent(in) :: pairs       !! the pairs
+      type(contact_state_type), intent(in) :: state  !! contact forces
+      real(dp) :: residual(size(internal))           !! (2 nodes) zero where no displacement is prescribed [force]
+      real(dp) :: on_slave(2)
+      integer :: k, s, m
+
+      residual = internal - load
+      do k = 1, size(pairs%slave)
+         on_slave = state%shear_force(k)*pairs%tangent(:, k) - state%force(k)*pairs%normal(:, k)
+         s = 2*pairs%slave(k)
+         m = 2*pairs%master(k)
+         residual(s - 1:s) = residual(s - 1:s) - on_slave
+         residual(m - 1:m) = residual(m - 1:m) + on_slave
+      end do
+   end function force_residual
+
+   !> Largest imbalance, relative: of any single unsupported row, and per body and direction of the supports' sum against
+   !> loads and contacts, which is the sum over the unsupported rows because K has no resultant.
+   pure function imbalance(residual, supported, node_body, scale) result(relative)
+      real(dp), intent(in) :: residual(:)      !! (components*nodes) as from the functions above
+      logical, intent(in) :: supported(:)      !! (components*nodes) prescribed rows
+      integer, intent(in) :: node_body(:)      !! (nodes) body of each node, 0 for none
+      real(dp), intent(in) :: scale            !! largest rate or force of the increment
+      real(dp) :: relative                     !! relative imbalance
+      real(dp) :: total(0:maxval(node_body), size(residual)/size(node_body))
+      integer :: c, components, i, node
+
+      components = size(total, 2)
+      total = 0.0_dp
+      relative = 0.0_dp
+      do node = 1, size(node_body)
+         do c = 1, components
+            i = components*(node - 1) + c
+            if (supported(i)) cycle
+            relative = max(relative, abs(residual(i)))
+            total(node_body(node), c) = total(node_body(node), c) + residual(i)
+         end do
+      end do
+      relative = max(relative, maxval(abs(total)))
+      if (scale > 0.0_dp) relative = relative/scale
+   end function imbalance
+
+   !> Largest violation of the contact conditions (1.6) by gaps and tractions computed afresh from the recovered
+   !> displacements, relative to the largest displacement and force. Where a row is supported on one body, the traction is
+   !> taken from the other; where on both, the reduced system's stands.
+   pure function contact_violation(displacement, unbalanced, supported, pairs, state, friction_acts, &
+      length_scale, force_scale) result(violation)
+      real(dp), intent(in) :: displacement(:)        !! (2 nodes) [length]
+      real(dp), intent(in) :: unbalanced(:)          !! (2 nodes) K u - f without the contact forces [force]
+      logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
+      type(pair_row_type), intent(in) :: pairs       !! the pairs
+      type(contact_state_type), intent(in) :: state  !! the state that is checked
+      logical, intent(in) :: friction_acts(:)        !! (m) whether the tangent is an unknown with friction
+      real(dp), intent(in) :: length_scale           !! largest displacement [length]
+      real(dp), intent(in) :: force_scale            !! largest force [force]
+      real(dp) :: violation                          !! relative
+      real(dp) :: force(2), relative(2), gap, normal_force, shear_force, slip, cone
+      integer :: c, k, s, m
+
+      violation = 0.0_dp
+      do k = 1, size(pairs%slave)
+         do c = 1, 2
+            s = 2*pairs%slave(k) - 2 + c
+            m = 2*pairs%master(k) - 2 + c
+            relative(c) = displacement(s) - displacement(m)
+            if (.not. supported(s)) then
+               force(c) = unbalanced(s)
+            else if (.not. supported(m)) then
+               force(c) = -unbalanced(m)
+            else
+               force(c) = state%shear_force(k)*pairs%tangent(c, k) - state%force(k)*pairs%normal(c, k)
+            end if
+         end do
+         gap = (pairs%initial_gap(k) - dot_product(relative, pairs%normal(:, k)))/length_scale
+         slip = (dot_product(relative, pairs%tangent(:, k)) - state%reference(k))/length_scale
+         normal_force = -dot_product(force, pairs%normal(:, k))/force_scale
+         shear_force = dot_product(force, pairs%tangent(:, k))/force_scale
+         cone = pairs%friction(k)*normal_force
+         if (state%status(k) == status_open) then
+            violation = max(violation, -gap, abs(normal_force), abs(shear_force))
+            cycle
+         end if
+         violation = max(violation, abs(gap), -normal_force)
+         if (.not. friction_acts(k)) cycle
+         if (state%status(k) == status_slip) &
+            violation = max(violation, abs(abs(shear_force) - cone), sign(slip, slip*shear_force))
+         if (state%status(k) == status_stick) &
+            violation = max(violation, abs(shear_force) - cone, abs(slip))
+      end do
+   end function contact_violation
+
+end module balances

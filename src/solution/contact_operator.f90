@@ -1,0 +1,145 @@
+!> One pass of the contact operator U = chi H L of section 2: conductance -> temperature jumps -> contact state ->
+!> conductance, all on the pairs.
+module contact_operator
+   use closing_instant, only: solve_increment
+   use conductance_laws, only: conductance, conductance_slope
+   use contact_system, only: contact_state_type
+   use controls, only: thermal_scheme_type
+   use errors, only: error_type
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use records, only: status_open, work_record_type
+   use thermal_matrix, only: contact_diagonal, contact_history
+   implicit none
+   private
+   public :: increment_data_type, temperature_jumps, condensed_load, law_conductance
+   public :: contact_operator_pass, residual_floor
+
+   !> What stays fixed while the iteration of an increment runs.
+   type :: increment_data_type
+      type(thermal_scheme_type) :: scheme            !! scheme of (3.4)
+      type(contact_state_type) :: previous           !! contact state at the start of the increment
+      real(dp), allocatable :: omega_old(:)          !! (m) omega_i
+      real(dp), allocatable :: jump_old(:)           !! (m) T_xi - T_eta at the start [temperature]
+      real(dp), allocatable :: held_jump(:)          !! (m) jump where both temperatures are prescribed
+      real(dp), allocatable :: diagonal(:)           !! (thermal tail) diagonal of the present tail factors
+      real(dp), allocatable :: welded_load(:)        !! (mechanical tail) condensed load without jumps
+      real(dp) :: displacement_scale = 0.0_dp        !! largest displacement of the last increment [length]
+   end type increment_data_type
+
+contains
+
+   !> U: conductance in, conductance of the resulting contact state out.
+   !> Error: as solve_increment.
+   subroutine contact_operator_pass(operators, data, omega, jump, state, image, work, error)
+      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+      type(increment_data_type), intent(inout) :: data           !! the increment
+      real(dp), intent(in) :: omega(:)                           !! (m) omega*
+      real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
+      type(contact_state_type), intent(inout) :: state           !! guess in, solution out
+      real(dp), intent(out) :: image(:)                          !! (m) U(omega*)
+      type(work_record_type), intent(inout) :: work              !! counters of re-factorisation
+      type(error_type), allocatable, intent(out) :: error        !! see above
+
+      call temperature_jumps(operators, data, omega, jump, work)
+      call solve_increment(operators%contact, data%previous, &
+         condensed_load(operators, data, jump), state, error)
+      if (allocated(error)) return
+      image = law_conductance(operators, state)
+   end subroutine contact_operator_pass
+
+   !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first changed one on are
+   !> factored again.
+   subroutine temperature_jumps(operators, data, omega, jump, work)
+      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+      type(increment_data_type), intent(inout) :: data           !! the increment
+      real(dp), intent(in) :: omega(:)                           !! (m) omega*
+      real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
+      type(work_record_type), intent(inout) :: work              !! counters of re-factorisation
+      real(dp) :: x(operators%thermal%map%tail), diagonal(operators%thermal%map%tail)
+      real(dp) :: of_pair(size(omega)), history(size(omega))
+      integer :: k, first_changed
+
+      associate (place => operators%jump_place, weight => operators%pairs%weight, &
+         solver => operators%thermal%solver)
+         of_pair = contact_diagonal(data%scheme, weight, data%omega_old, omega)
+         history = contact_history(data%scheme, weight, data%omega_old, omega, data%jump_old)
+         x = operators%thermal%condensed
+         do k = 1, size(omega)
+            if (place(k) == 0) cycle
+            diagonal(place(k)) = of_pair(k)
+            x(place(k)) = x(place(k)) + history(k)
+         end do
+         first_changed = size(x) + 1
+         do k = size(x), 1, -1
+            if (abs(diagonal(k) - data%diagonal(k)) > 0.0_dp) first_changed = k
+         end do
+         call solver%refactor_tail(diagonal, first_changed)
+         data%diagonal = diagonal
+         work%columns_again = work%columns_again + size(x) + 1 - first_changed
+         work%columns_full = work%columns_full + solver%order
+         work%flops_again = work%flops_again + solver%tail_flops(first_changed)
+         work%flops_full = work%flops_full + solver%full_flops + solver%tail_flops(1)
+         call solver%solve_tail(x)
+         jump = data%held_jump
+         do k = 1, size(omega)
+            if (place(k) > 0) jump(k) = x(place(k))
+         end do
+      end associate
+   end subroutine temperature_jumps
+
+   !> Condensed mechanical load of the increment with given jumps.
+   pure function condensed_load(operators, data, jump) result(load)
+      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      type(increment_data_type), intent(in) :: data             !! the increment
+      real(dp), intent(in) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
+      real(dp) :: load(size(data%welded_load))                  !! (mechanical tail) [force]
+      integer :: k
+
+      load = data%welded_load
+      do k = 1, size(jump)
+         if (operators%jump_place(k) > 0) &
+            load = load + operators%jump_load(:, operators%jump_place(k))*jump(k)
+      end do
+   end function condensed_load
+
+   !> chi: the conductance of a contact state, eq. (1.8).
+   pure function law_conductance(operators, state) result(omega)
+      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      type(contact_state_type), intent(in) :: state             !! contact state
+      real(dp) :: omega(size(state%status))                     !! (m)
+      integer :: k
+
+      do k = 1, size(omega)
+         omega(k) = conductance(operators%pairs%law(k), state%status(k) /= status_open, &
+            state%gap(k), state%force(k)/operators%pairs%weight(k))
+      end do
+   end function law_conductance
+
+   !> What a few units in the last place of the displacements change in omega, relative: no residual can be smaller.
+   pure function residual_floor(operators, data, state, omega) result(floor_value)
+      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      type(increment_data_type), intent(in) :: data             !! the increment
+      type(contact_state_type), intent(in) :: state             !! contact state
+      real(dp), intent(in) :: omega(:)                          !! (m) its conductance
+      real(dp) :: floor_value                                   !! relative change of omega
+      real(dp) :: change, pressure
+      integer :: k
+      integer, parameter :: few = 4
+
+      floor_value = 0.0_dp
+      do k = 1, size(omega)
+         if (omega(k) <= 0.0_dp) cycle
+         associate (weight => operators%pairs%weight(k), place => operators%contact%normal(k))
+            change = few*epsilon(1.0_dp)*max(data%displacement_scale, abs(state%gap(k)), &
+               abs(operators%pairs%initial_gap(k) - state%gap(k)))
+            if (state%status(k) /= status_open) &
+               change = change*operators%contact%schur(place, place)/weight
+            pressure = state%force(k)/weight
+         end associate
+         floor_value = max(floor_value, change/omega(k)*abs(conductance_slope( &
+            operators%pairs%law(k), state%status(k) /= status_open, state%gap(k), pressure)))
+      end do
+   end function residual_floor
+
+end module contact_operator

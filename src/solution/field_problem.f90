@@ -1,0 +1,125 @@
+!> A linear field problem, thermal or mechanical, reduced once to its contact unknowns.
+module field_problem
+   use controls, only: solver_mumps
+   use equation_map, only: equation_map_type
+   use errors, only: error_type
+   use kinds, only: dp
+   use linear_solver, only: linear_solver_type
+   use mumps_solver, only: mumps_solver_type
+   use skyline_solver, only: skyline_solver_type
+   use sparse_matrix, only: sparse_matrix_type
+   implicit none
+   private
+   public :: field_problem_type
+
+   !> Matrix of the bodies, numbering of the unknowns, factors, and the load of the present increment.
+   type :: field_problem_type
+      type(sparse_matrix_type) :: matrix                      !! (dofs, dofs) bodies alone, both triangles
+      type(equation_map_type) :: map                          !! numbering of the unknowns
+      class(linear_solver_type), allocatable :: solver        !! factors
+      real(dp), allocatable :: given(:)                       !! (dofs) prescribed values
+      real(dp), allocatable :: rhs(:, :)                      !! (equations, 1) right-hand side
+      real(dp), allocatable :: condensed(:)                   !! (tail) right-hand side condensed on the tail
+   contains
+      procedure :: reduce
+      procedure :: set_load
+      procedure :: recover
+      procedure :: unit_responses
+      procedure :: condense_forces
+      procedure :: release
+   end type field_problem_type
+
+contains
+
+   !> Factors the matrix for a numbering of the unknowns; done once for all increments with the same supports.
+   !> Error: as the solver's factor.
+   subroutine reduce(self, solver_kind, map, error)
+      class(field_problem_type), intent(inout) :: self    !! the problem; its matrix is set
+      integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
+      type(equation_map_type), intent(in) :: map          !! numbering of the unknowns
+      type(error_type), allocatable, intent(out) :: error !! see above
+
+      call self%release()
+      if (solver_kind == solver_mumps) then
+         allocate (mumps_solver_type :: self%solver)
+      else
+         allocate (skyline_solver_type :: self%solver)
+      end if
+      self%map = map
+      call self%solver%factor(map%transform(self%matrix), map%tail, error)
+   end subroutine reduce
+
+   !> Takes the load of an increment and condenses it on the tail.
+   subroutine set_load(self, forces, given)
+      class(field_problem_type), intent(inout) :: self    !! the problem
+      real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
+      real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
+      real(dp) :: zero(self%map%equations), condensed(self%map%tail, 1)
+
+      zero = 0.0_dp
+      self%given = given
+      if (allocated(self%rhs)) deallocate (self%rhs)
+      allocate (self%rhs(self%map%equations, 1))
+      self%rhs(:, 1) = self%map%restrict( &
+         forces - self%matrix%multiply(self%map%expand(zero, given)))
+      call self%solver%condense(self%rhs, condensed)
+      self%condensed = condensed(:, 1)
+   end subroutine set_load
+
+   !> Values of all degrees of freedom under the load of the increment.
+   function recover(self, on_tail) result(values)
+      class(field_problem_type), intent(inout) :: self    !! the problem
+      real(dp), intent(in) :: on_tail(:)                  !! (tail) solution on the tail
+      real(dp) :: values(self%matrix%row_count)           !! (dofs)
+      real(dp) :: solution(self%map%equations, 1)
+
+      call self%solver%recover(self%rhs, reshape(on_tail, [size(on_tail), 1]), solution)
+      values = self%map%expand(solution(:, 1), self%given)
+   end function recover
+
+   !> Values of all degrees of freedom for unit values of some tail unknowns, without load and with zero prescribed values.
+   subroutine unit_responses(self, first, values)
+      class(field_problem_type), intent(inout) :: self    !! the problem
+      integer, intent(in) :: first                        !! first of the tail unknowns
+      real(dp), intent(out) :: values(:, :)               !! (dofs, number of tail unknowns)
+      real(dp), allocatable :: zero(:, :), unit(:, :), solution(:, :)
+      real(dp) :: none(self%matrix%row_count)
+      integer :: k
+
+      allocate (zero(self%map%equations, size(values, 2)), source=0.0_dp)
+      allocate (solution, mold=zero)
+      allocate (unit(self%map%tail, size(values, 2)), source=0.0_dp)
+      do k = 1, size(values, 2)
+         unit(first + k - 1, k) = 1.0_dp
+      end do
+      call self%solver%recover(zero, unit, solution)
+      none = 0.0_dp
+      do k = 1, size(values, 2)
+         values(:, k) = self%map%expand(solution(:, k), none)
+      end do
+   end subroutine unit_responses
+
+   !> Nodal forces condensed on the tail.
+   subroutine condense_forces(self, forces, condensed)
+      class(field_problem_type), intent(inout) :: self    !! the problem
+      real(dp), intent(in) :: forces(:, :)                !! (dofs, columns)
+      real(dp), intent(out) :: condensed(:, :)            !! (tail, columns)
+      real(dp) :: rhs(self%map%equations, size(forces, 2))
+      integer :: k
+
+      do k = 1, size(forces, 2)
+         rhs(:, k) = self%map%restrict(forces(:, k))
+      end do
+      call self%solver%condense(rhs, condensed)
+   end subroutine condense_forces
+
+   !> Frees the factors.
+   subroutine release(self)
+      class(field_problem_type), intent(inout) :: self    !! the problem
+
+      if (.not. allocated(self%solver)) return
+      call self%solver%release()
+      deallocate (self%solver)
+   end subroutine release
+
+end module field_problem

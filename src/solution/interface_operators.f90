@@ -1,0 +1,198 @@
+!> The bodies reduced once to their contact unknowns: everything that the fixed-point iteration needs, on the pairs alone.
+module interface_operators
+   use conductance_laws, only: conductance_law_type
+   use contact_pairs, only: contact_pairs_type, make_pairs
+   use contact_system, only: contact_system_type
+   use equation_map, only: equation_map_type, make_map
+   use errors, only: error_type
+   use field_problem, only: field_problem_type
+   use kinds, only: dp
+   use model, only: model_type
+   use sparse_matrix, only: sparse_matrix_type
+   use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
+   use thermal_matrix, only: assemble_conduction
+   implicit none
+   private
+   public :: interface_operators_type, pair_row_type
+
+   integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
+
+   !> The pairs of all interfaces in one row.
+   type :: pair_row_type
+      integer, allocatable :: interface_start(:)              !! (interfaces + 1) first pair of each
+      integer, allocatable :: slave(:), master(:)             !! (m) node indexes
+      real(dp), allocatable :: weight(:)                      !! (m) tributary areas [length^2]
+      real(dp), allocatable :: initial_gap(:)                 !! (m) h [length]
+      real(dp), allocatable :: friction(:)                    !! (m) mu [-]
+      real(dp), allocatable :: normal(:, :), tangent(:, :)    !! (2, m) unit vectors
+      type(conductance_law_type), allocatable :: law(:)       !! (m) conductance laws
+   end type pair_row_type
+
+   !> The reduced bodies.
+   type :: interface_operators_type
+      type(contact_pairs_type), allocatable :: interfaces(:)  !! interfaces in the order of the deck
+      type(pair_row_type) :: pairs                            !! all their pairs
+      type(field_problem_type) :: thermal                     !! heat, (3.3)
+      type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
+      type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
+      type(contact_system_type) :: contact                    !! the partial solution of (2.4)
+      integer, allocatable :: jump_place(:)                   !! (m) place of the jump on the tail, 0 where held
+      real(dp), allocatable :: jump_load(:, :)                !! condensed mechanical load per jump
+   contains
+      procedure :: prepare
+      procedure :: reduce
+      procedure :: release
+   end type interface_operators_type
+
+contains
+
+   !> Pairs the surfaces and assembles the matrices of the bodies.
+   !> Error: as make_pairs.
+   subroutine prepare(self, model, with_heat, error)
+      class(interface_operators_type), intent(inout) :: self !! empty
+      type(model_type), intent(in) :: model                  !! the model
+      logical, intent(in) :: with_heat                       !! whether any step solves heat
+      type(error_type), allocatable, intent(out) :: error    !! see above
+      integer :: i, element
+
+      allocate (self%interfaces(size(model%contacts)))
+      do i = 1, size(model%contacts)
+         element = model%mesh%surfaces(model%contacts(i)%slave)%faces(1, 1)
+         call make_pairs(model%mesh, model%contacts(i), &
+            model%sections(model%mesh%element_section(element))%thickness, &
+            self%interfaces(i), error)
+         if (allocated(error)) return
+      end do
+      self%pairs = row_of(self%interfaces, model)
+      self%mechanical%matrix = assemble_stiffness(model%mesh, model%sections, model%materials)
+      self%thermal_load = assemble_thermal_load(model%mesh, model%sections, model%materials)
+      if (with_heat) self%thermal%matrix = &
+         assemble_conduction(model%mesh, model%sections, model%materials)
+   end subroutine prepare
+
+   !> Puts the pairs of all interfaces in one row.
+   pure function row_of(interfaces, model) result(row)
+      type(contact_pairs_type), intent(in) :: interfaces(:)
+      type(model_type), intent(in) :: model
+      type(pair_row_type) :: row
+      integer :: i, first, last, m
+
+      allocate (row%interface_start(size(interfaces) + 1))
+      row%interface_start(1) = 1
+      do i = 1, size(interfaces)
+         row%interface_start(i + 1) = row%interface_start(i) + size(interfaces(i)%slave_node)
+      end do
+      m = row%interface_start(size(interfaces) + 1) - 1
+      allocate (row%slave(m), row%master(m), row%weight(m), row%initial_gap(m), row%friction(m), &
+         row%normal(2, m), row%tangent(2, m), row%law(m))
+      do i = 1, size(interfaces)
+         first = row%interface_start(i)
+         last = row%interface_start(i + 1) - 1
+         row%slave(first:last) = interfaces(i)%slave_node
+         row%master(first:last) = interfaces(i)%master_node
+         row%weight(first:last) = interfaces(i)%weight
+         row%initial_gap(first:last) = interfaces(i)%initial_gap
+         row%normal(:, first:last) = interfaces(i)%normal
+         row%tangent(:, first:last) = interfaces(i)%tangent
+         row%friction(first:last) = model%interactions(model%contacts(i)%interaction)%friction
+         row%law(first:last) = model%interactions(model%contacts(i)%interaction)%law
+      end do
+   end function row_of
+
+   !> Reduces the bodies for a set of supports.
+   !> Errors: bodies that nothing holds, an over-constrained pair, a failure of the solver.
+   subroutine reduce(self, model, held, held_temperature, with_heat, error)
+      class(interface_operators_type), intent(inout) :: self !! prepared
+      type(model_type), intent(in) :: model                  !! the model
+      logical, intent(in) :: held(:)                         !! (2 nodes) prescribed displacements
+      logical, intent(in) :: held_temperature(:)             !! (nodes) prescribed temperatures
+      logical, intent(in) :: with_heat                       !! whether heat is solved
+      type(error_type), allocatable, intent(out) :: error    !! see above
+      type(equation_map_type) :: map
+      real(dp) :: frame(2, 2, size(self%pairs%slave)), scalar(1, 1, size(self%pairs%slave))
+      logical :: on_tail(2, size(self%pairs%slave))
+      integer :: k
+
+      associate (pairs => self%pairs, used => model%mesh%node_body > 0)
+         frame(:, 1, :) = pairs%normal
+         frame(:, 2, :) = pairs%tangent
+         on_tail(1, :) = .true.
+         on_tail(2, :) = pairs%friction > 0.0_dp
+         call make_map(used, held, pairs%slave, pairs%master, frame, on_tail, map, error)
+         if (allocated(error)) return
+         call self%mechanical%reduce(model%solver, map, error)
+         if (allocated(error)) return
+         call set_contact(self)
+         if (.not. with_heat) return
+         scalar = 1.0_dp
+         call make_map(used, held_temperature, pairs%slave, pairs%master, scalar, &
+            reshape([(.true., k=1, size(pairs%slave))], [1, size(pairs%slave)]), map, error)
+         if (allocated(error)) return
+         call self%thermal%reduce(model%solver, map, error)
+         if (allocated(error)) then
+            error%message = error%message//' (heat: no temperature or film holds it)'
+            return
+         end if
+         self%jump_place = map%tail_index(map%relative(1, :))
+      end associate
+      call form_jump_load(self)
+   end subroutine reduce
+
+   !> The contact system from the mechanical Schur complement.
+   subroutine set_contact(self)
+      class(interface_operators_type), intent(inout) :: self
+      type(contact_system_type) :: contact
+
+      allocate (contact%normal(size(self%pairs%slave)), contact%tangent(size(self%pairs%slave)))
+      associate (map => self%mechanical%map)
+         contact%normal(:) = map%tail_index(map%relative(1, :))
+         contact%tangent(:) = map%tail_index(map%relative(2, :))
+      end associate
+      contact%schur = self%mechanical%solver%schur_complement()
+      allocate (contact%closing(size(self%pairs%slave)))
+      contact%initial_gap = self%pairs%initial_gap
+      contact%friction = self%pairs%friction
+      self%contact = contact
+   end subroutine set_contact
+
+   !> Condensed mechanical load of a unit jump at each pair.
+   subroutine form_jump_load(self)
+      class(interface_operators_type), intent(inout) :: self
+      real(dp), allocatable :: temperature(:, :)
+      integer :: first, last, tail
+
+      tail = self%thermal%map%tail
+      if (allocated(self%jump_load)) deallocate (self%jump_load)
+      allocate (self%jump_load(self%mechanical%map%tail, tail))
+      do first = 1, tail, columns_at_once
+         last = min(first + columns_at_once - 1, tail)
+         allocate (temperature(self%thermal%matrix%row_count, last - first + 1))
+         call self%thermal%unit_responses(first, temperature)
+         call condense_thermal_load(self, temperature, self%jump_load(:, first:last))
+         deallocate (temperature)
+      end do
+   end subroutine form_jump_load
+
+   !> Condensed mechanical loads of fields of temperature.
+   subroutine condense_thermal_load(self, temperature, condensed)
+      class(interface_operators_type), intent(inout) :: self !! the reduced bodies
+      real(dp), intent(in) :: temperature(:, :)              !! (nodes, columns) over the natural state
+      real(dp), intent(out) :: condensed(:, :)               !! (mechanical tail, columns)
+      real(dp) :: forces(self%thermal_load%row_count, size(temperature, 2))
+      integer :: k
+
+      do k = 1, size(temperature, 2)
+         forces(:, k) = self%thermal_load%multiply(temperature(:, k))
+      end do
+      call self%mechanical%condense_forces(forces, condensed)
+   end subroutine condense_thermal_load
+
+   !> Frees the factors.
+   subroutine release(self)
+      class(interface_operators_type), intent(inout) :: self !! the reduced bodies
+
+      call self%thermal%release()
+      call self%mechanical%release()
+   end subroutine release
+
+end module interface_operators

@@ -1,0 +1,92 @@
+!> The course of loads and prescribed values over the steps.
+module load_courses
+   use amplitudes, only: amplitude_type, amplitude_value
+   use kinds, only: dp
+   implicit none
+   private
+   public :: load_course_type, step_clock_type
+
+   !> Where in the steps an instant lies.
+   type :: step_clock_type
+      real(dp) :: step_time = 0.0_dp    !! time since the start of the step [time]
+      real(dp) :: period = 1.0_dp       !! length of the step [time]
+      real(dp) :: total_time = 0.0_dp   !! time since the start of the first step [time]
+      logical :: ramped = .true.        !! loads without an amplitude ramp over the step
+   end type step_clock_type
+
+   !> A set of numbered loads, each with its present value. Loads stay from step to step until given anew.
+   type :: load_course_type
+      logical, allocatable :: active(:)      !! (n) whether the load was ever given
+      real(dp), allocatable :: start(:)      !! (n) value at the start of the step
+      real(dp), allocatable :: target(:)     !! (n) value at its end, or factor of the amplitude
+      real(dp), allocatable :: value(:)      !! (n) present value
+      integer, allocatable :: amplitude(:)   !! (n) index of the amplitude, or 0
+      integer, allocatable :: card(:)        !! (n) card that gave the load last
+   contains
+      procedure :: prepare
+      procedure :: begin_step
+      procedure :: give
+      procedure :: move_to
+   end type load_course_type
+
+contains
+
+   !> Starts with no load given.
+   pure subroutine prepare(self, initial)
+      class(load_course_type), intent(inout) :: self !! the loads
+      real(dp), intent(in) :: initial(:)             !! (n) values from which loads ramp when first given
+
+      allocate (self%active(size(initial)), source=.false.)
+      allocate (self%amplitude(size(initial)), self%card(size(initial)), source=0)
+      self%start = initial
+      self%target = initial
+      self%value = initial
+   end subroutine prepare
+
+   !> Starts a step: loads without an amplitude stay at their last value unless given anew.
+   pure subroutine begin_step(self)
+      class(load_course_type), intent(inout) :: self !! the loads
+
+      self%start = self%value
+      where (self%amplitude == 0) self%target = self%value
+   end subroutine begin_step
+
+   !> Gives a load for this step.
+   pure subroutine give(self, i, value, amplitude, card)
+      class(load_course_type), intent(inout) :: self !! the loads
+      integer, intent(in) :: i                       !! number of the load
+      real(dp), intent(in) :: value                  !! value at the end of the step, or factor of the amplitude
+      integer, intent(in) :: amplitude               !! index of the amplitude, or 0
+      integer, intent(in) :: card                    !! card that gives it
+
+      self%active(i) = .true.
+      self%target(i) = value
+      self%amplitude(i) = amplitude
+      self%card(i) = card
+   end subroutine give
+
+   !> Moves all loads to an instant of the step.
+   pure subroutine move_to(self, clock, amplitudes)
+      class(load_course_type), intent(inout) :: self     !! the loads
+      type(step_clock_type), intent(in) :: clock         !! the instant
+      type(amplitude_type), intent(in) :: amplitudes(:)  !! load curves
+      real(dp) :: factor(size(amplitudes)), share
+      integer :: i
+
+      do i = 1, size(amplitudes)
+         factor(i) = amplitude_value(amplitudes(i), &
+            merge(clock%total_time, clock%step_time, amplitudes(i)%total_time))
+      end do
+      share = 1.0_dp
+      if (clock%ramped) share = clock%step_time/clock%period
+      do i = 1, size(self%value)
+         if (.not. self%active(i)) cycle
+         if (self%amplitude(i) > 0) then
+            self%value(i) = self%target(i)*factor(self%amplitude(i))
+         else
+            self%value(i) = self%start(i) + (self%target(i) - self%start(i))*share
+         end if
+      end do
+   end subroutine move_to
+
+end module load_courses

@@ -1,0 +1,91 @@
+!> What one accepted increment leaves behind: the only thing that listing, results and verification
+!> see of the solution.
+module records
+   use kinds, only: dp, long
+   implicit none
+   private
+   public :: increment_record_type, contact_record_type, iteration_record_type
+   public :: field_record_type, work_record_type
+   public :: status_open, status_slip, status_stick, edges_kept
+
+   integer, parameter :: status_open = 0    !! gap, zone I
+   integer, parameter :: status_slip = 1    !! closed, slipping or frictionless, zone II
+   integer, parameter :: status_stick = 2   !! closed and stuck, zone III
+   integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
+
+   !> State of one contact interface; arrays over its pairs, in the order of contact_pairs_type.
+   type :: contact_record_type
+      integer, allocatable :: status(:)                !! status_open, status_slip or status_stick
+      real(dp), allocatable :: gap(:)                  !! gamma >= 0 open [length]
+      real(dp), allocatable :: pressure(:)             !! >= 0 in compression [stress]
+      real(dp), allocatable :: shear(:)                !! on the slave, towards growing s [stress]
+      real(dp), allocatable :: slip(:)                 !! of the slave since closing [length]
+      ! The next four are unallocated without heat.
+      real(dp), allocatable :: conductance(:)          !! omega [power/(length^2 temperature)]
+      real(dp), allocatable :: heat_flux(:)            !! slave to master [power/length^2]
+      real(dp), allocatable :: slave_temperature(:)    !! [temperature]
+      real(dp), allocatable :: master_temperature(:)   !! [temperature]
+      real(dp) :: normal_force = 0.0_dp                !! sum over the pairs [stress length^2]
+      real(dp) :: shear_force = 0.0_dp                 !! alike [stress length^2]
+      real(dp) :: heat_rate = 0.0_dp                   !! heat from slave to master [power]
+      real(dp) :: edge_contact = 0.0_dp                !! outer edge, zone with largest s; or NaN
+      real(dp) :: edge_stick = 0.0_dp                  !! outer edge, widest stick zone; or NaN
+      real(dp) :: edges_contact(edges_kept) = 0.0_dp   !! all edges as s, ascending, padded with NaN
+      real(dp) :: edges_stick(edges_kept) = 0.0_dp     !! alike
+   end type contact_record_type
+
+   !> One pass of the fixed-point iteration.
+   type :: iteration_record_type
+      integer :: increment = 0           !! running number over all steps
+      integer :: iteration = 0           !! pass, from 1
+      real(dp) :: residual = 0.0_dp      !! max |U(w) - w|/w over the pairs that carry heat
+      real(dp) :: g_min = 1.0_dp         !! smallest g of eq. (4.2) over the pairs
+      real(dp) :: g_max = 1.0_dp         !! largest
+      integer :: g_kept = 0              !! pairs whose g was kept, eq. (4.2) giving none
+      integer :: pairs_changed = 0       !! pairs whose contact status changed in this pass
+      integer :: cut_backs = 0           !! cut-backs of the increment so far
+   end type iteration_record_type
+
+   !> Fields over the nodes, and over the points where stress and flux are averaged per body and
+   !> section.
+   type :: field_record_type
+      real(dp), allocatable :: displacement(:, :)   !! (2, nodes) [length]
+      real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
+      real(dp), allocatable :: stress(:, :)         !! (4, points) xx, yy, zz, xy [stress]
+      !> (2, points) x, y; unallocated without heat [power/length^2]
+      real(dp), allocatable :: heat_flux(:, :)
+      real(dp), allocatable :: reaction(:, :)       !! (2, nodes) at supports, else 0 [force]
+      !> (nodes) heat that enters at prescribed temperatures; unallocated without heat [power]
+      real(dp), allocatable :: reaction_heat(:)
+   end type field_record_type
+
+   !> Work of the partial re-factorisation of (3.4) in one increment.
+   type :: work_record_type
+      integer :: columns_again = 0           !! columns factored again, over all passes
+      integer :: columns_full = 0            !! columns of as many full factorisations
+      integer(long) :: flops_again = 0       !! operations of the columns factored again
+      integer(long) :: flops_full = 0        !! operations of as many full factorisations
+   end type work_record_type
+
+   !> One accepted increment.
+   type :: increment_record_type
+      integer :: increment = 0               !! running number over all steps, from 1
+      integer :: step = 0                    !! step number, from 1
+      logical :: last_of_step = .false.      !! whether the step ends here
+      real(dp) :: time = 0.0_dp              !! total time [time]
+      real(dp) :: load = 0.0_dp              !! value on the load axis
+      !> Floor of the residual: what the last places of the displacements change in omega.
+      real(dp) :: residual_floor = 0.0_dp
+      real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
+      real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
+      real(dp) :: heat_imbalance = 0.0_dp    !! relative to the largest rate
+      real(dp) :: force_imbalance = 0.0_dp   !! relative to the largest force
+      !> Largest violation of the contact conditions by the recovered displacements, relative.
+      real(dp) :: contact_violation = 0.0_dp
+      type(contact_record_type), allocatable :: contacts(:)     !! one an interface
+      type(iteration_record_type), allocatable :: iterations(:) !! unallocated without coupling
+      type(field_record_type) :: fields                         !! fields
+      type(work_record_type) :: work                            !! re-factorisation
+   end type increment_record_type
+
+end module records

@@ -1,0 +1,23 @@
+!> What changes from increment to increment.
+module solution_state
+   use contact_system, only: contact_state_type
+   use kinds, only: dp
+   implicit none
+   private
+   public :: solution_state_type
+
+   !> State at the end of an increment.
+   type :: solution_state_type
+      type(contact_state_type) :: contact           !! contact state of all pairs
+      real(dp), allocatable :: closing(:)           !! (m) d_t at which a pair last closed [length]
+      real(dp), allocatable :: omega(:)             !! (m) conductance
+      real(dp), allocatable :: omega_before(:)      !! (m) conductance an increment earlier
+      real(dp), allocatable :: jump(:)              !! (m) T_xi - T_eta [temperature]
+      real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
+      real(dp), allocatable :: displacement(:)      !! (2 nodes) [length]
+      real(dp), allocatable :: heat_load(:)         !! (nodes) Q of (3.3) [power]
+      real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
+      real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]
+   end type solution_state_type
+
+end module solution_state
