@@ -1,4 +1,15 @@
 !> Edges of the contact and stick zones, sharpened below the nodal spacing.
+!>
+!> Edge of contact, between a closed and an open pair: near it p goes like sqrt(a - s) and the gap like (s - a)^(3/2), so
+!> that p^2 from inside and gap^(2/3) from outside go linearly to zero; the edge is the mean of both zeros, each kept
+!> between the two pairs.
+!>
+!> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances with the load it has no
+!> root singularity on the nodal scale, but the slip that was frozen at each pair when the next one closed makes it
+!> noisy; so a straight line is fitted to the last two sides, weighted with the tributary lengths, which makes it the
+!> resultant and moment of the nodal forces themselves.
+!>
+!> Edges are looked for towards growing s; an edge on the other side is the same with the arrays turned round.
 module zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
@@ -7,35 +18,150 @@ module zone_edges
    private
    public :: contact_edges, stick_edges
 
+   integer, parameter :: fitted_pairs = 5   !! pairs of two three-node sides
+
 contains
 
-   !> Edges of the contact zones, ascending, padded with NaN, and the outer edge of the zone with the largest s.
+   !> Edges between contact and gap, ascending, padded with NaN, and the outer edge of the contact zone with the largest
+   !> s. A zone that reaches the last pair ends there; that end is no edge.
    pure subroutine contact_edges(s, status, pressure, gap, edges, outer)
-      real(dp), intent(in) :: s(:)                   !! (m) arc length [length]
-      integer, intent(in) :: status(:)               !! (m) status of the pairs
-      real(dp), intent(in) :: pressure(:)            !! (m) [stress]
-      real(dp), intent(in) :: gap(:)                 !! (m) [length]
-      real(dp), intent(out) :: edges(edges_kept)     !! edges as s [length]
-      real(dp), intent(out) :: outer                 !! outer edge, NaN without contact [length]
+      real(dp), intent(in) :: s(:)                 !! (m) arc length [length]
+      integer, intent(in) :: status(:)             !! (m) status of the pairs
+      real(dp), intent(in) :: pressure(:)          !! (m) [stress]
+      real(dp), intent(in) :: gap(:)               !! (m) [length]
+      real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
+      real(dp), intent(out) :: outer               !! outer edge, NaN without contact [length]
+      real(dp) :: edge
+      integer :: found, k, m
+
+      m = size(s)
+      found = 0
       edges = ieee_value(1.0_dp, ieee_quiet_nan)
       outer = edges(1)
-      if (size(s) + size(status) + size(pressure) + size(gap) < 0) return
+      do k = 1, m - 1
+         if (status(k) /= status_open .and. status(k + 1) == status_open) then
+            edge = contact_end(s, status, pressure, gap, k)
+            outer = edge
+         else if (status(k) == status_open .and. status(k + 1) /= status_open) then
+            edge = -contact_end(-s(m:1:-1), status(m:1:-1), pressure(m:1:-1), gap(m:1:-1), m - k)
+         else
+            cycle
+         end if
+         found = found + 1
+         if (found <= edges_kept) edges(found) = edge
+      end do
+      if (m > 0) then
+         if (status(m) /= status_open) outer = s(m)
+      end if
    end subroutine contact_edges
 
-   !> Alike for stick.
-   pure subroutine stick_edges(s, status, pressure, shear, friction, slip, edges, outer)
-      real(dp), intent(in) :: s(:)                   !! (m) arc length [length]
-      integer, intent(in) :: status(:)               !! (m) status of the pairs
-      real(dp), intent(in) :: pressure(:)            !! (m) [stress]
-      real(dp), intent(in) :: shear(:)               !! (m) [stress]
-      real(dp), intent(in) :: friction               !! mu [-]
-      real(dp), intent(in) :: slip(:)                !! (m) slip in the increment [length]
-      real(dp), intent(out) :: edges(edges_kept)     !! edges as s [length]
-      real(dp), intent(out) :: outer                 !! outer edge of the widest stick zone [length]
+   !> Edge between closed pair k and open pair k + 1.
+   pure function contact_end(s, status, pressure, gap, k) result(edge)
+      real(dp), intent(in) :: s(:), pressure(:), gap(:)
+      integer, intent(in) :: status(:), k
+      real(dp) :: edge
+      real(dp) :: before, here, inside, outside
+      logical :: has_inside, has_outside
+
+      has_inside = k > 1
+      if (has_inside) has_inside = status(k - 1) /= status_open
+      has_outside = k + 2 <= size(s)
+      if (has_outside) has_outside = status(k + 2) == status_open
+      inside = s(k + 1)
+      if (has_inside) then
+         before = pressure(k - 1)**2
+         here = pressure(k)**2
+         if (before > here) &
+            inside = min(s(k) + (s(k) - s(k - 1))*here/(before - here), s(k + 1))
+      end if
+      outside = s(k)
+      if (has_outside) then
+         here = gap(k + 1)**(2.0_dp/3.0_dp)
+         before = gap(k + 2)**(2.0_dp/3.0_dp)
+         if (before > here) &
+            outside = max(s(k + 1) - (s(k + 2) - s(k + 1))*here/(before - here), s(k))
+      end if
+      edge = 0.5_dp*(s(k) + s(k + 1))
+      if (has_inside .and. has_outside) edge = 0.5_dp*(inside + outside)
+      if (has_inside .and. .not. has_outside) edge = inside
+      if (has_outside .and. .not. has_inside) edge = outside
+   end function contact_end
+
+   !> Edges of the stick zones, ascending, padded with NaN, and the outer edge of the widest zone.
+   pure subroutine stick_edges(s, weight, status, pressure, shear, gap, friction, edges, outer)
+      real(dp), intent(in) :: s(:)                 !! (m) arc length [length]
+      real(dp), intent(in) :: weight(:)            !! (m) tributary areas [length^2]
+      integer, intent(in) :: status(:)             !! (m) status of the pairs
+      real(dp), intent(in) :: pressure(:)          !! (m) [stress]
+      real(dp), intent(in) :: shear(:)             !! (m) [stress]
+      real(dp), intent(in) :: gap(:)               !! (m) [length]
+      real(dp), intent(in) :: friction             !! mu [-]
+      real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
+      real(dp), intent(out) :: outer               !! outer edge, NaN without stick [length]
+      real(dp) :: edge, widest
+      integer :: first, found, last, m
+
+      m = size(s)
+      found = 0
+      widest = -1.0_dp
       edges = ieee_value(1.0_dp, ieee_quiet_nan)
       outer = edges(1)
-      if (size(s) + size(status) + size(pressure) + size(shear) + size(slip) < 0) return
-      if (friction < 0) return
+      first = 1
+      do while (first <= m)
+         last = first
+         if (status(first) == status_stick) then
+            do while (last < m)
+               if (status(last + 1) /= status_stick) exit
+               last = last + 1
+            end do
+            if (first > 1) call keep(-stick_end(-s(m:1:-1), weight(m:1:-1), status(m:1:-1), &
+               pressure(m:1:-1), shear(m:1:-1), gap(m:1:-1), friction, m + 1 - last, &
+               m + 1 - first), edges, found)
+            edge = s(m)
+            if (last < m) then
+               edge = stick_end(s, weight, status, pressure, shear, gap, friction, first, last)
+               call keep(edge, edges, found)
+            end if
+            if (s(last) - s(first) >= widest) outer = edge
+            widest = max(widest, s(last) - s(first))
+         end if
+         first = last + 1
+      end do
    end subroutine stick_edges
+
+   pure subroutine keep(edge, edges, found)
+      real(dp), intent(in) :: edge
+      real(dp), intent(inout) :: edges(:)
+      integer, intent(inout) :: found
+
+      found = found + 1
+      if (found <= size(edges)) edges(found) = edge
+   end subroutine keep
+
+   !> Edge beyond the last pair of the stick zone first..last. Stick ends no later than contact.
+   pure function stick_end(s, weight, status, pressure, shear, gap, friction, first, last) &
+      result(edge)
+      real(dp), intent(in) :: s(:), weight(:), pressure(:), shear(:), gap(:), friction
+      integer, intent(in) :: status(:), first, last
+      real(dp) :: edge
+      real(dp) :: excess(fitted_pairs), limit, mean_s, mean_excess, slope, spread, total
+      integer :: n, start
+
+      limit = s(last + 1)
+      if (status(last + 1) == status_open) limit = contact_end(s, status, pressure, gap, last)
+      start = max(first, last - fitted_pairs + 1)
+      n = last - start + 1
+      edge = 0.5_dp*(s(last) + limit)
+      total = sum(weight(start:last))
+      if (n == 1 .or. total <= 0.0_dp) return
+      excess(:n) = friction*pressure(start:last) - sign(1.0_dp, merge(shear(last + 1), &
+         shear(last), status(last + 1) == status_slip))*shear(start:last)
+      mean_s = sum(weight(start:last)*s(start:last))/total
+      mean_excess = sum(weight(start:last)*excess(:n))/total
+      spread = sum(weight(start:last)*(s(start:last) - mean_s)**2)
+      slope = sum(weight(start:last)*(s(start:last) - mean_s)*(excess(:n) - mean_excess))
+      edge = limit
+      if (slope < 0.0_dp) edge = min(max(mean_s - mean_excess*spread/slope, s(last)), limit)
+   end function stick_end
 
 end module zone_edges

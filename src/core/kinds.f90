@@ -1,6 +1,6 @@
 !> Kind of the real numbers of the whole program.
 module kinds
-   use, intrinsic :: iso_fortran_env, only: real64, int64
+   use, intrinsic :: iso_fortran_env, only: int64, real64
    implicit none
    private
    public :: dp, long

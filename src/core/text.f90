@@ -60,8 +60,9 @@ contains
 
       upper = string
       do i = 1, len(string)
-         if (string(i:i) >= 'a' .and. string(i:i) <= 'z') &
+         if (string(i:i) >= 'a' .and. string(i:i) <= 'z') then
             upper(i:i) = achar(iachar(string(i:i)) - 32)
+         end if
       end do
    end function to_upper
 
@@ -129,7 +130,8 @@ contains
       if (.not. valid) number = 0.0_dp
    end subroutine read_real
 
-   !> Whether a text is written as a real; list-directed input alone would also take "1*2", "5/3" or "1-5".
+   !> Whether a text is written as a real; list-directed input alone would also take "1*2", "5/3" or
+   !> "1-5".
    pure function has_form_of_real(string) result(valid)
       character(*), intent(in) :: string
       logical :: valid
@@ -150,9 +152,9 @@ contains
       after = mark - before - 1
       if (verify(string(before + 1:mark - 1), '0123456789') /= 0) return
       select case (string(:before - 1))
-       case ('', '+', '-')
+      case ('', '+', '-')
          valid = after > 0
-       case default
+      case default
          valid = is_whole(string(:before - 1))
       end select
    end function has_form_of_real
@@ -171,9 +173,10 @@ contains
       valid = verify(string(first:), '0123456789') == 0
    end function is_whole
 
-   !> Adds a string at the end of a short list; lists that grow card by card keep a capacity of their own.
+   !> Adds a string at the end of a short list; lists that grow card by card keep a capacity of
+   !> their own.
    pure subroutine append(list, string)
-      type(string_type), allocatable, intent(inout) :: list(:)   !! the list, or unallocated for none so far
+      type(string_type), allocatable, intent(inout) :: list(:)   !! the list; unallocated for none
       character(*), intent(in) :: string                         !! what is added
       type(string_type), allocatable :: longer(:)
       integer :: i, n
@@ -188,7 +191,8 @@ contains
       call move_alloc(longer, list)
    end subroutine append
 
-   !> Index of the name in a list that is nearest to a given one, whatever their cases; 0 for an empty list.
+   !> Index of the name in a list that is nearest to a given one, whatever their cases; 0 for an
+   !> empty list.
    pure function nearest_name(name, names) result(nearest)
       character(*), intent(in) :: name            !! what was written
       type(string_type), intent(in) :: names(:)   !! what is known
@@ -215,8 +219,8 @@ contains
       if (size(names) > 0) hint = '; the nearest known is '//names(nearest_name(name, names))%value
    end function nearest_known
 
-   !> Number of letters to insert, delete, replace or swap with their neighbour that make one word of another:
-   !> the restricted Damerau-Levenshtein distance.
+   !> Number of letters to insert, delete, replace or swap with their neighbour that make one word
+   !> of another: the restricted Damerau-Levenshtein distance.
    pure function edit_distance(a, b) result(distance)
       character(*), intent(in) :: a    !! one word
       character(*), intent(in) :: b    !! another
@@ -231,8 +235,9 @@ contains
             change = merge(0, 1, a(i:i) == b(j:j))
             row(j, i) = min(row(j, i - 1) + 1, row(j - 1, i) + 1, row(j - 1, i - 1) + change)
             if (i < 2 .or. j < 2) cycle
-            if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) &
+            if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) then
                row(j, i) = min(row(j, i), row(max(j - 2, 0), max(i - 2, 0)) + 1)
+            end if
          end do
       end do
       distance = row(len(b), len(a))

@@ -3,7 +3,7 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgetrf, dgetrs
+   public :: ddot, daxpy, dgetrf, dgetrs, ilaver
 
    interface
       !> Scalar product x.y.
@@ -39,6 +39,11 @@ module blas_lapack
          real(dp), intent(inout) :: b(ldb, *)
          integer, intent(out) :: info
       end subroutine dgetrs
+
+      !> Version of LAPACK.
+      subroutine ilaver(major, minor, patch)
+         integer, intent(out) :: major, minor, patch
+      end subroutine ilaver
    end interface
 
 end module blas_lapack

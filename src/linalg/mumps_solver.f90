@@ -13,7 +13,7 @@ module mumps_solver
    use text, only: to_text
    implicit none
    private
-   public :: mumps_solver_type
+   public :: mumps_solver_type, mumps_version
 
    include 'dmumps_struc.h'
 
@@ -79,6 +79,22 @@ contains
       self%factor_bytes = factor_entries(self%mumps%infog(9))*storage_size(1.0_dp)/8
       call self%on_tail%set_schur(reshape(self%mumps%schur(:tail*tail), [tail, tail]))
    end subroutine factor
+
+   !> Version of MUMPS.
+   function mumps_version() result(version)
+      character(:), allocatable :: version   !! such as 5.5.1
+      type(dmumps_struc) :: id
+
+      id%comm = 0
+      id%sym = 0
+      id%par = 1
+      id%job = job_start
+      call dmumps(id)
+      id%icntl(1:3) = -1
+      version = trim(id%version_number)
+      id%job = job_end
+      call dmumps(id)
+   end function mumps_version
 
    !> INFOG(9): entries of the factors, in millions where negative.
    pure function factor_entries(reported) result(entries)

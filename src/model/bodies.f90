@@ -7,9 +7,10 @@ module bodies
 
 contains
 
-   !> Fills element_body, node_body and body_count of a mesh; bodies are numbered by their first element.
+   !> Fills element_body, node_body and body_count of a mesh; bodies are numbered by their first
+   !> element.
    pure subroutine find_bodies(mesh)
-      type(mesh_type), intent(inout) :: mesh   !! elements and nodes; nodes without elements get body 0
+      type(mesh_type), intent(inout) :: mesh   !! the mesh; nodes without elements get body 0
       integer :: parent(size(mesh%node_number)), body(size(mesh%node_number))
       integer :: e, q, root
 

@@ -25,14 +25,12 @@ contains
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(inout) :: next        !! state at the end
       type(increment_record_type), intent(inout) :: record    !! the record
-      real(dp) :: slip_before(size(next%omega))
       integer :: i
 
-      slip_before = previous%contact%tangential - previous%closing
       call settle_slip(operators, previous, next)
       allocate (record%contacts(size(operators%interfaces)))
       do i = 1, size(operators%interfaces)
-         record%contacts(i) = contact_record(operators, with_heat, i, slip_before, next)
+         record%contacts(i) = contact_record(operators, with_heat, i, next)
       end do
       call set_fields(model, points, with_heat, next, record)
       call balance_forces(operators, model, loads, next, record)
@@ -69,11 +67,10 @@ contains
    end subroutine settle_slip
 
    !> Contact state of one interface.
-   pure function contact_record(operators, with_heat, i, slip_before, next) result(record)
+   pure function contact_record(operators, with_heat, i, next) result(record)
       type(interface_operators_type), intent(in) :: operators
       logical, intent(in) :: with_heat
       integer, intent(in) :: i
-      real(dp), intent(in) :: slip_before(:)
       type(solution_state_type), intent(in) :: next
       type(contact_record_type) :: record
       integer :: first, last
@@ -90,9 +87,9 @@ contains
          record%shear_force = sum(contact%shear_force(first:last))
          call contact_edges(pairs%arc_length, record%status, record%pressure, record%gap, &
             record%edges_contact, record%edge_contact)
-         call stick_edges(pairs%arc_length, record%status, record%pressure, record%shear, &
-            operators%pairs%friction(first), record%slip - slip_before(first:last), &
-            record%edges_stick, record%edge_stick)
+         call stick_edges(pairs%arc_length, pairs%weight, record%status, record%pressure, &
+            record%shear, record%gap, operators%pairs%friction(first), record%edges_stick, &
+            record%edge_stick)
          if (.not. with_heat) return
          record%conductance = next%omega(first:last)
          record%heat_flux = next%omega(first:last)*next%jump(first:last)

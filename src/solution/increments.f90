@@ -3,6 +3,7 @@ module increments
    use contact_operator, only: condensed_load, contact_operator_pass, increment_data_type, &
       law_conductance, residual_floor
    use contact_system, only: closing_law_type, contact_state_type
+   use clock, only: wall_seconds
    use closing_instant, only: solve_increment
    use errors, only: error_type, set_error, status_internal, status_no_convergence
    use field_recovery, only: make_points, point_map_type
@@ -21,10 +22,18 @@ module increments
    use thermal_matrix, only: field_history, scheme_load
    implicit none
    private
-   public :: simulation_type
+   public :: simulation_type, run_seconds_type
 
    real(dp), parameter :: remainder = 1.0e-6_dp       !! part of an increment that is not worth one of its own
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation that a final contact state may show
+
+   !> Where the time goes.
+   type :: run_seconds_type
+      real(dp) :: assemble = 0.0_dp   !! pairing and matrices of the bodies [s]
+      real(dp) :: reduce = 0.0_dp     !! factors and reduction to the pairs [s]
+      real(dp) :: iterate = 0.0_dp    !! increments on the pairs [s]
+      real(dp) :: recover = 0.0_dp    !! fields and balances [s]
+   end type run_seconds_type
 
    !> A run: the reduced bodies, the loads and the state, moved on by advance.
    type :: simulation_type
@@ -37,6 +46,7 @@ module increments
       real(dp) :: step_start = 0.0_dp               !! total time at its start [time]
       integer :: increments_of_step = 0             !! increments of the present step so far
       integer :: increments = 0                     !! increments so far
+      type(run_seconds_type) :: seconds             !! where the time went
       logical :: with_heat = .false.                !! whether the present step solves heat
    contains
       procedure :: start
@@ -47,13 +57,15 @@ module increments
 
 contains
 
-   !> Prepares a run. Error: as interface_operators' prepare.
+   !> Prepares a run and enters its first step. Error: as interface_operators' prepare and reduce.
    subroutine start(self, model, error)
       class(simulation_type), intent(inout) :: self       !! a fresh run
       type(model_type), intent(in) :: model               !! the model
       type(error_type), allocatable, intent(out) :: error !! see above
       type(contact_state_type) :: untouched
+      real(dp) :: since
 
+      since = wall_seconds()
       call self%operators%prepare(model, any(model%steps%analysis == analysis_coupled), error)
       if (allocated(error)) return
       self%points = make_points(model%mesh)
@@ -71,6 +83,8 @@ contains
          allocate (self%state%displacement(2*n), self%state%heat_load(n), source=0.0_dp)
          self%state%temperature = model%initial_temperature
       end associate
+      self%seconds%assemble = (wall_seconds() - since)
+      call enter_step(self, model, error)
    end subroutine start
 
    !> Whether all steps are solved.
@@ -79,8 +93,7 @@ contains
       type(model_type), intent(in) :: model        !! the model
       logical :: done                              !! nothing is left
 
-      done = self%step == size(model%steps)
-      if (done .and. self%step > 0) done = step_is_over(self, model%steps(self%step))
+      done = self%step == size(model%steps) .and. step_is_over(self, model%steps(self%step))
    end function finished
 
    pure function step_is_over(self, step) result(over)
@@ -101,9 +114,13 @@ contains
       type(error_type), allocatable, intent(out) :: error   !! see above
       type(solution_state_type) :: next
       type(step_clock_type) :: clock
+      real(dp) :: since
 
-      call enter_step(self, model, error)
-      if (allocated(error)) return
+      if (step_is_over(self, model%steps(self%step))) then
+         self%step_start = self%step_start + model%steps(self%step)%period
+         call enter_step(self, model, error)
+         if (allocated(error)) return
+      end if
       associate (step => model%steps(self%step))
          record%increment = self%increments + 1
          record%step = self%step
@@ -124,8 +141,10 @@ contains
                to_text(record%time)//'): '//error%message
             return
          end if
+         since = wall_seconds()
          call make_record(self%operators, model, self%points, self%loads, self%with_heat, &
             self%state, next, record)
+         self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          if (record%contact_violation > sound_violation) then
             call set_error(error, status_internal, 'increment '//to_text(record%increment)// &
                ': the recovered displacements violate the contact conditions by '// &
@@ -140,18 +159,16 @@ contains
       end associate
    end subroutine advance
 
-   !> Enters the next step when the present one is over; the bodies are reduced again only where supports changed.
+   !> Enters the next step; the bodies are reduced again only where supports changed.
    subroutine enter_step(self, model, error)
       class(simulation_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: held(:), held_temperature(:)
+      real(dp) :: since
       logical :: heat
 
-      if (self%step > 0) then
-         if (.not. step_is_over(self, model%steps(self%step))) return
-         self%step_start = self%step_start + model%steps(self%step)%period
-      end if
+      since = wall_seconds()
       self%step = self%step + 1
       self%step_time = 0.0_dp
       self%increments_of_step = 0
@@ -166,6 +183,7 @@ contains
       self%with_heat = heat
       call self%operators%reduce(model, self%loads%displacement%active, &
          self%loads%temperature%active, heat, error)
+      self%seconds%reduce = self%seconds%reduce + (wall_seconds() - since)
    end subroutine enter_step
 
    !> The end of the next increment. Increments are counted, not added up, so that they land on their multiples.
@@ -191,7 +209,9 @@ contains
       type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable, intent(out) :: error
       type(increment_data_type) :: data
+      real(dp) :: since
 
+      since = wall_seconds()
       data%scheme = step%scheme
       data%previous = self%state%contact
       data%omega_old = self%state%omega
@@ -208,8 +228,11 @@ contains
          call solve_increment(self%operators%contact, data%previous, data%welded_load, &
             next%contact, error)
       end if
+      self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
       if (allocated(error)) return
+      since = wall_seconds()
       call recover_fields(self, model, next)
+      self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
    end subroutine solve_state
 
    !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.

@@ -1,0 +1,40 @@
+# How our own code is compiled. thercon_language: the standard and what the compiler has to say;
+# thercon_checks: what is checked at run time, which tests link too.
+
+option(THERCON_WARNINGS "Compiler warnings; each stops the build" OFF)
+option(THERCON_CHECKS "Run-time checks; floating-point exceptions stop the program" OFF)
+option(THERCON_SANITIZERS "Address, leak and undefined-behaviour sanitizers" OFF)
+
+if(NOT CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+   message(FATAL_ERROR "thercon is built with gfortran, found ${CMAKE_Fortran_COMPILER_ID}")
+endif()
+if(NOT CMAKE_BUILD_TYPE)
+   set(CMAKE_BUILD_TYPE Release)
+endif()
+
+# Results are to be the same wherever the program is built: no -march=native, no -ffast-math, no
+# contraction of products and sums to fused operations.
+set(CMAKE_Fortran_FLAGS_RELEASE "-O3 -g1 -ffp-contract=off")
+set(CMAKE_Fortran_FLAGS_DEBUG "-O0 -g")
+
+# gfortran 12 takes the bounds of an allocatable array for unset where the array is allocated by an
+# assignment, hence -Wno-uninitialized; memory that is never set is looked for at run time.
+add_library(thercon_language INTERFACE)
+target_compile_options(thercon_language INTERFACE -std=f2008 -fimplicit-none)
+if(THERCON_WARNINGS)
+   target_compile_options(thercon_language INTERFACE
+      -Werror -pedantic -Wall -Wextra -Wconversion -Wimplicit-interface -Wimplicit-procedure
+      -Wcharacter-truncation -Wuse-without-only -Wundefined-do-loop
+      -Wno-uninitialized -Wno-maybe-uninitialized)
+endif()
+
+add_library(thercon_checks INTERFACE)
+if(THERCON_CHECKS)
+   target_compile_options(thercon_checks INTERFACE
+      -fcheck=all -fbacktrace -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived)
+endif()
+if(THERCON_SANITIZERS)
+   target_compile_options(thercon_checks INTERFACE
+      -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+   target_link_options(thercon_checks INTERFACE -fsanitize=address,undefined)
+endif()

@@ -1,0 +1,274 @@
+#!/usr/bin/env python3
+"""Write cylinder.inp and cylinder-coupled.inp, the decks of the published cylinder, beside this file.
+
+The paper (Zaitsev, 1987) gives 92 eight-node elements, 326 nodes and 21 contact pairs; layout and grading are ours.
+Each body has six strips, seen from the contact: two layers of 10 elements, a 3-to-1 transition from 10 to 4 columns
+(13 elements), two layers of 4 and a transition from 4 to 2 (5 elements). The base is the mirror image of the cylinder
+but for the curved face, which fades out towards the top. Needs numpy.
+"""
+from pathlib import Path
+
+import numpy as np
+
+RADIUS, WIDTH, HEIGHT, LIFT = 100.0, 30.0, 60.0, 0.5
+
+# Corner abscissae of the seven rows between the strips and the heights of these rows, from the contact outwards.
+CONTACT = [0.0, 0.8, 1.7, 2.6, 3.6, 4.7, 5.9, 7.2, 9.0, 14.0, WIDTH]
+LAYER = [0.0, 1.1, 2.2, 3.4, 4.6, 5.9, 7.3, 8.9, 11.2, 16.0, WIDTH]
+COARSE = [0.0, 4.0, 9.0, 17.0, WIDTH]
+ROWS = [CONTACT, CONTACT, LAYER, COARSE, COARSE, COARSE, [0.0, 15.0, WIDTH]]
+HEIGHTS = [0.0, 1.0, 2.5, 7.0, 14.0, 30.0, HEIGHT]
+
+
+def strip_elements(low, high):
+    """Quadrilaterals of a strip between two rows of points, counter-clockwise: with equal rows one an interval,
+    else every three intervals of the lower row meet one of the upper (four elements), a last one stays single."""
+    if len(low) == len(high):
+        return [[low[i], low[i + 1], high[i + 1], high[i]] for i in range(len(low) - 1)]
+    quads = []
+    for column in range(len(high) - 1):
+        base = [np.array(p) for p in low[3 * column:3 * column + 4]]
+        left, right = np.array(high[column]), np.array(high[column + 1])
+        if len(base) == 2:
+            quads.append([base[0], base[1], right, left])
+            continue
+        inner = [(base[k] + left + (right - left) * k / 3) / 2 for k in (1, 2)]
+        quads += [[base[0], base[1], inner[0], left], [base[1], base[2], inner[1], inner[0]],
+                  [base[2], base[3], right, inner[1]], [inner[0], inner[1], right, left]]
+    return quads
+
+
+def make_body(curved):
+    """Nodes (number to x, y) and elements (lists of eight numbers) of the upper body, its contact face either on
+    y = x^2/(2 R) or flat. Numbers run along the contact first, then row by row away from it."""
+    rows = [[(x, height) for x in row] for row, height in zip(ROWS, HEIGHTS)]
+    quads = [quad for low, high in zip(rows, rows[1:]) for quad in strip_elements(low, high)]
+    points, elements = {}, []
+    for quad in quads:
+        corners = [tuple(np.round(p, 9)) for p in quad]
+        sides = [tuple(np.round(np.add(corners[k], corners[(k + 1) % 4]) / 2, 9)) for k in range(4)]
+        elements.append(corners + sides)
+        for k in range(4):
+            points[corners[k]] = bend(corners[k], curved)
+        for k in range(4):
+            ends = points[corners[k]], points[corners[(k + 1) % 4]]
+            on_face = sides[k][1] == 0.0
+            points[sides[k]] = bend(sides[k], curved) if on_face else tuple(np.mean(ends, axis=0))
+    number = {p: n for n, p in enumerate(sorted(points, key=lambda p: (p[1], p[0])), start=1)}
+    nodes = {number[p]: tuple(round(float(c), 9) for c in points[p]) for p in number}
+    return nodes, [[number[p] for p in element] for element in elements]
+
+
+def bend(point, curved):
+    """Move a point of the plain rectangle to its place over the curved face."""
+    x, height = point
+    return (x, height + curved * (1 - height / HEIGHT) * x**2 / (2 * RADIUS))
+
+
+def make_mesh(lift=0.0):
+    """Both bodies, the upper one first, as (nodes, elements); the base has its numbers from 1001."""
+    upper, upper_elements = make_body(curved=True)
+    lower, lower_elements = make_body(curved=False)
+    upper = {n: (x, round(y + lift, 9)) for n, (x, y) in upper.items()}
+    lower = {n + 1000: (x, 0.0 - y) for n, (x, y) in lower.items()}
+    mirrored = [[e[k] + 1000 for k in (1, 0, 3, 2, 4, 7, 6, 5)] for e in lower_elements]
+    return (upper, upper_elements), (lower, mirrored)
+
+
+def smallest_jacobian(nodes, elements):
+    """Smallest determinant of the Jacobian over 3x3 Gauss points and nodes, relative to the element's mean."""
+    gauss = [(a, b) for a in (-0.6**0.5, 0, 0.6**0.5) for b in (-0.6**0.5, 0, 0.6**0.5)]
+    corners = [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0)]
+    smallest = np.inf
+    for element in elements:
+        place = np.array([nodes[n] for n in element])
+        values = [np.linalg.det(shape_derivatives(*p) @ place) for p in gauss + corners]
+        smallest = min(smallest, min(values) / np.mean(values))
+    return smallest
+
+
+def shape_derivatives(a, b):
+    """Derivatives (2, 8) of the eight-node shape functions by the two element coordinates."""
+    by_a, by_b = [], []
+    for p, q in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+        by_a.append(p * (1 + b * q) * (2 * a * p + b * q) / 4)
+        by_b.append(q * (1 + a * p) * (2 * b * q + a * p) / 4)
+    by_a += [-a * (1 - b), (1 - b * b) / 2, -a * (1 + b), -(1 - b * b) / 2]
+    by_b += [-(1 - a * a) / 2, -b * (1 + a), (1 - a * a) / 2, -b * (1 - a)]
+    return np.array([by_a, by_b])
+
+
+def check_mesh(bodies, lift):
+    """Stop unless the mesh has the published counts, positive Jacobians and opposite contact nodes."""
+    (upper, upper_elements), (lower, lower_elements) = bodies
+    assert len(upper) + len(lower) == 326 and len(upper_elements) + len(lower_elements) == 92
+    for nodes, elements in bodies:
+        assert smallest_jacobian(nodes, elements) > 0.2
+        edges = [tuple(sorted((e[k], e[(k + 1) % 4]))) for e in elements for k in range(4)]
+        assert len([e for e in set(edges) if edges.count(e) == 1]) == 24    # conforming: 10 + 2 + 2*6 outer edges
+    for n in range(1, 22):
+        x, y = upper[n]
+        assert lower[n + 1000] == (x, 0.0) and abs(y - lift - x**2 / (2 * RADIUS)) < 1e-15 * WIDTH
+    assert all(abs(2 * upper[n][0] - upper[n - 1][0] - upper[n + 1][0]) < 1e-12 for n in range(2, 21, 2))
+
+
+def number_lines(numbers, width=12):
+    """Data cards with whole numbers, `width` a card."""
+    return [", ".join(map(str, numbers[i:i + width])) for i in range(0, len(numbers), width)]
+
+
+def mesh_cards(bodies):
+    """Cards of nodes, elements, sets and surfaces."""
+    (upper, upper_elements), (lower, lower_elements) = bodies
+    cards = []
+    for nodes, name in ((upper, "CYLINDER"), (lower, "BASE")):
+        cards += [f"*NODE, NSET={name}"] + [f"{n}, {x:.12g}, {y:.12g}" for n, (x, y) in nodes.items()]
+    for elements, name, first in ((upper_elements, "CYLINDER", 1), (lower_elements, "BASE", 1001)):
+        cards += [f"*ELEMENT, TYPE=CPE8, ELSET={name}"]
+        cards += [", ".join(map(str, [n] + e)) for n, e in enumerate(elements, start=first)]
+    nodes = {**upper, **lower}
+    highest = max(y for _, y in nodes.values())
+    for name, chosen in (("TOP", [n for n, (x, y) in nodes.items() if y == highest]),
+                         ("BOTTOM", [n for n, (x, y) in nodes.items() if y == -HEIGHT]),
+                         ("AXIS", [n for n, (x, y) in nodes.items() if x == 0.0])):
+        cards += [f"*NSET, NSET={name}"] + number_lines(chosen)
+    for name, first in (("CURVED", 1), ("FLAT", 1001)):
+        cards += [f"*SURFACE, NAME={name}, TYPE=ELEMENT"] + [f"{first + k}, S1" for k in range(10)]
+    return cards
+
+
+OPENING = """\
+*HEADING
+{heading}
+** V. I. Zaitsev, On the contact problem of the coupled theory of thermal
+** stresses and a method of its numerical solution, 1987: the example.
+** Written by make_decks.py.
+**
+** From the paper: part of a cylinder of radius 100, 30 x 60, on a base of the
+** same size; materials, friction and conductance; 92 eight-node elements, 326
+** nodes, 21 contact pairs; top heated from 0 to 900, bottom held at 0.
+**
+** Our reading, where the paper is silent:
+** - half model about the symmetry axis x = 0, 30 wide, each body 60 high;
+** - plane strain;
+** - u_y = 0 on the top and bottom sections, u_x = 0 on the axis, the sides
+**   free and insulated;
+{first_touch}
+** - the curved face is y = x^2/(2 R), corner and midside nodes alike, midside
+**   nodes at mid-x, each node opposite one of the base;
+** - layout: from the contact, layers of 10 and 10 elements, a 3-to-1
+**   transition to 4 (13 elements), layers of 4 and 4, a transition to 2 (5);
+** - grading: the face is finest between x = 0 and 9, where the contact lives;
+** - 45 increments of 20.
+"""
+
+MODEL = """\
+*MATERIAL, NAME=UPPER
+*ELASTIC
+2.E4, 0.4
+*EXPANSION
+1.2E-5
+*CONDUCTIVITY
+0.18
+*MATERIAL, NAME=LOWER
+*ELASTIC
+2.E4, 0.2
+*EXPANSION
+{base_expansion}
+*CONDUCTIVITY
+0.18
+*SOLID SECTION, ELSET=CYLINDER, MATERIAL=UPPER
+*SOLID SECTION, ELSET=BASE, MATERIAL=LOWER
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+CYLINDER, 0.
+BASE, 0.
+*SURFACE INTERACTION, NAME=FACES
+*FRICTION
+0.155, 1.E5
+*GAP LAW, TYPE=GAS
+0.24E-5, 0.3E-5
+*GAP LAW, TYPE=POWER
+0.8, 0.24, 1.
+*CONTACT PAIR, INTERACTION=FACES, NAME=FACE
+CURVED, FLAT
+*FIXED POINT, METHOD=ZAITSEV
+*BOUNDARY
+TOP, 2, 2, 0.
+BOTTOM, 2, 2, 0.
+AXIS, 1, 1, 0.
+*STEP, INC=100
+*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT
+20., 900.
+*BOUNDARY
+TOP, 11, 11, 900.
+BOTTOM, 11, 11, 0.
+*NODE FILE
+U, NT
+*EL FILE
+S, HFL
+*CONTACT FILE
+CDIS, CSTR
+*CONTACT PRINT
+CDIS, CSTR
+*END STEP
+"""
+
+SUPPORTS = """\
+*VERIFY, KIND=ANALYTIC, SOURCE="prescribed values and symmetry"
+NT, TOP, LAST, 900., 1.E-12
+NT, TOP, 460., 460., 1.E-12
+NT, BOTTOM, LAST, 0., 1.E-9, ABS
+U1, AXIS, LAST, 0., 1.E-15, ABS
+U2, TOP, LAST, 0., 1.E-15, ABS
+U2, BOTTOM, LAST, 0., 1.E-15, ABS
+*VERIFY, KIND=ANALYTIC, SOURCE="first touch at x = 0; open at the side"
+gap, FACE@0., LAST, 0., 1.E-12, ABS
+shear, FACE@0., LAST, 0., 1.E-9, ABS
+status, MIN, LAST, 0., 0.5, ABS
+pressure, MIN, LAST, 0., 1.E-12, ABS
+*VERIFY, KIND=ANALYTIC, SOURCE="balance of heat and forces"
+heat_imbalance, , LAST, 0., 1.E-9, ABS
+force_imbalance, , LAST, 0., 1.E-9, ABS
+"""
+
+COUPLED = """\
+*VERIFY, KIND=ANALYTIC, SOURCE="prescribed values and symmetry"
+NT, TOP, 200., 200., 1.E-12
+NT, BOTTOM, 200., 0., 1.E-9, ABS
+U1, AXIS, 200., 0., 1.E-15, ABS
+U2, TOP, 200., 0., 1.E-15, ABS
+*VERIFY, KIND=ANALYTIC, SOURCE="the bodies are apart"
+normal_force, , 200., 0., 1.E-12, ABS
+pressure, MAX, 200., 0., 1.E-12, ABS
+status, MAX, 200., 0., 0.5, ABS
+*VERIFY, KIND=ANALYTIC, SOURCE="balance of heat"
+heat_imbalance, , 200., 0., 1.E-9, ABS
+"""
+
+TOUCH = "** - the bodies touch at x = 0 at the start, without clearance or load;"
+APART = """\
+** Changed against the paper, to couple strongly: the base does not expand, and
+** the cylinder stands 0.5 above it."""
+
+
+def write_deck(path, heading, first_touch, base_expansion, lift, verify):
+    """Write one deck; no card image may be wider than 80 columns."""
+    bodies = make_mesh(lift)
+    check_mesh(bodies, lift)
+    cards = OPENING.format(heading=heading, first_touch=first_touch).splitlines()
+    cards += ['*OPTIONS, UNITS="cm MPa W C", LOAD=TOP,11']
+    cards += mesh_cards(bodies)
+    cards += MODEL.format(base_expansion=base_expansion).splitlines() + verify.splitlines()
+    assert max(map(len, cards)) <= 80
+    path.write_text("\n".join(cards) + "\n")
+
+
+def main():
+    folder = Path(__file__).parent
+    write_deck(folder / "cylinder.inp", "Cylinder on a base, heated from the top", TOUCH, "1.2E-5", 0.0, SUPPORTS)
+    write_deck(folder / "cylinder-coupled.inp", "Cylinder above a base that does not expand, strongly coupled",
+               APART, "0.", LIFT, COUPLED)
+
+
+if __name__ == "__main__":
+    main()

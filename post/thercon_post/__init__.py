@@ -1,0 +1,1 @@
+"""Pictures of thercon results. Reads the HDF5 result file only."""

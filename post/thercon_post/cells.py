@@ -1,0 +1,100 @@
+"""The mesh of the result file: points, elements, curved element edges."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# VTK cell type -> corners; quadratic cells list their midside nodes after the corners.
+CORNERS = {5: 3, 22: 3, 9: 4, 23: 4}
+QUADRATIC = {22, 23}
+
+
+@dataclass
+class Cells:
+    """Points (n, 2) and cells grouped by VTK type: {type: connectivity (m, nodes)}."""
+
+    points: np.ndarray
+    node_id: np.ndarray
+    groups: dict
+    bodies: dict
+    element_ids: dict
+
+    @classmethod
+    def read(cls, group):
+        """Read the mesh of a VTKHDF group that has one part, the same at all times."""
+        count = int(group["NumberOfPoints"][0])
+        cells = int(group["NumberOfCells"][0])
+        points = group["Points"][:count, :2].astype(float)
+        offsets = group["Offsets"][: cells + 1].astype(int)
+        connectivity = group["Connectivity"][: offsets[-1]].astype(int)
+        types = group["Types"][:cells].astype(int)
+        node_id = group["PointData/node_id"][:count].astype(int)
+        body = cls._cell_data(group, "body", cells)
+        element = cls._cell_data(group, "element_id", cells)
+        groups, bodies, elements = {}, {}, {}
+        for kind in np.unique(types):
+            members = np.flatnonzero(types == kind)
+            starts = offsets[members]
+            nodes = int(offsets[members[0] + 1] - starts[0])
+            groups[int(kind)] = connectivity[starts[:, None] + np.arange(nodes)]
+            bodies[int(kind)] = body[members]
+            elements[int(kind)] = element[members]
+        return cls(points, node_id, groups, bodies, elements)
+
+    @staticmethod
+    def _cell_data(group, name, cells):
+        data = group.get(f"CellData/{name}")
+        return np.ones(cells, dtype=int) if data is None else data[:cells].astype(int)
+
+    @property
+    def count(self):
+        """Number of cells."""
+        return sum(len(each) for each in self.groups.values())
+
+    def edges(self):
+        """Return element edges (e, 3) as corner, corner, midside and how often each is used.
+
+        A straight edge of a linear element has midside -1.
+        """
+        found = []
+        for kind, cells in self.groups.items():
+            corners = CORNERS[kind]
+            for k in range(corners):
+                first, last = cells[:, k], cells[:, (k + 1) % corners]
+                middle = cells[:, corners + k] if kind in QUADRATIC else np.full(len(cells), -1)
+                low, high = np.minimum(first, last), np.maximum(first, last)
+                found.append(np.column_stack((low, high, middle)))
+        return np.unique(np.concatenate(found), axis=0, return_counts=True)
+
+    def boundary(self):
+        """Return the edges that only one element has."""
+        edges, uses = self.edges()
+        return edges[uses == 1]
+
+    def face(self, node_ids):
+        """Return the boundary edges all of whose points carry one of the deck's node numbers."""
+        edges = self.boundary()
+        on_face = np.isin(self.node_id, node_ids)
+        middle = np.where(edges[:, 2] < 0, True, on_face[edges[:, 2]])
+        return edges[on_face[edges[:, 0]] & on_face[edges[:, 1]] & middle]
+
+
+def curves(edges, points, pieces=8):
+    """Return edges as polylines (e, pieces + 1, 2) on the given points (n, 2)."""
+    t = np.linspace(0.0, 1.0, pieces + 1)[None, :, None]
+    first, last = points[edges[:, 0]][:, None, :], points[edges[:, 1]][:, None, :]
+    straight = 0.5 * (first + last)
+    middle = points[edges[:, 2]][:, None, :]
+    middle = np.where((edges[:, 2] < 0)[:, None, None], straight, middle)
+    return (1 - t) * (1 - 2 * t) * first + t * (2 * t - 1) * last + 4 * t * (1 - t) * middle
+
+
+def outlines(kind, cells, points, pieces=8):
+    """Return the curved outlines (m, k, 2) of the cells of one type."""
+    corners = CORNERS[kind]
+    sides = []
+    for k in range(corners):
+        middle = cells[:, corners + k] if kind in QUADRATIC else np.full(len(cells), -1)
+        edge = np.column_stack((cells[:, k], cells[:, (k + 1) % corners], middle))
+        sides.append(curves(edge, points, pieces)[:, :-1])
+    return np.concatenate(sides, axis=1)

@@ -1,0 +1,192 @@
+"""Command line of post/plot."""
+
+import argparse
+import sys
+from contextlib import ExitStack
+
+from . import convergence, fields, mesh, profiles, style, zones
+from .errors import UserError
+from .result import FIELD_SOURCES, Result
+
+SUMMARY = """Pictures of a thercon result: each call writes PNG and SVG, and what was drawn as CSV.
+
+Files are DIR/NAME.PICTURE.png and so on, RESULT being NAME.vtkhdf; loads and quantities that were
+asked for stand in the name. Axes have the units of `*OPTIONS, UNITS=`, or none."""
+
+WITH_PROFILES = """A digitised figure is a CSV file with a heading. Columns: x (or s, with --along
+s) and any of pressure, shear, heat_flux; one called load separates curves of several loads. Empty
+fields are passed over, so curves need not share their x. Where friction has one sign, that of the
+digitised shear is immaterial. Columns of the tables written here are passed over."""
+
+WITH_ZONES = """A digitised figure is a CSV file with a heading. Columns: load and any of
+edge_contact, edge_stick, on the axis of the picture (x, or s with --along s). Empty fields are
+passed over, so curves need not share their loads."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors have the exit status of user errors."""
+
+    def error(self, message):
+        raise UserError(f"{message} (see `{self.prog} --help`)")
+
+
+def parser():
+    """Return the parser of the whole command line."""
+    top = Parser(
+        prog="plot", description=SUMMARY, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    pictures = top.add_subparsers(dest="picture", metavar="PICTURE", required=True)
+    one = {
+        "mesh": ("undeformed mesh, with a close-up of the contact", None),
+        "profiles": ("pressure, friction, mu p and heat flux along the contact", WITH_PROFILES),
+        "zones": ("gap, slip and stick against the load", WITH_ZONES),
+        "fields": ("temperature and stress on the deformed mesh", None),
+    }
+    added = {}
+    for name, (help_, epilog) in one.items():
+        added[name] = add_picture(pictures, name, help_, epilog)
+        added[name].add_argument("results", nargs=1, metavar="RESULT", help="result file")
+    several = add_picture(pictures, "convergence", "residuals, iterations and g of each increment")
+    several.add_argument(
+        "results", nargs="+", metavar="RESULT", help="result file; several are compared"
+    )
+    trade = pictures.add_parser(
+        "trade", help="speed against accuracy (not built yet)", add_help=False
+    )
+    trade.add_argument("rest", nargs=argparse.REMAINDER)
+    for name in ("profiles", "fields"):
+        add_loads(added[name])
+    for name in ("profiles", "zones"):
+        add_contact(added[name])
+    added["profiles"].add_argument(
+        "--range", nargs=2, type=float, metavar=("FROM", "TO"), help="range of the abscissa"
+    )
+    add_fields(added["fields"])
+    return top
+
+
+def add_picture(pictures, name, help_, epilog=None):
+    """Add a sub-command with the options that all have."""
+    added = pictures.add_parser(
+        name, help=help_, description=help_.capitalize() + ".", epilog=epilog
+    )
+    added.add_argument(
+        "--out", default=".", metavar="DIR", help="folder for the files (default: here)"
+    )
+    return added
+
+
+def add_loads(picture):
+    """Add the choice of load levels."""
+    picture.add_argument(
+        "--load",
+        action="append",
+        type=float,
+        metavar="LOAD ...",
+        help="load level, or several, on the axis of /history/load (default: the last)",
+    )
+    picture.add_argument(
+        "--increment",
+        action="append",
+        type=int,
+        metavar="N ...",
+        help="increment, or several, from 1; tells apart load levels met more than once",
+    )
+
+
+def add_contact(picture):
+    """Add the choice of contact and axis, and digitised figures."""
+    picture.add_argument(
+        "--contact", metavar="NAME", help="contact pair (default: all, a picture each)"
+    )
+    picture.add_argument(
+        "--along",
+        choices=("x", "s"),
+        help="x or arc length s (default: x where it grows along the face)",
+    )
+    picture.add_argument(
+        "--with",
+        action="append",
+        default=[],
+        dest="figures",
+        metavar="FIGURE.csv",
+        help="lay a digitised figure over",
+    )
+
+
+def add_fields(picture):
+    """Add what only `fields` has."""
+    picture.add_argument(
+        "--quantity",
+        action="append",
+        choices=tuple(FIELD_SOURCES),
+        metavar="QUANTITY ...",
+        help=f"panel to draw, or several, of {', '.join(FIELD_SOURCES)} "
+        f"(default: those present of {', '.join(fields.DEFAULT_QUANTITIES)})",
+    )
+    picture.add_argument(
+        "--scale",
+        type=float,
+        default=1.0,
+        metavar="FACTOR",
+        help="magnify displacements (default 1; above it closed faces are drawn overlapping)",
+    )
+    picture.add_argument(
+        "--region",
+        choices=("model", "contact"),
+        default="model",
+        help="what to show (default: model)",
+    )
+
+
+def spread(arguments):
+    """Write `--load 180 360 RESULT` as `--load 180 --load 360 RESULT`, and the like."""
+    words, option, values = [], None, 0
+    for word in arguments:
+        if word in SEVERAL:
+            option, values = word, 0
+        elif option and values and SEVERAL[option](word):
+            words.append(option)
+        elif option and values:
+            option = None
+        values += word not in SEVERAL
+        words.append(word)
+    return words
+
+
+def is_number(word):
+    """Whether a word is a number."""
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+# Options that take several values -> what tells a value from the RESULT that may follow.
+SEVERAL = {"--load": is_number, "--increment": is_number, "--quantity": FIELD_SOURCES.__contains__}
+
+
+def run(arguments):
+    """Draw what the arguments ask for; return the files written."""
+    options = parser().parse_args(spread(arguments))
+    if options.picture == "trade":
+        raise UserError("trade: not built yet")
+    style.apply()
+    with ExitStack() as stack:
+        results = [stack.enter_context(Result(path)) for path in options.results]
+        if options.picture == "convergence":
+            return convergence.draw(results, options)
+        picture = {"mesh": mesh, "profiles": profiles, "zones": zones, "fields": fields}
+        return picture[options.picture].draw(results[0], options)
+
+
+def main(arguments=None):
+    """Run the command line; return the exit status."""
+    try:
+        written = run(sys.argv[1:] if arguments is None else arguments)
+        print("".join(f"{path}\n" for path in written), end="")
+    except UserError as error:
+        print(f"plot: error: {error}", file=sys.stderr)
+        return 1
+    return 0

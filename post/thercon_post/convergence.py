@@ -1,0 +1,192 @@
+"""Residual history, iterations and the range of g, for one run or several."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+from . import style
+from .style import plt
+from .tables import stack_tables
+
+SMALLEST = 1e-17  # residuals of zero are drawn here
+KINDS = {
+    "accepted": {"color": "#9A9A9A", "lw": 0.5, "zorder": 2},
+    "cut back": {"color": style.BLUE, "lw": 0.7, "ls": (0, (3, 1.5)), "zorder": 3},
+    "slowest": {"color": "black", "lw": 1.0, "marker": "o", "ms": 2.4, "zorder": 4},
+    "failed": {"color": style.VERMILION, "lw": 1.0, "marker": "x", "ms": 3.0, "zorder": 5},
+}
+
+
+@dataclass
+class Attempt:
+    """One try at an increment: its rows of /convergence."""
+
+    increment: int
+    number: int
+    kind: str
+    rows: np.ndarray
+
+
+class Run:
+    """The iterations of one result, split into tries."""
+
+    def __init__(self, result):
+        self.result = result
+        self.data = result.convergence
+        increment, iteration = self.data["increment"], self.data["iteration"]
+        new = (np.diff(increment) != 0) | (np.diff(iteration) <= 0)
+        self.attempts, count = [], {}
+        for rows in np.split(np.arange(len(increment)), np.flatnonzero(new) + 1):
+            at = int(increment[rows[0]])
+            count[at] = count.get(at, 0) + 1
+            kind = "accepted" if at <= result.increments else "failed"
+            self.attempts.append(Attempt(at, count[at], kind, rows))
+        for attempt in self.attempts:
+            if attempt.number < count[attempt.increment]:
+                attempt.kind = "cut back"
+        accepted = self.of_kind("accepted")
+        self.slowest = max(accepted, key=lambda attempt: len(attempt.rows), default=None)
+
+    def of_kind(self, kind):
+        """Return the tries of one kind."""
+        return [attempt for attempt in self.attempts if attempt.kind == kind]
+
+    def table(self):
+        """Return all iterations as columns."""
+        data = self.data
+        count = len(data["increment"])
+        attempt, outcome = np.empty(count, dtype=int), np.empty(count, dtype=object)
+        for each in self.attempts:
+            attempt[each.rows], outcome[each.rows] = each.number, each.kind
+        columns = {"result": np.full(count, self.result.name, dtype=object), "attempt": attempt}
+        columns |= {"outcome": outcome}
+        order = (
+            "increment",
+            "iteration",
+            "residual",
+            "g_min",
+            "g_max",
+            "pairs_changed",
+            "cut_backs",
+        )
+        return columns | {key: data[key] for key in order if key in data}
+
+
+def draw(results, options):
+    """Draw the convergence of one result, or of several side by side; return the files written."""
+    runs = [Run(result) for result in results]
+    figure = plt.figure(
+        layout="constrained",
+        figsize=(style.DOUBLE_COLUMN * (0.62 if len(runs) == 1 else 0.9), 5.6),
+    )
+    grid = figure.add_gridspec(3, len(runs), height_ratios=[1.7, 1.0, 1.0])
+    first = None
+    for column, run in enumerate(runs):
+        first = draw_residuals(figure, grid[0, column], run, first, len(runs) > 1)
+    counts = figure.add_subplot(grid[1, :])
+    relaxation = figure.add_subplot(grid[2, :], sharex=counts)
+    for number, run in enumerate(runs):
+        shift = 0.3 * (number - 0.5 * (len(runs) - 1))
+        draw_counts(counts, run, number, shift)
+        draw_relaxation(relaxation, run, number, shift)
+    finish(counts, relaxation, runs)
+    names = [style.plain(run.result.name) for run in runs] if len(runs) > 1 else [""]
+    for axes, letter, name in zip(figure.axes, "abcdefgh", [*names, "", ""]):
+        style.panel_title(axes, name, letter)
+    parts = [run.result.name for run in runs[1:]]
+    name = style.file_name(results[0], "convergence", *parts)
+    columns = stack_tables([run.table() for run in runs])
+    return style.write(figure, columns, options.out, name)
+
+
+def draw_residuals(figure, place, run, first, several):
+    """Draw residual against iteration, a line for each try; return the axes that set the scale."""
+    axes = figure.add_subplot(place, sharey=first, sharex=first)
+    for attempt in run.attempts:
+        looks = KINDS["slowest" if attempt is run.slowest else attempt.kind]
+        residual = np.maximum(run.data["residual"][attempt.rows], SMALLEST)
+        axes.semilogy(run.data["iteration"][attempt.rows], residual, **looks)
+    axes.set_xlabel("Iteration")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+    axes.yaxis.set_major_locator(LogLocator(numticks=9))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    if first is None:
+        axes.set_ylabel(r"Residual  $\max\,|U(\omega)-\omega|/\omega$")
+    else:
+        axes.tick_params(labelleft=False)
+    axes.legend(handles=residual_handles(run), loc="best", fontsize=7)
+    return first or axes
+
+
+def residual_handles(run):
+    """Return the legend's entries for the kinds of tries that are there."""
+    handles = []
+    if len(run.of_kind("accepted")) > 1:
+        handles.append(Line2D([], [], label="accepted increments", **KINDS["accepted"]))
+    if run.slowest:
+        label = f"increment {run.slowest.increment} (most iterations)"
+        handles.append(Line2D([], [], label=label, **KINDS["slowest"]))
+    if run.of_kind("cut back"):
+        handles.append(Line2D([], [], label="ended by cut-back", **KINDS["cut back"]))
+    for attempt in run.of_kind("failed"):
+        label = f"increment {attempt.increment} (not converged)"
+        handles.append(Line2D([], [], label=label, **KINDS["failed"]))
+    return handles
+
+
+def draw_counts(axes, run, number, shift):
+    """Draw the iterations of each increment, all tries together; mark those that failed."""
+    looks = series_looks(number)
+    increments = np.unique([attempt.increment for attempt in run.attempts])
+    spent = np.array([np.sum(run.data["increment"] == at) for at in increments])
+    axes.vlines(increments + shift, 0, spent, color=looks["color"], lw=0.5)
+    axes.plot(increments + shift, spent, ls="none", label=style.plain(run.result.name), **looks)
+    mark_failed(axes, run, shift, increments, spent)
+
+
+def draw_relaxation(axes, run, number, shift):
+    """Draw the range of g over the last try at each increment."""
+    last = {attempt.increment: attempt for attempt in run.attempts}
+    at = np.array(sorted(last))
+    low = np.array([np.min(run.data["g_min"][last[k].rows]) for k in at])
+    high = np.array([np.max(run.data["g_max"][last[k].rows]) for k in at])
+    looks = series_looks(number)
+    axes.vlines(at + shift, low, high, color=looks["color"], lw=0.6)
+    axes.plot(at + shift, high, ls="none", **looks)
+    axes.plot(at + shift, low, ls="none", **looks)
+    mark_failed(axes, run, shift, at, high)
+
+
+def mark_failed(axes, run, shift, increments, values):
+    """Cross out the increments that did not converge."""
+    for attempt in run.of_kind("failed"):
+        value = values[np.flatnonzero(increments == attempt.increment)[0]]
+        axes.plot(
+            attempt.increment + shift, value, "x", color=style.VERMILION, ms=6, mew=1.2, zorder=5
+        )
+
+
+def series_looks(number):
+    """Return colour and marker of the run with this number."""
+    colour = [style.BLACK, style.BLUE, style.GREEN, style.ORANGE][number % 4]
+    return {"color": colour, "marker": style.MARKERS[number % 6], "mfc": "white", "ms": 3.0}
+
+
+def finish(counts, relaxation, runs):
+    """Label and scale the two lower panels."""
+    counts.set_ylabel("Iterations")
+    counts.set_ylim(bottom=0)
+    counts.tick_params(labelbottom=False)
+    counts.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
+    if len(runs) > 1:
+        counts.legend(loc="best", ncols=len(runs))
+    relaxation.set_ylabel("Range of $g$")
+    relaxation.set_xlabel("Increment")
+    relaxation.xaxis.set_major_locator(MaxNLocator(integer=True))
+    least = min(np.min(run.data["g_min"]) for run in runs)
+    if 0.0 < least < 0.02:
+        relaxation.set_yscale("log")
+    else:
+        relaxation.set_ylim(min(0.0, 1.1 * least), 1.08)

@@ -1,0 +1,208 @@
+"""The undeformed mesh (Fig. 1 of the paper) with a close-up of the contact."""
+
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import ConnectionPatch, Patch, Rectangle
+
+from . import style
+from .cells import curves, outlines
+from .style import plt
+
+MOST_MARKED = 80  # contact nodes are marked one by one up to here
+
+
+def draw(result, options):
+    """Draw the mesh of `result`; return the files written."""
+    cells = result.cells
+    contacts = result.contacts() if result.contact_names else []
+    model = bounds_of(cells.points)
+    if contacts:
+        figure, (whole, close) = two_panels(model)
+        panels = [(whole, model, False), (close, contact_window(contacts, model), True)]
+    else:
+        figure, whole = plt.subplots(figsize=(style.SINGLE_COLUMN, style.SINGLE_COLUMN))
+        panels = [(whole, model, False)]
+    for axes, window, nodes in panels:
+        draw_elements(axes, cells, nodes)
+        for contact in contacts:
+            draw_faces(axes, cells, contact, nodes)
+        frame(axes, window, result.units, cut=nodes)
+    if contacts:
+        mark_window(whole, close, panels[1][1])
+        style.panel_title(whole, "", "a")
+        style.panel_title(close, "", "b")
+    figure.legend(
+        handles=legend_handles(cells, contacts),
+        loc="outside lower center",
+        ncols=4,
+        columnspacing=1.4,
+    )
+    name = style.file_name(result, "mesh")
+    return style.write(figure, table(cells), options.out, name)
+
+
+def two_panels(model):
+    """Return a figure and two axes: side by side for a tall model, stacked for a wide one."""
+    width, height = np.ptp(model, axis=0)
+    if height >= width:
+        tall = float(np.clip(height / width, 1.0, 4.0))
+        return plt.subplots(
+            1,
+            2,
+            layout="constrained",
+            figsize=(style.DOUBLE_COLUMN * 0.8, 4.3),
+            gridspec_kw={"width_ratios": [1.0 / tall + 0.12, 1.0]},
+        )
+    return plt.subplots(
+        2,
+        1,
+        layout="constrained",
+        figsize=(style.DOUBLE_COLUMN * 0.7, 6.0),
+        gridspec_kw={"height_ratios": [float(np.clip(height / width, 0.3, 1.0)), 1.0]},
+    )
+
+
+def bounds_of(points):
+    """Return [[x least, y least], [x most, y most]] of the points."""
+    return np.array([points.min(axis=0), points.max(axis=0)])
+
+
+def contact_window(contacts, model):
+    """Return the window, as in `bounds_of`, about the pairs that ever close (else all pairs)."""
+    chosen = []
+    for contact in contacts:
+        ever = (contact["status"] > 0).any(axis=0)
+        if not ever.any():
+            ever[:] = True
+        chosen.append(np.column_stack((contact["x"], contact["y"]))[ever])
+    low, high = bounds_of(np.concatenate(chosen))
+    half = 0.75 * max(np.max(high - low), 0.02 * np.max(model[1] - model[0]))
+    middle = 0.5 * (low + high)
+    margin = 0.05 * half
+    return np.array(
+        [np.maximum(middle - half, model[0] - margin), np.minimum(middle + half, model[1] + margin)]
+    )
+
+
+def frame(axes, window, units, cut=False):
+    """Show the window at true proportions with labelled axes; boxed where it cuts the model."""
+    margin = 0.0 if cut else 0.035 * np.max(window[1] - window[0])
+    axes.set_aspect("equal")
+    axes.set_xlim(window[0, 0] - margin, window[1, 0] + margin)
+    axes.set_ylim(window[0, 1] - margin, window[1, 1] + margin)
+    axes.set_xlabel(units.label("$x$", "length"))
+    axes.set_ylabel(units.label("$y$", "length"))
+    narrow = np.ptp(window[:, 0]) < 0.6 * np.ptp(window[:, 1])
+    axes.locator_params(axis="x", nbins=3 if narrow else 6)
+    axes.tick_params(direction="out", top=False, right=False)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(cut)
+
+
+def draw_elements(axes, cells, close):
+    """Draw the elements tinted by body, and the boundary."""
+    names = body_names(cells)
+    width = float(np.clip((16.0 if close else 6.0) / np.sqrt(cells.count), 0.12, 0.45))
+    for kind, group in cells.groups.items():
+        tints = [
+            style.BODY_TINTS[names.index(b) % len(style.BODY_TINTS)] for b in cells.bodies[kind]
+        ]
+        shapes = outlines(kind, group, cells.points)
+        axes.add_collection(
+            PolyCollection(shapes, facecolors=tints, edgecolors="#555555", linewidths=width)
+        )
+    lines = curves(cells.boundary(), cells.points)
+    axes.add_collection(LineCollection(lines, colors="black", linewidths=0.9, capstyle="round"))
+
+
+def draw_faces(axes, cells, contact, close):
+    """Mark the two faces of a contact: slave solid, master dashed; nodes in the close-up."""
+    width = 1.8 if close else 1.3
+    for key, colour, dashes, marker, size in (
+        ("slave_node", style.VERMILION, "solid", "o", 4.2),
+        ("master_node", style.BLUE, (0, (2.2, 1.4)), "s", 2.4),
+    ):
+        numbers = contact[key]
+        lines = curves(cells.face(numbers), cells.points)
+        axes.add_collection(
+            LineCollection(lines, colors=colour, linewidths=width, linestyles=dashes, zorder=3)
+        )
+        if close and len(numbers) <= MOST_MARKED:
+            at = cells.points[np.isin(cells.node_id, numbers)]
+            axes.plot(*at.T, marker, ms=size, mfc="white", mec=colour, mew=0.8, zorder=4)
+
+
+def mark_window(whole, close, window):
+    """Outline the close-up's window in the whole model and lead the eye to it."""
+    size = window[1] - window[0]
+    looks = {"color": "#303030", "zorder": 6}
+    whole.add_patch(Rectangle(window[0], *size, fill=False, linewidth=0.9, **looks))
+    if whole.get_subplotspec().get_gridspec().nrows > 1:
+        # Lines to a panel below would cross the labels between the two.
+        at = {"xytext": (-3, 3), "textcoords": "offset points", "ha": "right"}
+        whole.annotate("(b)", (window[1, 0], window[0, 1]), fontsize=7.5, zorder=6, **at)
+        return
+    close.yaxis.tick_right()
+    close.yaxis.set_label_position("right")
+    for height in (0, 1):
+        ends = {"xyA": window[0] + (1, height) * size, "xyB": (0, height)}
+        spaces = {"coordsA": whole.transData, "coordsB": close.transAxes}
+        link = ConnectionPatch(**ends, **spaces, linewidth=0.5, linestyle=(0, (4, 3)), **looks)
+        whole.figure.add_artist(link)
+
+
+def body_names(cells):
+    """Return the bodies' numbers in order."""
+    return sorted({int(b) for bodies in cells.bodies.values() for b in bodies})
+
+
+def legend_handles(cells, contacts):
+    """Return the legend's entries: bodies and, where there is contact, the two faces."""
+    handles = [
+        Patch(
+            facecolor=style.BODY_TINTS[k % len(style.BODY_TINTS)],
+            edgecolor="#555555",
+            label=f"body {name}",
+        )
+        for k, name in enumerate(body_names(cells))
+    ]
+    if contacts:
+        handles += [
+            Line2D(
+                [],
+                [],
+                color=style.VERMILION,
+                lw=1.8,
+                marker="o",
+                ms=4.2,
+                mfc="white",
+                label="contact face, slave",
+            ),
+            Line2D(
+                [],
+                [],
+                color=style.BLUE,
+                lw=1.8,
+                ls=(0, (2.2, 1.4)),
+                marker="s",
+                ms=2.4,
+                mfc="white",
+                label="contact face, master",
+            ),
+        ]
+    return handles
+
+
+def table(cells):
+    """Return the drawn mesh as columns: one row for each node of each element, in its order."""
+    columns = {"element": [], "body": [], "node": [], "x": [], "y": []}
+    for kind, group in cells.groups.items():
+        nodes = group.shape[1]
+        flat = group.ravel()
+        columns["element"].append(np.repeat(cells.element_ids[kind], nodes))
+        columns["body"].append(np.repeat(cells.bodies[kind], nodes))
+        columns["node"].append(cells.node_id[flat])
+        columns["x"].append(cells.points[flat, 0])
+        columns["y"].append(cells.points[flat, 1])
+    return {name: np.concatenate(parts) for name, parts in columns.items()}

@@ -1,0 +1,93 @@
+"""Letters, legends and zone names of the profiles."""
+
+from matplotlib.lines import Line2D
+
+from . import style
+
+EDGES = {
+    "edges_contact": ("edge of contact", "solid"),
+    "edges_stick": ("edge of stick", (0, (2.5, 1.5))),
+}
+QUANTITY_LINES = {
+    "pressure": "solid",
+    "shear": (0, (4.5, 1.5)),
+    "mu_p": (0, (1.2, 1.2)),
+    "heat_flux": "solid",
+}
+
+
+def add(picture, panels, kinds, overlays):
+    """Name curves, loads, zone edges and digitised figures on the panels of a picture."""
+    several = len(picture.rows) > 1
+    for axes, quantities, letter in zip(panels, kinds, "abc"):
+        handles = quantity_handles(picture, quantities) if len(quantities) > 1 else []
+        if axes is panels[0]:
+            handles += load_handles(picture) if several else []
+            handles += [overlay.handle() for overlay in overlays]
+        if axes is panels[-1] and several:
+            handles += edge_handles(picture)
+        if handles:
+            axes.legend(handles=handles, loc="best", frameon=True, edgecolor="none")
+        if len(kinds) > 1:
+            place = {"xytext": (-30, 4), "textcoords": "offset points"}
+            axes.annotate(f"({letter})", (0, 1), xycoords="axes fraction", **place)
+    if not several:
+        name_zones(picture, panels[0])
+
+
+def quantity_handles(picture, quantities):
+    """Return the legend's entries for the quantities of one panel."""
+    tau = r"$\tau$" if picture.sign > 0.0 else r"$-\tau$"
+    names = {"pressure": "pressure $p$", "shear": f"friction {tau}", "mu_p": r"$\mu p$"}
+    markers = {"pressure": "o", "shear": "s"} if len(picture.rows) == 1 else {}
+    return [
+        Line2D(
+            [],
+            [],
+            color="black",
+            ls=QUANTITY_LINES[quantity],
+            marker=markers.get(quantity),
+            mfc="white" if quantity == "shear" else "black",
+            label=names[quantity],
+        )
+        for quantity in quantities
+    ]
+
+
+def load_handles(picture):
+    """Return the legend's entries for the loads."""
+    result = picture.result
+    unit = result.units.load_unit(result.load_label)
+    return [
+        Line2D([], [], color=colour, marker=style.marker(number), label=f"{load:g} {unit}".strip())
+        for number, (colour, load) in enumerate(
+            zip(picture.colours, result.history["load"][picture.rows])
+        )
+    ]
+
+
+def edge_handles(picture):
+    """Return the legend's entries for the marks at the foot of the panels."""
+    return [
+        Line2D([], [], color="black", lw=0.8, ls=line, label=name)
+        for key, (name, line) in EDGES.items()
+        if any(picture.edges(key, row).size for row in picture.rows)
+    ]
+
+
+def name_zones(picture, axes):
+    """Name the zones above the panel where one contact zone begins at the first pair."""
+    contact, stick = (picture.edges(key, picture.rows[0]) for key in EDGES)
+    if len(contact) != 1 or len(stick) > 1:
+        return
+    low, high = picture.window
+    limits = [low, *stick, *contact, high]
+    names = ["stick", "slip", "gap"] if len(stick) else ["slip", "gap"]
+    if picture.contact.friction == 0.0 or picture.contact.get("shear") is None:
+        names = ["contact", "gap"]
+    for name, left, right in zip(names, limits, limits[1:]):
+        if right - left > 0.09 * (high - low):
+            at = {"xytext": (0, 2.5), "textcoords": "offset points"}
+            middle = (0.5 * (left + right), 1.0)
+            coordinates = ("data", "axes fraction")
+            axes.annotate(name, middle, xycoords=coordinates, ha="center", fontsize=7.5, **at)

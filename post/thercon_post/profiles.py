@@ -1,0 +1,202 @@
+"""Contact tractions and heat flux along the contact (Fig. 2 of the paper)."""
+
+import numpy as np
+
+from . import profile_legends, style
+from .overlay import read_overlays
+from .profile_legends import EDGES, QUANTITY_LINES
+from .result import OPEN
+from .style import plt
+from .tables import stack_tables
+
+CURVES = ("pressure", "shear", "heat_flux")
+PASSED_OVER = ("x", "s", "contact", "increment", "load", "status", "mu_p")
+
+
+def draw(result, options):
+    """Draw the profiles of every contact asked for; return the files written."""
+    rows = result.rows(options.load, options.increment)
+    contacts = result.contacts(options.contact)
+    written = []
+    for contact in contacts:
+        along, _ = contact.axis(options.along)
+        others = [name for name in PASSED_OVER if name != along]
+        overlays = read_overlays(options.figures, along, CURVES, others)
+        figure = Picture(result, contact, rows, options).draw(overlays)
+        parts = [contact.name] if len(result.contact_names) > 1 else []
+        if options.load or options.increment:
+            parts += [float(result.history["load"][row]) for row in rows]
+        name = style.file_name(result, "profiles", *parts)
+        written += style.write(figure, table(result, contact, rows), options.out, name)
+    return written
+
+
+class Picture:
+    """One figure: panels of one contact at one or several loads."""
+
+    def __init__(self, result, contact, rows, options):
+        self.result, self.contact, self.rows = result, contact, rows
+        self.along, self.coordinate = contact.axis(options.along)
+        self.window = options.range or self.usual_window()
+        self.colours = style.shades(len(rows))
+        self.sign = friction_sign(contact, rows)
+
+    def usual_window(self):
+        """Return the range to show: the pairs closed at these loads and somewhat more."""
+        closed = (self.contact["status"][self.rows] != OPEN).any(axis=0)
+        low, high = self.coordinate[0], self.coordinate[-1]
+        if not closed.any():
+            return low, high
+        first, last = self.coordinate[closed][[0, -1]]
+        room = 0.4 * max(last - first, 2.0 * np.min(np.diff(self.coordinate)))
+        return max(low, first - room), min(high, last + room)
+
+    def draw(self, overlays):
+        """Return the finished figure, with digitised figures laid over."""
+        kinds = self.panel_kinds()
+        size = (style.SINGLE_COLUMN * 1.15, 0.5 + 1.75 * len(kinds))
+        figure, panels = plt.subplots(
+            len(kinds), sharex=True, layout="constrained", squeeze=False, figsize=size
+        )
+        panels = panels[:, 0]
+        for axes, quantities in zip(panels, kinds):
+            drawn = []
+            for number, row in enumerate(self.rows):
+                drawn += [self.draw_curve(axes, quantity, row, number) for quantity in quantities]
+                self.mark_edges(axes, row, self.colours[number])
+            for overlay in overlays:
+                for quantity in quantities:
+                    size = quantity == "shear" and not self.two_signs()
+                    line = QUANTITY_LINES[quantity]
+                    drawn.append(overlay.plot(axes, self.along, quantity, line, magnitude=size))
+            axes.set_ylabel(self.ordinate(quantities))
+            scale(axes, np.concatenate(drawn))
+        profile_legends.add(self, panels, kinds, overlays)
+        panels[-1].set_xlabel(self.result.units.label(f"${self.along}$", "length"))
+        room = 0.02 * (self.window[1] - self.window[0])
+        panels[-1].set_xlim(self.window[0] - room, self.window[1] + room)
+        return figure
+
+    def panel_kinds(self):
+        """Return the quantities of each panel; with several loads friction has its own."""
+        traction, flux = self.contact.get("shear"), self.contact.get("heat_flux")
+        friction = []
+        if traction is not None and np.any(traction[self.rows] != 0.0):
+            friction = ["shear"] if self.contact.friction is None else ["shear", "mu_p"]
+        kinds = [["pressure", *friction]]
+        if len(self.rows) > 1 and friction:
+            kinds = [["pressure"], friction]
+        return kinds + ([["heat_flux"]] if flux is not None else [])
+
+    def values(self, quantity, row):
+        """Return what is drawn of a quantity: the file's values, friction with one sign."""
+        if quantity == "mu_p":
+            return self.contact.friction * self.contact["pressure"][row]
+        values = self.contact[quantity][row]
+        return self.sign * values if quantity == "shear" else values
+
+    def draw_curve(self, axes, quantity, row, number):
+        """Draw one curve through the nodal values, tractions ending at the sharpened edge.
+
+        `number` counts the loads. Returns the values that lines in the window touch.
+        """
+        at, values, shown = self.coordinate, self.values(quantity, row), self.inside()
+        both = quantity == "mu_p" and self.two_signs()
+        near = np.convolve(shown, [1, 1, 1], "same") > 0  # lines run on to the next pairs
+        drawn = np.concatenate((values[near], -values[near])) if both else values[near]
+        looks = {"color": self.colours[number], "linestyle": QUANTITY_LINES[quantity]}
+        if quantity != "mu_p":
+            marker = "s" if quantity == "shear" and len(self.rows) == 1 else style.marker(number)
+            looks["mfc"] = "white" if quantity == "shear" else looks["color"]
+            symbols = looks | {"linestyle": "none", "marker": marker}
+            axes.plot(at[shown], values[shown], zorder=3, clip_on=False, **symbols)
+        if quantity != "heat_flux":
+            edges = self.edges("edges_contact", row)
+            order = np.argsort(np.append(at, edges), kind="stable")
+            at = np.append(at, edges)[order]
+            values = np.append(values, np.zeros(len(edges)))[order]
+        for sign in (1, -1) if both else (1,):
+            axes.plot(at, sign * values, zorder=2, **looks)
+        return drawn
+
+    def inside(self):
+        """Return which pairs lie inside the window."""
+        return (self.coordinate >= self.window[0]) & (self.coordinate <= self.window[1])
+
+    def two_signs(self):
+        """Whether friction has both signs along the contact at these loads."""
+        return two_signed(self.contact["shear"][self.rows])
+
+    def edges(self, key, row):
+        """Return the sharpened edges of a kind at one load, on the axis of the picture."""
+        edges = np.atleast_1d(self.contact[key][row])
+        return self.contact.edge_on_axis(edges[~np.isnan(edges)], self.coordinate)
+
+    def mark_edges(self, axes, row, colour):
+        """Mark zone edges: through the panel for one load, at its foot for several."""
+        single = len(self.rows) == 1
+        colour = "#606060" if single else colour
+        for key, (_, line) in EDGES.items():
+            for edge in self.edges(key, row):
+                axes.axvline(
+                    edge,
+                    ymax=1.0 if single else 0.09,
+                    color=colour,
+                    linestyle=line,
+                    lw=0.5 if single else 0.8,
+                    zorder=1,
+                )
+
+    def ordinate(self, quantities):
+        """Return the label of a panel's ordinate."""
+        units = self.result.units
+        if quantities == ["heat_flux"]:
+            return units.label("Heat flux $q$", "flux")
+        if quantities == ["pressure"]:
+            return units.label("Pressure $p$", "stress")
+        return units.label("Contact traction" if "pressure" in quantities else "Friction", "stress")
+
+
+def scale(axes, drawn):
+    """Set the ordinate's range to the values drawn, from zero where nothing is negative."""
+    low, high = np.nanmin(drawn, initial=0.0), np.nanmax(drawn, initial=0.0)
+    room = 0.06 * ((high - low) or 1.0)
+    if -low <= 0.01 * high:
+        axes.set_ylim(0.0, high + 2 * room)
+    else:
+        axes.set_ylim(low - room, high + 2 * room)
+        axes.axhline(0.0, color="black", lw=0.4, zorder=1)
+
+
+def two_signed(shear):
+    """Whether friction has, beyond rounding and noise, both signs."""
+    low = np.nanmax(-shear, initial=0.0)
+    high = np.nanmax(shear, initial=0.0)
+    return min(low, high) > 0.02 * max(low, high)
+
+
+def friction_sign(contact, rows):
+    """Return the sign that turns a friction of one sign positive; 1 where it has both."""
+    shear = contact.get("shear")
+    if shear is None or two_signed(shear[rows]):
+        return 1.0
+    return -1.0 if np.nansum(shear[rows]) < 0.0 else 1.0
+
+
+def table(result, contact, rows):
+    """Return the drawn profiles as columns: the pairs of one load below those of another."""
+    count = len(contact["x"])
+    tables = []
+    for row in rows:
+        columns = {
+            "increment": np.full(count, row + 1),
+            "load": np.full(count, result.history["load"][row]),
+            "x": contact["x"],
+            "s": contact["s"],
+            "status": contact["status"][row],
+        }
+        columns |= {key: contact[key][row] for key in CURVES if contact.get(key) is not None}
+        if contact.friction is not None:
+            columns["mu_p"] = contact.friction * contact["pressure"][row]
+        tables.append(columns)
+    return stack_tables(tables)

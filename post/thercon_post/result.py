@@ -1,0 +1,205 @@
+"""The result file of a run, as interfaces and pictures name its parts."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from .cells import Cells
+from .errors import UserError, nearest_name
+from .units import UNIT_NAMES, Units
+
+OPEN, SLIP, STICK = 0, 1, 2
+
+# Columns of the VTKHDF arrays with several components: picture quantity -> array, component.
+FIELD_SOURCES = {
+    "temperature": ("temperature", None),
+    "von_mises": ("von_mises", None),
+    "xx": ("stress", 0),
+    "yy": ("stress", 1),
+    "zz": ("stress", 2),
+    "xy": ("stress", 3),
+    "flux_x": ("heat_flux", 0),
+    "flux_y": ("heat_flux", 1),
+}
+
+
+@dataclass
+class Contact:
+    """One contact pair of the deck: arrays over its m node pairs, states over n increments."""
+
+    name: str
+    data: dict
+    friction: float | None
+
+    def __getitem__(self, key):
+        return self.data[key]
+
+    def get(self, key):
+        """Return the dataset `key`, or None where the deck does not model it."""
+        return self.data.get(key)
+
+    def axis(self, along):
+        """Return (name, coordinate of the pairs): x where it grows along the face, else s.
+
+        `along` is "x", "s" or None for the choice made here.
+        """
+        x = self.data["x"]
+        usable = bool(np.all(np.diff(x) > 0.0))
+        if along == "x" and not usable:
+            raise UserError(f"x does not grow along contact '{self.name}': use --along s")
+        name = along or ("x" if usable else "s")
+        return name, self.data[name]
+
+    def edge_on_axis(self, edge, coordinate):
+        """Return zone edges, given as arc length s, on the coordinate of the pairs."""
+        edge = np.asarray(edge, dtype=float)
+        moved = np.interp(edge, self.data["s"], coordinate)
+        return np.where(np.isnan(edge), np.nan, moved)
+
+
+class Result:
+    """A result file, open for reading; use it in a `with` statement."""
+
+    def __init__(self, path):
+        self.path = Path(path)
+        if not self.path.exists():
+            raise UserError(f"{path}: no such file")
+        if self.path.is_dir():
+            raise UserError(f"{path}: is a folder, not a result file")
+        try:
+            self.file = h5py.File(self.path, "r")
+        except OSError as reason:
+            raise UserError(f"{path}: is not an HDF5 file that can be read ({reason})") from None
+        missing = [group for group in ("history", "VTKHDF", "run") if group not in self.file]
+        if missing:
+            self.file.close()
+            raise UserError(f"{path}: is HDF5 but not a thercon result: it has no /{missing[0]}")
+        self.name = self.path.stem
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.file.close()
+
+    @cached_property
+    def units(self):
+        """Units that `*OPTIONS, UNITS=` gave; none where it did not."""
+        run = self.file["run"].attrs
+        return Units({name: text(run.get(f"unit_{name}", "")) for name in UNIT_NAMES})
+
+    @cached_property
+    def history(self):
+        """Datasets of /history by name: one value for each accepted increment."""
+        return {key: item[()] for key, item in self.file["history"].items()}
+
+    @cached_property
+    def load_label(self):
+        """What the load axis shows, as the file names it."""
+        return text(self.file["history/load"].attrs.get("label", "load"))
+
+    @property
+    def increments(self):
+        """Number of accepted increments."""
+        return len(self.history["load"])
+
+    @cached_property
+    def convergence(self):
+        """Datasets of /convergence by name: one value for each iteration."""
+        group = self.file.get("convergence")
+        if group is None or len(group.get("iteration", ())) == 0:
+            raise UserError(
+                f"{self.path}: holds no iterations: nothing in this deck is iterated on"
+            )
+        return {key: item[()] for key, item in group.items()}
+
+    @cached_property
+    def contact_names(self):
+        """Names of the contact pairs, in the file's order."""
+        return list(self.file["contact"]) if "contact" in self.file else []
+
+    def contact(self, name):
+        """Return one contact pair by name."""
+        if name not in self.contact_names:
+            known = ", ".join(self.contact_names) or "none"
+            hint = nearest_name(name, self.contact_names)
+            raise UserError(f"{self.path}: no contact '{name}'{hint} (contacts: {known})")
+        group = self.file["contact"][name]
+        data = {key: item[()] for key, item in group.items()}
+        friction = group.attrs.get("friction")
+        return Contact(name, data, None if friction is None else float(friction))
+
+    def contacts(self, name=None):
+        """Return the contact pairs asked for: the named one, or all."""
+        if not self.contact_names:
+            raise UserError(f"{self.path}: the deck has no contact")
+        return [self.contact(each) for each in ([name] if name else self.contact_names)]
+
+    def rows(self, loads=None, increments=None):
+        """Return rows of /history for loads, increments (from 1) or, with neither, the last."""
+        if self.increments == 0:
+            raise UserError(f"{self.path}: holds no accepted increment")
+        rows = [nearest_row(self, load) for load in loads or ()]
+        for number in increments or ():
+            if not 1 <= number <= self.increments:
+                raise UserError(
+                    f"{self.path}: no increment {number}: there are 1 to {self.increments}"
+                )
+            rows.append(number - 1)
+        return rows or [self.increments - 1]
+
+    @cached_property
+    def cells(self):
+        """Mesh as written: points, cells and what bounds them."""
+        return Cells.read(self.file["VTKHDF"])
+
+    def field_row(self, row):
+        """Return the index of the VTKHDF time step that holds the increment in `row`."""
+        times = self.file["VTKHDF/Steps/Values"][()]
+        time = self.history["time"][row]
+        step = int(np.argmin(np.abs(times - time)))
+        if abs(times[step] - time) > 1e-9 * max(abs(time), 1.0):
+            load = np.interp(times, self.history["time"], self.history["load"])
+            raise UserError(
+                f"{self.path}: no fields at load {self.history['load'][row]:g} "
+                f"(thinned by FREQUENCY); nearest with fields: {load[step]:g}"
+            )
+        return step
+
+    def point_data(self, name, step):
+        """Return a point data array of /VTKHDF at a time step; None where it is absent."""
+        group = self.file["VTKHDF/PointData"]
+        if name not in group:
+            return None
+        offsets = self.file.get(f"VTKHDF/Steps/PointDataOffsets/{name}")
+        start = int(np.ravel(offsets[step])[0]) if offsets is not None else 0
+        return group[name][start : start + len(self.cells.points)]
+
+    def field(self, quantity, step):
+        """Return a picture quantity over the points at a time step; None where it is absent."""
+        source, component = FIELD_SOURCES[quantity]
+        values = self.point_data(source, step)
+        return values if values is None or component is None else values[:, component]
+
+
+def nearest_row(result, load):
+    """Return the row of /history whose load is `load`; the last one where several are."""
+    loads = result.history["load"]
+    tolerance = 1e-6 * max(float(np.ptp(loads)), float(np.max(np.abs(loads))), 1e-300)
+    found = np.flatnonzero(np.abs(loads - load) <= tolerance)
+    if found.size == 0:
+        near = np.unique(loads)
+        near = np.sort(near[np.argsort(np.abs(near - load))[:2]])
+        names = " and ".join(f"{value:g}" for value in near)
+        raise UserError(f"{result.path}: no increment has load {load:g}; nearest: {names}")
+    return int(found[-1])
+
+
+def text(value):
+    """Return an HDF5 string attribute as str, however it was stored."""
+    if isinstance(value, np.ndarray):
+        value = value.ravel()[0] if value.size else ""
+    return value.decode() if isinstance(value, bytes) else str(value)

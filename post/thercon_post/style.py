@@ -1,0 +1,108 @@
+"""One look for all pictures: sizes of a printed page, fonts, lines, and how files are written."""
+
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+from .errors import UserError
+from .tables import write_table
+
+matplotlib.use("Agg")
+from matplotlib import pyplot as plt  # noqa: E402  the backend is chosen first
+
+SINGLE_COLUMN, DOUBLE_COLUMN = 3.39, 7.01  # inches: 86 and 178 mm
+
+# Colours that stay apart for the colour-blind (Okabe and Ito) and in grey.
+BLACK, BLUE, VERMILION, GREY = "#000000", "#0072B2", "#D55E00", "#8C8C8C"
+ORANGE, GREEN, SKY = "#E69F00", "#009E73", "#56B4E9"
+SERIES = [BLACK, VERMILION, BLUE, GREEN, ORANGE, SKY]
+MARKERS = ["o", "s", "^", "D", "v", "P"]
+BODY_TINTS = ["#F6E3D0", "#DCE8F2", "#E4EEDC", "#EFE2EE", "#F5F0D0", "#E6E6E6"]
+
+SETTINGS = {
+    "font.family": "STIXGeneral",
+    "mathtext.fontset": "stix",
+    "font.size": 8.5,
+    "axes.labelsize": 8.5,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "legend.handlelength": 2.4,
+    "axes.linewidth": 0.6,
+    "lines.linewidth": 0.9,
+    "lines.markersize": 3.2,
+    "lines.markeredgewidth": 0.6,
+    "patch.linewidth": 0.5,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.5,
+    "ytick.major.width": 0.5,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 3.0,
+    "xtick.minor.size": 1.6,
+    "ytick.minor.size": 1.6,
+    "axes.unicode_minus": True,
+    "figure.dpi": 100,
+    "savefig.dpi": 400,
+    "savefig.bbox": "tight",
+    "savefig.pad_inches": 0.03,
+    "svg.hashsalt": "thercon",
+}
+
+
+def apply():
+    """Use this style for every figure that follows."""
+    plt.rcdefaults()
+    plt.rcParams.update(SETTINGS)
+
+
+def write(figure, columns, folder, name):
+    """Write figure and curves as folder/name.png, .svg and .csv; return what was written."""
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        figure.savefig(folder / f"{name}.png")
+        # No date in the file: the same result gives the same picture.
+        figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+        write_table(folder / f"{name}.csv", columns)
+    except OSError as reason:
+        raise UserError(f"{folder / name}: cannot be written ({reason})") from None
+    finally:
+        plt.close(figure)
+    return [folder / f"{name}.{kind}" for kind in ("png", "svg", "csv")]
+
+
+def file_name(result, picture, *parts):
+    """Return the file name NAME.picture-part-part without its ending."""
+    words = [f"{part:g}" if isinstance(part, (int, float)) else str(part) for part in parts]
+    safe = ["".join(c if c.isalnum() or c in "._+-" else "_" for c in word) for word in words]
+    return f"{result.name}.{'-'.join([picture, *safe])}"
+
+
+def plain(words):
+    """Return words, such as a file's name, so that none of them is read as a formula."""
+    return words.replace("$", r"\$")
+
+
+def marker(number):
+    """Return the marker of the curve with this number."""
+    return MARKERS[number % len(MARKERS)]
+
+
+def shades(count):
+    """Return `count` line colours from light to dark, apart in grey as well."""
+    if count == 1:
+        return [BLACK]
+    return [matplotlib.colormaps["viridis"](t) for t in np.linspace(0.72, 0.0, count)]
+
+
+def panel_title(axes, words, letter=""):
+    """Put "(a)" and so on, where there is a letter, and words above the axes."""
+    words = f"({letter}) {words}".rstrip() if letter else words
+    axes.set_title(words, loc="left", fontsize=8.5, pad=4)

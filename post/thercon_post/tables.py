@@ -1,0 +1,19 @@
+"""CSV files of what was drawn."""
+
+import csv
+
+import numpy as np
+
+
+def write_table(path, columns):
+    """Write columns {name: values}, all of one length; numbers keep every digit."""
+    rows = zip(*(np.asarray(values).tolist() for values in columns.values()), strict=True)
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(rows)
+
+
+def stack_tables(tables):
+    """Return tables {name: values} of the same columns as one, one below the other."""
+    return {name: np.concatenate([np.asarray(t[name]) for t in tables]) for name in tables[0]}

@@ -1,0 +1,233 @@
+"""The zone diagram (Fig. 3 of the paper): gap, slip and stick against the load."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from . import style
+from .errors import UserError
+from .overlay import read_overlays
+from .result import OPEN, SLIP, STICK
+from .style import plt
+from .tables import write_table
+
+CURVES = ("edge_contact", "edge_stick")
+PASSED_OVER = ("increment", "time", "s_edge_contact", "s_edge_stick")
+NAMES = {OPEN: ("I", "gap"), SLIP: ("II", "slip"), STICK: ("III", "stick")}
+LINES = {"edge_contact": "solid", "edge_stick": (0, (5, 2))}
+LABEL_GRID = (60, 48)  # where region names may stand: loads x places
+
+
+def draw(result, options):
+    """Draw the zone diagram of every contact asked for; return the files written."""
+    written = []
+    overlays = read_overlays(options.figures, "load", CURVES, PASSED_OVER)
+    for contact in result.contacts(options.contact):
+        along, coordinate = contact.axis(options.along)
+        picture = Picture(result, contact, along, coordinate)
+        figure = picture.draw(overlays)
+        parts = [contact.name] if len(result.contact_names) > 1 else []
+        name = style.file_name(result, "zones", *parts)
+        written += style.write(figure, picture.table(), options.out, name)
+        pairs = Path(options.out) / f"{style.file_name(result, 'zones', *parts, 'pairs')}.csv"
+        write_table(pairs, picture.pair_table())
+        written.append(pairs)
+    return written
+
+
+class Picture:
+    """The diagram of one contact."""
+
+    def __init__(self, result, contact, along, coordinate):
+        if result.increments == 0:
+            raise UserError(f"{result.path}: holds no accepted increment")
+        self.result, self.contact = result, contact
+        self.along, self.coordinate = along, coordinate
+        load = result.history["load"]
+        rising = bool(np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0))
+        self.rising = rising
+        self.further = False  # whether there are edges besides the main ones
+        # A load that turns would draw loading and unloading over each other.
+        self.abscissa = load if rising else result.history["time"]
+        self.abscissa_label = result.units.load_label(result.load_label) if rising else "Time"
+        self.status = contact["status"]
+        frictionless = contact.friction == 0.0 or contact.get("shear") is None
+        self.names = NAMES | ({SLIP: ("II", "contact")} if frictionless else {})
+
+    def edges(self, key):
+        """Return sharpened edges, (n) or (n, 4), on the axis of the picture."""
+        return self.contact.edge_on_axis(self.contact[key], self.coordinate)
+
+    def draw(self, overlays):
+        """Return the finished figure, with digitised figures laid over."""
+        figure, axes = plt.subplots(
+            layout="constrained", figsize=(style.SINGLE_COLUMN * 1.25, style.SINGLE_COLUMN)
+        )
+        if overlays and not self.rising:
+            raise UserError(
+                f"{self.result.path}: the load turns: no digitised figure fits over time"
+            )
+        self.draw_states(axes)
+        for key in CURVES:
+            self.draw_edges(axes, key)
+        drawn = [
+            overlay.plot(axes, "load", key, LINES[key]) for overlay in overlays for key in CURVES
+        ]
+        axes.set_xlabel(self.abscissa_label)
+        axes.set_ylabel(self.result.units.label(f"${self.along}$", "length"))
+        axes.set_xlim(self.limits(self.abscissa))
+        axes.set_ylim(self.window(np.concatenate([[], *drawn])))
+        self.name_regions(axes)
+        figure.legend(
+            handles=self.legend_handles(overlays),
+            loc="outside lower center",
+            ncols=3,
+            columnspacing=1.4,
+        )
+        return figure
+
+    @staticmethod
+    def limits(values):
+        """Return the range of the abscissa: from zero where that is next to the first value."""
+        low, high = float(np.min(values)), float(np.max(values))
+        step = (high - low) / max(len(values) - 1, 1)
+        if 0.0 < low <= 3.0 * step:
+            low = 0.0
+        room = 0.015 * (high - low) or 0.5
+        return low - (room if low != 0.0 else 0.0), high + room
+
+    def window(self, drawn):
+        """Return the range of the ordinate: the pairs that ever close and somewhat more, and
+        what digitised figures have."""
+        closed = (self.status != OPEN).any(axis=0)
+        low, high = self.coordinate[0], self.coordinate[-1]
+        if closed.any():
+            first, last = self.coordinate[closed][[0, -1]]
+            room = 0.3 * max(last - first, 2.0 * np.min(np.diff(self.coordinate)))
+            low, high = max(low, first - room), min(high, last + room)
+        low, high = np.min(drawn, initial=low), np.max(drawn, initial=high)
+        room = 0.015 * (high - low)
+        return low - room, high + room
+
+    def draw_states(self, axes):
+        """Draw the raw state of every pair as a small mark behind the curves."""
+        load, place = np.meshgrid(self.abscissa, self.coordinate, indexing="ij")
+        for state, marker, options in state_marks():
+            there = self.status == state
+            axes.plot(load[there], place[there], marker, ls="none", zorder=1, **options)
+
+    def draw_edges(self, axes, key):
+        """Draw the main curve of sharpened edges, and the other edges of its kind where present."""
+        main = self.edges(key)
+        axes.plot(self.abscissa, main, color="black", linestyle=LINES[key], lw=1.2, zorder=3)
+        for lonely in np.flatnonzero(is_lonely(main)):
+            axes.plot(self.abscissa[lonely], main[lonely], "k_", ms=4, zorder=3)
+        others = self.edges(key.replace("edge_", "edges_"))
+        count = np.sum(~np.isnan(others), axis=1)
+        others = np.where(np.isclose(others, main[:, None], rtol=1e-12, atol=0.0), np.nan, others)
+        self.further |= not np.isnan(others).all()
+        for column in others.T:
+            # Columns belong together only between increments with as many edges.
+            for piece in np.split(np.arange(len(count)), np.flatnonzero(np.diff(count)) + 1):
+                axes.plot(
+                    self.abscissa[piece],
+                    column[piece],
+                    color=style.GREY,
+                    linestyle=LINES[key],
+                    lw=0.9,
+                    marker="d",
+                    ms=2.4,
+                    zorder=2,
+                )
+
+    def name_regions(self, axes):
+        """Write I, II and III where each region has most room around it."""
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        u, v = (np.linspace(0.0, 1.0, n) for n in LABEL_GRID)
+        states = self.states_at(left + u * (right - left), low + v * (high - low))
+        points = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+        flat = states.ravel()
+        for state, (numeral, word) in self.names.items():
+            mine = points[flat == state]
+            if len(mine) == 0:
+                continue
+            room = np.min(np.stack([mine, 1.0 - mine]), axis=(0, 2))
+            if np.any(flat != state):
+                away = mine[:, None, :] - points[flat != state][None, :, :]
+                room = np.minimum(room, np.sqrt(np.min(np.sum(away**2, axis=2), axis=1)))
+            at = mine[np.argmax(room)]
+            axes.text(
+                left + at[0] * (right - left),
+                low + at[1] * (high - low),
+                f"{numeral}\n{word}",
+                ha="center",
+                va="center",
+                linespacing=0.95,
+                zorder=5,
+                fontsize=9,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 2.0},
+            )
+
+    def states_at(self, loads, places):
+        """Return the states (loads, places) of the nearest increments and pairs."""
+        row = np.argmin(np.abs(loads[:, None] - self.abscissa[None, :]), axis=1)
+        pair = np.argmin(np.abs(places[:, None] - self.coordinate[None, :]), axis=1)
+        return self.status[np.ix_(row, pair)]
+
+    def legend_handles(self, overlays):
+        """Return the legend's entries: curves, pair states, digitised figures."""
+        names = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
+        shown = [key for key in CURVES if not np.isnan(self.contact[key]).all()]
+        handles = [
+            Line2D([], [], color="black", ls=LINES[key], lw=1.2, label=names[key]) for key in shown
+        ]
+        handles += [
+            Line2D(
+                [], [], ls="none", marker=marker, label=f"pair in {self.names[state][1]}", **options
+            )
+            for state, marker, options in state_marks()
+            if np.any(self.status == state)
+        ]
+        if self.further:
+            looks = {"color": style.GREY, "lw": 0.9, "marker": "d", "ms": 2.4}
+            handles.append(Line2D([], [], label="further edges", **looks))
+        return handles + [overlay.handle() for overlay in overlays]
+
+    def table(self):
+        """Return the curves as columns: edges on the axis of the picture, and as arc length."""
+        history = self.result.history
+        columns = {
+            "increment": np.arange(1, self.result.increments + 1),
+            "time": history["time"],
+            "load": history["load"],
+        }
+        columns |= {key: self.edges(key) for key in CURVES}
+        columns |= {f"s_{key}": self.contact[key] for key in CURVES}
+        return columns
+
+    def pair_table(self):
+        """Return the raw pair states as columns: the pairs of one increment below the last."""
+        n, m = self.status.shape
+        return {
+            "increment": np.repeat(np.arange(1, n + 1), m),
+            "load": np.repeat(self.result.history["load"], m),
+            "x": np.tile(self.contact["x"], n),
+            "s": np.tile(self.contact["s"], n),
+            "status": self.status.ravel(),
+        }
+
+
+def state_marks():
+    """Return (state, marker, looks) of the raw pair states."""
+    return [
+        (OPEN, ".", {"color": "#B0B0B0", "ms": 2.2, "mew": 0}),
+        (SLIP, "o", {"mfc": "white", "mec": style.BLUE, "ms": 2.5, "mew": 0.45}),
+        (STICK, "s", {"mfc": style.ORANGE, "mec": style.ORANGE, "ms": 2.0, "mew": 0.3}),
+    ]
+
+
+def is_lonely(values):
+    """Return where a value stands between two NaN (or ends), so that no line would show it."""
+    there = np.concatenate(([False], ~np.isnan(values), [False]))
+    return there[1:-1] & ~there[:-2] & ~there[2:]

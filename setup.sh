@@ -1,0 +1,235 @@
+#!/usr/bin/env bash
+# Sets thercon up on Debian 12 and runs it; see usage below.
+set -euo pipefail
+
+root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
+build=$root/build
+venv=$build/venv
+program=$build/release/thercon
+
+build_packages=(gfortran cmake ninja-build libopenblas-serial-dev libmumps-seq-dev libmetis-dev
+   libhdf5-dev python3 python3-venv)
+test_packages=(valgrind)
+requirements=("$root/post/requirements.txt" "$root/tests/requirements.txt")
+
+usage() {
+   cat <<USAGE
+usage: ./setup.sh COMMAND
+
+   cylinder    install what is missing, build, solve the published cylinder, draw its figures
+   test        install what is missing, build, check the sources, run every test
+   build       install what is missing, build build/release/thercon
+   lint        check the sources: fortitude, findent, shellcheck; with --fix mend what can be mended
+   bench       run the benchmarks
+
+What is installed: Debian packages with apt-get, as root or with sudo; without either, the command
+that is needed is printed. Python packages live in build/venv.
+USAGE
+}
+
+say() { printf '== %s\n' "$*"; }
+
+fail() {
+   printf 'setup.sh: error: %s\n' "$*" >&2
+   exit 1
+}
+
+# Runs a command, with its output shown only when it fails.
+quietly() {
+   local log status=0
+   log=$(mktemp)
+   "$@" >"$log" 2>&1 || status=$?
+   ((status == 0)) || cat "$log" >&2
+   rm -f "$log"
+   return "$status"
+}
+
+# Prints which of the Debian packages named are not installed.
+missing_packages() {
+   local installed
+   installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
+   local package
+   for package in "$@"; do
+      grep -qx "installed $package" <<<"$installed" || printf '%s\n' "$package"
+   done
+}
+
+# Runs a command as root, without any question of apt-get or of its packages.
+as_root() {
+   if ((EUID == 0)); then
+      env DEBIAN_FRONTEND=noninteractive "$@"
+   else
+      sudo env DEBIAN_FRONTEND=noninteractive "$@"
+   fi
+}
+
+install_packages() {
+   local missing
+   command -v dpkg-query >/dev/null ||
+      fail "this is no Debian; needed are, under whatever names: $*"
+   mapfile -t missing < <(missing_packages "$@")
+   ((${#missing[@]})) || return 0
+   if ((EUID != 0)) && ! { command -v sudo >/dev/null && sudo -v 2>/dev/null; }; then
+      printf 'Some Debian packages are missing. As root:\n\n   apt-get install %s\n' \
+         "${missing[*]}" >&2
+      exit 1
+   fi
+   say "installing Debian packages: ${missing[*]}"
+   quietly as_root apt-get update || true # the lists at hand may do
+   quietly as_root apt-get install --yes --no-install-recommends "${missing[@]}" ||
+      fail "apt-get could not install: ${missing[*]}"
+}
+
+# What build/venv was made of. An environment does not survive a move to another path.
+venv_contents() {
+   printf '%s\n' "$venv"
+   /usr/bin/python3 --version
+   cat "${requirements[@]}"
+}
+
+install_python_packages() {
+   unset PYTHONHOME PYTHONPATH
+   if [[ -f $venv/contents ]] && venv_contents | cmp -s - "$venv/contents"; then
+      return
+   fi
+   say "installing Python packages into build/venv"
+   rm -rf "$venv"
+   quietly /usr/bin/python3 -m venv "$venv" || fail "no Python environment could be made"
+   local arguments=() file
+   for file in "${requirements[@]}"; do
+      arguments+=(--requirement "$file")
+   done
+   quietly "$venv/bin/python" -m pip install --disable-pip-version-check --no-input \
+      "${arguments[@]}" || fail "pip could not install the Python packages"
+   venv_contents >"$venv/contents"
+}
+
+# Configures (once) and builds the preset named.
+build_preset() {
+   local folder=$build/$1
+   cd "$root"
+   # A build folder does not survive a move to another path either.
+   if ! grep -qsFx "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt" ||
+      [[ ! -f $folder/build.ninja ]]; then
+      say "configuring build/$1"
+      rm -rf "$folder"
+      quietly cmake --preset "$1" || fail "build/$1 could not be configured"
+   fi
+   say "building build/$1"
+   cmake --build --preset "$1"
+}
+
+run_build() {
+   install_packages "${build_packages[@]}"
+   install_python_packages
+   build_preset release
+}
+
+# Whether the file named first is newer than all files in what is named after it.
+is_newer() {
+   local file=$1
+   shift
+   [[ -f $file && -z $(find "$@" -type f -newer "$file" -print -quit) ]]
+}
+
+solve_cylinder() {
+   local deck=$root/input/cylinder/cylinder.inp
+   is_newer "$1/cylinder.vtkhdf" "$program" "$deck" && return
+   say "solving input/cylinder/cylinder.inp"
+   "$program" run "$deck" --out "$1"
+}
+
+draw() { "$venv/bin/python" "$root/post/plot" "$@" >/dev/null; }
+
+draw_cylinder() {
+   local result=$1/cylinder.vtkhdf picture
+   is_newer "$1/.drawn" "$result" "$root/post" && return
+   say "drawing the figures"
+   for picture in mesh zones fields convergence; do
+      draw "$picture" "$result" --out "$1"
+   done
+   draw profiles "$result" --load 540 --out "$1"
+   touch "$1/.drawn"
+}
+
+run_cylinder() {
+   local folder=$build/cylinder
+   run_build
+   mkdir -p "$folder"
+   solve_cylinder "$folder"
+   draw_cylinder "$folder"
+   say "the published cylinder is in build/cylinder:"
+   find "$folder" -maxdepth 1 -type f ! -name .drawn -printf '   %f\n' | sort
+}
+
+fortran_sources() {
+   find "$root/src" "$root/tests" -name '*.f90' -o -name '*.pf' | sort
+}
+
+# findent says nothing about a file: its output is compared, or, with --fix, taken.
+check_indentation() {
+   local source status=0 indented
+   indented=$(mktemp)
+   while IFS= read -r source; do
+      "$venv/bin/findent" -i3 -c3 -k- -Rr <"$source" >"$indented"
+      cmp -s "$source" "$indented" && continue
+      if [[ ${1-} == --fix ]]; then
+         cat "$indented" >"$source"
+         printf 'indented: %s\n' "${source#"$root"/}"
+      else
+         printf 'findent would change: %s\n' "${source#"$root"/}"
+         status=1
+      fi
+   done < <(fortran_sources)
+   rm -f "$indented"
+   return "$status"
+}
+
+run_lint() {
+   local status=0
+   install_packages "${build_packages[@]}"
+   install_python_packages
+   say "checking the sources"
+   cd "$root"
+   "$venv/bin/fortitude" check --progress-bar off "$@" src tests || status=1
+   check_indentation "$@" || status=1
+   "$venv/bin/shellcheck" setup.sh .ci/run || status=1
+   ((status == 0)) || printf 'The sources do not pass; ./setup.sh lint --fix mends some of it.\n'
+   return "$status"
+}
+
+# Every test on the program as users have it comes last, so that its summary closes the output; before
+# that the sources, and the unit tests and the cylinder with run-time checks.
+run_test() {
+   local status=0
+   install_packages "${build_packages[@]}" "${test_packages[@]}"
+   install_python_packages
+   run_lint || status=1
+   build_preset debug
+   say "tests with run-time checks"
+   ctest --preset debug --parallel 2 --label-regex 'unit|memory' || status=1
+   build_preset release
+   ((status == 0)) || say "something above has failed"
+   say "all tests"
+   ctest --preset release --parallel 2 || status=1
+   return "$status"
+}
+
+command=${1-}
+(($# == 0)) || shift
+case $command in
+   cylinder | test | build | bench) (($# == 0)) || fail "$command takes no argument: $1" ;;
+   lint) [[ $# == 0 || $* == --fix ]] || fail "lint takes --fix or nothing: $*" ;;
+esac
+case $command in
+   cylinder) run_cylinder ;;
+   test) run_test ;;
+   build) run_build ;;
+   lint) run_lint "$@" ;;
+   bench) fail "the benchmarks are not built yet" ;;
+   help | --help | -h) usage ;;
+   *)
+      usage >&2
+      exit 1
+      ;;
+esac

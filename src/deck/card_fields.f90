@@ -1,0 +1,149 @@
+!> One line of a deck as fields between commas, with quotes heeded.
+module card_fields
+   use cards, only: field_type
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   implicit none
+   private
+   public :: split_fields, append_fields, drop_empty_end, without_quotes
+   public :: is_comment, is_keyword, is_blank, first_text, last_text
+
+   character(*), parameter :: blanks = ' '//achar(9)   !! what separates words
+
+contains
+
+   !> Whether a line is a comment card.
+   pure logical function is_comment(line)
+      character(*), intent(in) :: line   !! card image
+
+      is_comment = index(line(first_text(line):), '**') == 1
+   end function is_comment
+
+   !> Whether a line begins a keyword card; comment cards are not asked for.
+   pure logical function is_keyword(line)
+      character(*), intent(in) :: line   !! card image
+
+      is_keyword = index(line(first_text(line):), '*') == 1
+   end function is_keyword
+
+   !> Whether a line holds nothing.
+   pure logical function is_blank(line)
+      character(*), intent(in) :: line   !! card image
+
+      is_blank = verify(line, blanks) == 0
+   end function is_blank
+
+   !> Position of the first character that is not blank; behind the line where there is none.
+   pure integer function first_text(line)
+      character(*), intent(in) :: line   !! card image
+
+      first_text = verify(line, blanks)
+      if (first_text == 0) first_text = len(line) + 1
+   end function first_text
+
+   !> Position of the last character that is not blank; 0 where there is none.
+   pure integer function last_text(line)
+      character(*), intent(in) :: line   !! card image
+
+      last_text = verify(line, blanks, back=.true.)
+   end function last_text
+
+   !> Splits a line at its commas. Quotes stay in the fields; a comma inside quotes and a quote
+   !> without its end are errors.
+   subroutine split_fields(line, image, report, fields)
+      character(*), intent(in) :: line                            !! card image
+      integer, intent(in) :: image                                !! its running number
+      type(deck_report_type), intent(inout) :: report             !! receives errors
+      type(field_type), allocatable, intent(out) :: fields(:)     !! at least one field
+      integer :: commas(len(line) + 1)
+      integer :: i, n, first, opened
+
+      opened = 0
+      n = 0
+      do i = 1, last_text(line)
+         if (line(i:i) == '"') then
+            opened = merge(i, 0, opened == 0)
+         else if (line(i:i) == ',') then
+            if (opened > 0) then
+               call report%error(place_type(image, i), 'no comma may stand inside quotes')
+            else
+               n = n + 1
+               commas(n) = i
+            end if
+         end if
+      end do
+      if (opened > 0) call report%error(place_type(image, opened), 'this quote is not closed')
+      commas(n + 1) = last_text(line) + 1
+      allocate(fields(n + 1))
+      first = 1
+      do i = 1, n + 1
+         fields(i) = trimmed_field(line, first, commas(i) - 1, image)
+         first = commas(i) + 1
+      end do
+   end subroutine split_fields
+
+   !> The field between two positions of a line, without blanks around it.
+   pure function trimmed_field(line, first, last, image) result(field)
+      character(*), intent(in) :: line
+      integer, intent(in) :: first, last, image
+      type(field_type) :: field
+      integer :: start
+
+      start = first_text(line(first:last)) + first - 1
+      field%text = line(start:first - 1 + last_text(line(first:last)))
+      if (len(field%text) == 0) start = first
+      field%place = place_type(image, start)
+   end function trimmed_field
+
+   !> Adds the fields of a continuation; the empty field that the comma at the end of the card left
+   !> is dropped.
+   subroutine append_fields(fields, more)
+      type(field_type), allocatable, intent(inout) :: fields(:)   !! the card so far
+      type(field_type), intent(in) :: more(:)                     !! its continuation
+      type(field_type), allocatable :: all(:)
+      integer :: i, n
+
+      n = size(fields) - 1
+      allocate(all(n + size(more)))
+      do i = 1, n
+         all(i) = fields(i)
+      end do
+      do i = 1, size(more)
+         all(n + i) = more(i)
+      end do
+      call move_alloc(all, fields)
+   end subroutine append_fields
+
+   !> Drops the empty fields at the end of a card.
+   subroutine drop_empty_end(fields)
+      type(field_type), allocatable, intent(inout) :: fields(:)   !! fields of a card
+      type(field_type), allocatable :: kept(:)
+      integer :: i, n
+
+      n = size(fields)
+      do while (n > 0)
+         if (len(fields(n)%text) > 0) exit
+         n = n - 1
+      end do
+      if (n == size(fields)) return
+      allocate(kept(n))
+      do i = 1, n
+         kept(i) = fields(i)
+      end do
+      call move_alloc(kept, fields)
+   end subroutine drop_empty_end
+
+   !> A text without the quotes around it.
+   pure function without_quotes(string) result(bare)
+      character(*), intent(in) :: string     !! text, quoted or not
+      character(:), allocatable :: bare  !! what stands between the quotes, without blanks around it
+      integer :: n
+
+      n = len(string)
+      bare = string
+      if (n < 2) return
+      if (string(1:1) /= '"' .or. string(n:n) /= '"') return
+      bare = trim(adjustl(string(2:n - 1)))
+   end function without_quotes
+
+end module card_fields

@@ -1,0 +1,217 @@
+!> One line after another -> cards: comments, continuations, parameters.
+module card_lines
+   use card_fields, only: append_fields, drop_empty_end, first_text, is_blank, is_comment, &
+      is_keyword, last_text, split_fields, without_quotes
+   use cards, only: add_data, add_keyword, cards_type, field_type, keyword_card_type
+   use deck_parameters, only: deck_parameters_type
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use keyword_cards, only: make_keyword_card
+   use keywords, only: built, known_keywords
+   use text, only: read_integer, to_text
+   implicit none
+   private
+   public :: card_lines_type, default_width
+
+   integer, parameter :: default_width = 80   !! columns of a card
+   integer, parameter :: element_fields = 9   !! an *ELEMENT data card of eight nodes is complete
+
+   !> What is open while lines are read.
+   type :: card_lines_type
+      type(deck_parameters_type) :: parameters              !! *PARAMETER so far
+      integer :: width = default_width                      !! columns of a card
+      character(:), allocatable :: include                  !! path that the card just read includes
+      type(place_type) :: include_place                     !! where it stands
+      type(field_type), allocatable, private :: pending(:)  !! fields of a card that continues
+      logical, private :: pending_keyword = .false.         !! that card is a keyword card
+      character(:), allocatable, private :: keyword         !! keyword to which data cards belong
+      logical, private :: skips_data = .false.              !! its data cards are of no use
+   contains
+      procedure :: take_line
+      procedure :: finish
+   end type card_lines_type
+
+contains
+
+   !> Takes one line.
+   subroutine take_line(self, line, image, cards, report)
+      class(card_lines_type), intent(inout) :: self        !! what is open
+      character(*), intent(in) :: line                     !! card image
+      integer, intent(in) :: image                         !! its running number
+      type(cards_type), intent(inout) :: cards             !! receives the card that it completes
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(field_type), allocatable :: fields(:)
+
+      if (is_blank(line)) return
+      if (is_comment(line)) return
+      if (is_keyword(line)) then
+         call self%finish(cards, report)
+         call split_fields(line, image, report, fields)
+         call take_fields(self, fields, .true., image, cards, report)
+      else if (allocated(self%pending)) then
+         call split_fields(line, image, report, fields)
+         call append_fields(self%pending, fields)
+         call move_alloc(self%pending, fields)
+         call take_fields(self, fields, self%pending_keyword, image, cards, report)
+      else
+         call take_data_line(self, line, image, cards, report)
+      end if
+   end subroutine take_line
+
+   !> Ends a card that waits for its continuation.
+   subroutine finish(self, cards, report)
+      class(card_lines_type), intent(inout) :: self        !! what is open
+      type(cards_type), intent(inout) :: cards             !! receives the card
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(field_type), allocatable :: fields(:)
+      type(place_type) :: place
+
+      if (.not. allocated(self%pending)) return
+      call move_alloc(self%pending, fields)
+      place = fields(size(fields))%place
+      call report%error(place_type(place%image, place%column - 1), &
+         'the card ends in a comma, but nothing continues it')
+      call drop_empty_end(fields)
+      if (self%pending_keyword) then
+         call take_keyword(self, fields, cards, report)
+      else
+         call take_data(self, fields, place%image, cards, report)
+      end if
+   end subroutine finish
+
+   !> Takes the fields of a card that may continue.
+   subroutine take_fields(self, fields, keyword, image, cards, report)
+      type(card_lines_type), intent(inout) :: self
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      logical, intent(in) :: keyword
+      integer, intent(in) :: image
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      logical :: continues
+
+      continues = size(fields) > 1 .and. len(fields(size(fields))%text) == 0
+      if (.not. keyword) continues = continues .and. size(fields) <= element_fields
+      if (continues) then
+         self%pending_keyword = keyword
+         call move_alloc(fields, self%pending)
+      else if (keyword) then
+         call take_keyword(self, fields, cards, report)
+      else
+         call take_data(self, fields, image, cards, report)
+      end if
+   end subroutine take_fields
+
+   !> A complete keyword card. *INCLUDE is obeyed and leaves no card: what it includes stands in its
+   !> place.
+   subroutine take_keyword(self, fields, cards, report)
+      type(card_lines_type), intent(inout) :: self
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      type(keyword_card_type) :: card
+      integer :: i
+
+      do i = 2, size(fields)
+         call self%parameters%substitute(fields(i), report)
+      end do
+      call make_keyword_card(fields, report, cards, card)
+      if (card%known > 0 .and. card%name == 'INCLUDE') then
+         call take_include(self, card, report)
+         return
+      end if
+      if (card%name == 'OPTIONS') call take_width(self, card, report)
+      self%keyword = card%name
+      self%skips_data = card%known == 0
+      if (card%known > 0) self%skips_data = known_keywords(card%known)%status /= built
+      call add_keyword(cards, card)
+   end subroutine take_keyword
+
+   subroutine take_include(self, card, report)
+      type(card_lines_type), intent(inout) :: self
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+
+      if (size(card%parameters) == 0) then
+         call report%error(card%place, '*INCLUDE needs INPUT=')
+         return
+      end if
+      self%include = card%parameters(1)%text
+      self%include_place = card%parameters(1)%value_place
+   end subroutine take_include
+
+   !> WIDTH= of *OPTIONS widens every card of the deck.
+   subroutine take_width(self, card, report)
+      type(card_lines_type), intent(inout) :: self
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      integer :: i, width
+      logical :: valid
+
+      do i = 1, size(card%parameters)
+         if (card%parameters(i)%name /= 'WIDTH') cycle
+         call read_integer(card%parameters(i)%text, width, valid)
+         if (valid) valid = width >= default_width
+         if (valid) then
+            self%width = max(self%width, width)
+         else
+            call report%error(card%parameters(i)%value_place, &
+               'WIDTH= needs a whole number of at least '// &
+               to_text(default_width))
+         end if
+      end do
+   end subroutine take_width
+
+   subroutine take_data_line(self, line, image, cards, report)
+      type(card_lines_type), intent(inout) :: self
+      character(*), intent(in) :: line
+      integer, intent(in) :: image
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      type(field_type), allocatable :: fields(:)
+
+      if (.not. allocated(self%keyword)) then
+         call report%error(place_type(image, first_text(line)), &
+            'a data card before the first keyword')
+         self%keyword = ''
+         self%skips_data = .true.
+      end if
+      if (self%skips_data) return
+      if (self%keyword == 'HEADING') then
+         allocate(fields(1))
+         fields(1)%text = line(first_text(line):last_text(line))
+         fields(1)%place = place_type(image, first_text(line))
+         call add_data(cards, fields, place_type(image, last_text(line) + 1))
+         return
+      end if
+      call split_fields(line, image, report, fields)
+      if (self%keyword == 'ELEMENT') then
+         call take_fields(self, fields, .false., image, cards, report)
+      else
+         call take_data(self, fields, image, cards, report)
+      end if
+   end subroutine take_data_line
+
+   !> A complete data card.
+   subroutine take_data(self, fields, image, cards, report)
+      type(card_lines_type), intent(inout) :: self
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      integer, intent(in) :: image
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      integer :: i
+
+      call drop_empty_end(fields)
+      do i = 1, size(fields)
+         call self%parameters%substitute(fields(i), report)
+         if (self%keyword == 'PARAMETER') then
+            call self%parameters%define(fields(i), report)
+         else if (index(fields(i)%text, '"') > 0) then
+            fields(i)%text = without_quotes(fields(i)%text)
+         end if
+      end do
+      if (self%keyword == 'PARAMETER') return
+      call add_data(cards, fields, &
+         place_type(image, last_text(report%source%images(image)%value) + 1))
+   end subroutine take_data
+
+end module card_lines

@@ -1,0 +1,152 @@
+!> Values of the parameters of a keyword card, with an error at their place where they are not what
+!> they should be.
+module card_parameters
+   use cards, only: keyword_card_type
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use kinds, only: dp
+   use text, only: append, nearest_known, read_integer, read_real, string_type, to_upper, &
+      without_blanks
+   implicit none
+   private
+   public :: has_parameter, parameter_text, parameter_place, need_parameter, take_parameter, choose
+
+   !> Value of a parameter where the card has it; else it stays as it is.
+   interface take_parameter
+      module procedure take_integer_parameter
+      module procedure take_real_parameter
+   end interface take_parameter
+
+contains
+
+   pure integer function position(card, name)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name
+
+      do position = size(card%parameters), 1, -1
+         if (card%parameters(position)%name == name) return
+      end do
+   end function position
+
+   !> Whether a card has a parameter.
+   pure logical function has_parameter(card, name)
+      type(keyword_card_type), intent(in) :: card   !! keyword card
+      character(*), intent(in) :: name              !! name as in the table of keywords
+
+      has_parameter = position(card, name) > 0
+   end function has_parameter
+
+   !> Value of a parameter as written; empty where the card does not have it.
+   pure function parameter_text(card, name) result(value)
+      type(keyword_card_type), intent(in) :: card   !! keyword card
+      character(*), intent(in) :: name              !! name as in the table of keywords
+      character(:), allocatable :: value            !! value without quotes
+
+      value = ''
+      if (has_parameter(card, name)) value = card%parameters(position(card, name))%text
+   end function parameter_text
+
+   !> Place of the value of a parameter; that of the card where it does not have it.
+   pure function parameter_place(card, name) result(place)
+      type(keyword_card_type), intent(in) :: card   !! keyword card
+      character(*), intent(in) :: name              !! name as in the table of keywords
+      type(place_type) :: place                     !! where the value stands
+
+      place = card%place
+      if (has_parameter(card, name)) place = card%parameters(position(card, name))%value_place
+   end function parameter_place
+
+   !> Value of a parameter that the card must have.
+   subroutine need_parameter(card, name, report, value)
+      type(keyword_card_type), intent(in) :: card             !! keyword card
+      character(*), intent(in) :: name                        !! name as in the table of keywords
+      type(deck_report_type), intent(inout) :: report         !! receives the error
+      character(:), allocatable, intent(out) :: value   !! value in upper case; empty after an error
+
+      value = to_upper(parameter_text(card, name))
+      if (.not. has_parameter(card, name)) then
+         call report%error(card%place, '*'//card%name//' needs '//name//'=')
+      end if
+   end subroutine need_parameter
+
+   subroutine take_integer_parameter(card, name, report, value)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(inout) :: value
+      integer :: number
+      logical :: valid
+
+      if (.not. has_parameter(card, name)) return
+      call read_integer(parameter_text(card, name), number, valid)
+      if (valid) then
+         value = number
+      else
+         call report%error(parameter_place(card, name), ''''//parameter_text(card, name)//''''// &
+            ' is not a whole number, as '//name//'= needs')
+      end if
+   end subroutine take_integer_parameter
+
+   subroutine take_real_parameter(card, name, report, value)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: value
+      real(dp) :: number
+      logical :: valid
+
+      if (.not. has_parameter(card, name)) return
+      call read_real(parameter_text(card, name), number, valid)
+      if (valid) then
+         value = number
+      else
+         call report%error(parameter_place(card, name), ''''//parameter_text(card, name)//''''// &
+            ' is not a number, as '//name//'= needs')
+      end if
+   end subroutine take_real_parameter
+
+   !> Takes one of several words.
+   subroutine choose(card, name, choices, later, report, choice)
+      type(keyword_card_type), intent(in) :: card              !! keyword card
+      character(*), intent(in) :: name                         !! parameter
+      character(*), intent(in) :: choices                      !! words, separated by slashes
+      character(*), intent(in) :: later   !! words that are not built yet, likewise
+      type(deck_report_type), intent(inout) :: report          !! receives the error
+      character(:), allocatable, intent(inout) :: choice   !! the word as in choices; else as it was
+      type(string_type), allocatable :: words(:)
+      character(:), allocatable :: wanted
+      integer :: i
+
+      if (.not. has_parameter(card, name)) return
+      wanted = to_upper(without_blanks(parameter_text(card, name)))
+      words = split_words(choices)
+      do i = 1, size(words)
+         if (without_blanks(words(i)%value) /= wanted) cycle
+         choice = words(i)%value
+         return
+      end do
+      if (index('/'//without_blanks(later)//'/', '/'//wanted//'/') > 0) then
+         call report%error(parameter_place(card, name), name//'='//wanted//' on *'//card%name// &
+            ' is not built yet')
+      else
+         call report%error(parameter_place(card, name), 'unknown '//name//'='//wanted//' of *'// &
+            card%name//nearest_known(wanted, words))
+      end if
+   end subroutine choose
+
+   pure function split_words(choices) result(words)
+      character(*), intent(in) :: choices
+      type(string_type), allocatable :: words(:)
+      integer :: first, slash
+
+      first = 1
+      do
+         slash = index(choices(first:), '/')
+         if (slash == 0) exit
+         call append(words, choices(first:first + slash - 2))
+         first = first + slash
+      end do
+      call append(words, choices(first:))
+   end function split_words
+
+end module card_parameters

@@ -1,0 +1,157 @@
+!> Values of the fields of a data card, with an error at their place where they are not what they
+!> should be.
+module card_values
+   use cards, only: data_card_type
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use kinds, only: dp
+   use text, only: read_integer, read_real
+   implicit none
+   private
+   public :: has_field, field_text, field_place, need_field, take_field, check_extra
+
+   !> Value of a field; an error where it is missing.
+   interface need_field
+      module procedure need_text_field
+      module procedure need_integer_field
+      module procedure need_real_field
+   end interface need_field
+
+   !> Value of a field where the card has it; else it stays as it is.
+   interface take_field
+      module procedure take_integer_field
+      module procedure take_real_field
+   end interface take_field
+
+contains
+
+   !> Whether a data card has a field that is not empty.
+   pure logical function has_field(data, i)
+      type(data_card_type), intent(in) :: data   !! data card
+      integer, intent(in) :: i                   !! position, from 1
+
+      has_field = i <= size(data%fields)
+      if (has_field) has_field = len(data%fields(i)%text) > 0
+   end function has_field
+
+   !> A field as written; empty where the card does not have it.
+   pure function field_text(data, i) result(string)
+      type(data_card_type), intent(in) :: data   !! data card
+      integer, intent(in) :: i                   !! position, from 1
+      character(:), allocatable :: string        !! the field
+
+      string = ''
+      if (i <= size(data%fields)) string = data%fields(i)%text
+   end function field_text
+
+   !> Place of a field; the end of the card where it does not have it.
+   pure function field_place(data, i) result(place)
+      type(data_card_type), intent(in) :: data   !! data card
+      integer, intent(in) :: i                   !! position, from 1
+      type(place_type) :: place                  !! where it stands
+
+      place = data%end
+      if (i <= size(data%fields)) place = data%fields(i)%place
+   end function field_place
+
+   !> Reports the first field that a card has too many.
+   subroutine check_extra(data, most, layout, report)
+      type(data_card_type), intent(in) :: data            !! data card
+      integer, intent(in) :: most                         !! most fields
+      character(*), intent(in) :: layout                  !! what a card of its keyword holds
+      type(deck_report_type), intent(inout) :: report     !! receives the error
+
+      if (size(data%fields) <= most) return
+      call report%error(field_place(data, most + 1), 'extra field; the card is '//layout)
+   end subroutine check_extra
+
+   subroutine need_text_field(data, i, what, report, value, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      character(*), intent(in) :: what
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable, intent(inout) :: value
+      logical, intent(inout) :: valid
+
+      value = field_text(data, i)
+      if (len(value) == 0) call report_missing(data, i, what, report, valid)
+   end subroutine need_text_field
+
+   subroutine need_integer_field(data, i, what, report, value, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      character(*), intent(in) :: what
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(inout) :: value
+      logical, intent(inout) :: valid
+
+      call take_field(data, i, what, report, value, valid)
+      if (.not. has_field(data, i)) call report_missing(data, i, what, report, valid)
+   end subroutine need_integer_field
+
+   subroutine need_real_field(data, i, what, report, value, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      character(*), intent(in) :: what
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: value
+      logical, intent(inout) :: valid
+
+      call take_field(data, i, what, report, value, valid)
+      if (.not. has_field(data, i)) call report_missing(data, i, what, report, valid)
+   end subroutine need_real_field
+
+   subroutine report_missing(data, i, what, report, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      character(*), intent(in) :: what
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+
+      call report%error(field_place(data, i), 'missing field: '//what)
+      valid = .false.
+   end subroutine report_missing
+
+   subroutine take_integer_field(data, i, what, report, value, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      character(*), intent(in) :: what
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(inout) :: value
+      logical, intent(inout) :: valid
+      integer :: number
+      logical :: is_number
+
+      if (.not. has_field(data, i)) return
+      call read_integer(data%fields(i)%text, number, is_number)
+      if (is_number) then
+         value = number
+      else
+         call report%error(field_place(data, i), ''''//data%fields(i)%text//''''// &
+            ' is not a whole number; expected: '//what)
+         valid = .false.
+      end if
+   end subroutine take_integer_field
+
+   subroutine take_real_field(data, i, what, report, value, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      character(*), intent(in) :: what
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: value
+      logical, intent(inout) :: valid
+      real(dp) :: number
+      logical :: is_number
+
+      if (.not. has_field(data, i)) return
+      call read_real(data%fields(i)%text, number, is_number)
+      if (is_number) then
+         value = number
+      else
+         call report%error(field_place(data, i), ''''//data%fields(i)%text//''''// &
+            ' is not a number; expected: '//what)
+         valid = .false.
+      end if
+   end subroutine take_real_field
+
+end module card_values

@@ -1,0 +1,143 @@
+!> The cards of a deck: what stands in its lines, before anything is known of its meaning.
+module cards
+   use deck_source, only: place_type
+   use text, only: append, string_type
+   implicit none
+   private
+   public :: cards_type, keyword_card_type, data_card_type, parameter_type, field_type
+   public :: add_keyword, add_data, add_note, trim_cards
+
+   !> One field of a card.
+   type :: field_type
+      character(:), allocatable :: text   !! without blanks around it, quotes and <names>
+      type(place_type) :: place           !! where it begins
+   end type field_type
+
+   !> One parameter of a keyword card.
+   type :: parameter_type
+      character(:), allocatable :: name   !! as in the table of keywords
+      character(:), allocatable :: text   !! its value without quotes, empty where it has none
+      type(place_type) :: place           !! where its name begins
+      type(place_type) :: value_place     !! where its value begins
+   end type parameter_type
+
+   !> One keyword card.
+   type :: keyword_card_type
+      character(:), allocatable :: name                 !! as in the table; empty when unknown
+      character(:), allocatable :: meant   !! the keyword that an unknown one is close to, or empty
+      integer :: known = 0   !! index into known_keywords; 0 for an unknown one
+      type(place_type) :: place                         !! where it begins
+      type(parameter_type), allocatable :: parameters(:) !! those that are known
+      integer :: first_data = 1                         !! its data cards, indexes into cards%data
+      integer :: last_data = 0                          !! the last of them
+   end type keyword_card_type
+
+   !> One data card, continuations included.
+   type :: data_card_type
+      type(field_type), allocatable :: fields(:)   !! its fields, empty ones at its end left out
+      type(place_type) :: end                      !! where a missing field would stand
+   end type data_card_type
+
+   !> All cards of a deck.
+   type :: cards_type
+      character(:), allocatable :: path                        !! the deck as given
+      type(string_type), allocatable :: images(:)  !! all lines as read, those of included files too
+      type(keyword_card_type), allocatable :: keywords(:)      !! keyword cards
+      type(data_card_type), allocatable :: data(:)             !! data cards
+      type(place_type) :: last                                 !! last line of the deck
+      type(string_type), allocatable :: notes(:)   !! parameters that were read and are not needed
+      integer :: keyword_count = 0   !! keyword cards so far, while reading
+      integer :: data_count = 0                                !! data cards so far, while reading
+   end type cards_type
+
+contains
+
+   !> Adds a keyword card.
+   subroutine add_keyword(cards, card)
+      type(cards_type), intent(inout) :: cards       !! the cards
+      type(keyword_card_type), intent(in) :: card    !! what is added
+
+      if (.not. allocated(cards%keywords)) allocate(cards%keywords(64))
+      if (cards%keyword_count == size(cards%keywords)) then
+         call resize_keywords(cards%keywords, cards%keyword_count, 2*cards%keyword_count)
+      end if
+      cards%keyword_count = cards%keyword_count + 1
+      cards%keywords(cards%keyword_count) = card
+      cards%keywords(cards%keyword_count)%first_data = cards%data_count + 1
+      cards%keywords(cards%keyword_count)%last_data = cards%data_count
+   end subroutine add_keyword
+
+   !> Adds a data card to the last keyword card.
+   subroutine add_data(cards, fields, end)
+      type(cards_type), intent(inout) :: cards                      !! the cards
+      type(field_type), allocatable, intent(inout) :: fields(:)     !! fields, handed over
+      type(place_type), intent(in) :: end   !! where a missing field would stand
+
+      if (.not. allocated(cards%data)) allocate(cards%data(1024))
+      if (cards%data_count == size(cards%data)) then
+         call resize_data(cards%data, cards%data_count, 2*cards%data_count)
+      end if
+      cards%data_count = cards%data_count + 1
+      call move_alloc(fields, cards%data(cards%data_count)%fields)
+      cards%data(cards%data_count)%end = end
+      cards%keywords(cards%keyword_count)%last_data = cards%data_count
+   end subroutine add_data
+
+   !> Adds a note for the listing.
+   subroutine add_note(notes, line)
+      type(string_type), allocatable, intent(inout) :: notes(:)   !! the notes
+      character(*), intent(in) :: line                            !! what is added, once
+      integer :: i
+
+      if (allocated(notes)) then
+         do i = 1, size(notes)
+            if (notes(i)%value == line) return
+         end do
+      end if
+      call append(notes, line)
+   end subroutine add_note
+
+   !> Cuts the lists to what they hold, once reading has ended.
+   subroutine trim_cards(cards)
+      type(cards_type), intent(inout) :: cards       !! the cards
+
+      if (.not. allocated(cards%keywords)) allocate(cards%keywords(0))
+      if (.not. allocated(cards%data)) allocate(cards%data(0))
+      call resize_keywords(cards%keywords, cards%keyword_count, cards%keyword_count)
+      call resize_data(cards%data, cards%data_count, cards%data_count)
+   end subroutine trim_cards
+
+   subroutine resize_keywords(list, kept, length)
+      type(keyword_card_type), allocatable, intent(inout) :: list(:)
+      integer, intent(in) :: kept, length
+      type(keyword_card_type), allocatable :: other(:)
+      integer :: i
+
+      allocate(other(length))
+      do i = 1, kept
+         call move_alloc(list(i)%name, other(i)%name)
+         call move_alloc(list(i)%meant, other(i)%meant)
+         call move_alloc(list(i)%parameters, other(i)%parameters)
+         other(i)%known = list(i)%known
+         other(i)%place = list(i)%place
+         other(i)%first_data = list(i)%first_data
+         other(i)%last_data = list(i)%last_data
+      end do
+      call move_alloc(other, list)
+   end subroutine resize_keywords
+
+   subroutine resize_data(list, kept, length)
+      type(data_card_type), allocatable, intent(inout) :: list(:)
+      integer, intent(in) :: kept, length
+      type(data_card_type), allocatable :: other(:)
+      integer :: i
+
+      allocate(other(length))
+      do i = 1, kept
+         call move_alloc(list(i)%fields, other(i)%fields)
+         other(i)%end = list(i)%end
+      end do
+      call move_alloc(other, list)
+   end subroutine resize_data
+
+end module cards

@@ -1,0 +1,137 @@
+!> Cards -> model. The cards are taken by theme, so that their order matters only where the dialect
+!> says so.
+module deck_builder
+   use bodies, only: find_bodies
+   use cards, only: cards_type
+   use controls, only: method_picard
+   use deck_builder_contact, only: build_contacts
+   use deck_builder_courses, only: build_amplitudes, build_temperatures
+   use deck_builder_interactions, only: build_interactions
+   use deck_builder_load_axis, only: build_load_axis
+   use deck_builder_materials, only: build_materials
+   use deck_builder_mesh, only: build_elements, build_nodes
+   use deck_builder_options, only: build_options
+   use deck_builder_sections, only: build_sections
+   use deck_builder_sets, only: build_sets
+   use deck_builder_steps, only: build_steps
+   use deck_builder_surfaces, only: build_surfaces
+   use deck_builder_verify, only: build_verifications
+   use deck_checks, only: check_model
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use deck_structure, only: card_count, check_structure
+   use load_application, only: apply_boundaries, apply_loads, apply_temperatures
+   use model, only: model_type
+   use refinement, only: refine
+   use steps, only: analysis_coupled, analysis_static, dof_temperature
+   use text, only: to_text
+   implicit none
+   private
+   public :: build_model
+
+contains
+
+   !> Builds the model that a deck describes; it is usable only if the report then has no errors.
+   subroutine build_model(cards, model, report)
+      type(cards_type), intent(in) :: cards               !! the cards, as read_deck left them
+      type(model_type), intent(out) :: model              !! the model
+      type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
+      type(deck_context_type) :: context
+      integer :: i, deck_nodes
+
+      if (size(cards%keywords) == 0) return
+      if (allocated(cards%notes)) then
+         do i = 1, size(cards%notes)
+            call context%note(cards%notes(i)%value)
+         end do
+      end if
+      call check_structure(cards, report)
+      call build_options(cards, context, model, report)
+      call build_nodes(cards, context, model%mesh, report)
+      call build_elements(cards, context, model%mesh, report)
+      call build_sets('node', cards, context%node_index, report, model%mesh%node_sets)
+      call build_sets('element', cards, context%element_index, report, model%mesh%element_sets)
+      call build_surfaces(cards, context, model%mesh, report)
+      call build_materials(cards, context, model, report)
+      call build_sections(cards, context, model, report)
+      call build_amplitudes(cards, model, report)
+      call build_temperatures(cards, context, model, report)
+      call build_interactions(cards, context, model, report)
+      call build_contacts(cards, context, model, report)
+      call build_steps(cards, context, model, report)
+      call build_verifications(cards, context, model, report)
+      call build_load_axis(context, model, report)
+      call check_model(context, model, report)
+      if (.not. report%has_errors()) then
+         call drop_idle_heat(context, model)
+         call apply_loads(context, model, report)
+         deck_nodes = size(model%mesh%node_number)
+         call apply_temperatures(context, deck_nodes, .true., model)
+         call refine(model, context%levels)
+         call apply_temperatures(context, deck_nodes, .false., model)
+         call apply_boundaries(context, model)
+         call find_bodies(model%mesh)
+         call note_defaults(cards, context, model)
+      end if
+      call take_notes(context, model)
+      model%warnings = report%warnings()
+   end subroutine build_model
+
+   !> A step in which no temperature has been prescribed solves no heat.
+   subroutine drop_idle_heat(context, model)
+      type(deck_context_type), intent(inout) :: context
+      type(model_type), intent(inout) :: model
+      integer :: first, i, s
+
+      first = size(model%steps) + 1
+      do i = 1, context%boundaries%count
+         if (context%boundaries%items(i)%component == dof_temperature) then
+            first = min(first, max(1, context%boundaries%items(i)%step))
+         end if
+      end do
+      do s = 1, first - 1
+         if (model%steps(s)%analysis /= analysis_coupled) cycle
+         model%steps(s)%analysis = analysis_static
+         call context%note('step '//to_text(s)//' solves no heat: no temperature is prescribed')
+      end do
+   end subroutine drop_idle_heat
+
+   !> Notes the defaults of what the deck does not say at all.
+   subroutine note_defaults(cards, context, model)
+      type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(inout) :: context
+      type(model_type), intent(in) :: model
+      character(:), allocatable :: method
+
+      if (context%temperatures%count == 0) then
+         call context%note('no *INITIAL CONDITIONS: the initial temperature is 0')
+      end if
+      if (card_count(cards, 'SOLVER') == 0) call context%note('no *SOLVER: SKYLINE')
+      if (.not. any(model%materials%has_expansion)) then
+         call context%note('no *EXPANSION: temperatures do not strain the bodies')
+      else if (.not. all(model%materials%has_expansion)) then
+         call context%note('a material without *EXPANSION: coefficient 0')
+      end if
+      if (.not. any(model%steps%analysis == analysis_coupled)) return
+      if (card_count(cards, 'THERMAL SCHEME') == 0) then
+         call context%note('no *THERMAL SCHEME: IMPLICIT')
+      end if
+      if (size(model%contacts) == 0) return
+      associate (fixed_point => model%steps(1)%fixed_point)
+         method = 'ZAITSEV'
+         if (fixed_point%method == method_picard) method = 'PICARD'
+         call context%note('*FIXED POINT in step 1: METHOD='//method//', TOL='// &
+            to_text(fixed_point%tolerance)//', MAXITER='//to_text(fixed_point%max_iterations)// &
+            ', G='//to_text(fixed_point%g)//', CONSTANT='//to_text(fixed_point%constant))
+      end associate
+   end subroutine note_defaults
+
+   subroutine take_notes(context, model)
+      type(deck_context_type), intent(inout) :: context
+      type(model_type), intent(inout) :: model
+
+      if (.not. allocated(context%notes)) allocate(context%notes(0))
+      call move_alloc(context%notes, model%notes)
+   end subroutine take_notes
+
+end module deck_builder

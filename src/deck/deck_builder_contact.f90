@@ -1,0 +1,116 @@
+!> *CONTACT PAIR -> contact between surfaces.
+module deck_builder_contact
+   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
+   use card_values, only: check_extra, field_place, need_field
+   use cards, only: cards_type, data_card_type, keyword_card_type
+   use contact_definitions, only: contact_definition_type
+   use deck_builder_interactions, only: find_interaction
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use deck_structure, only: card_count
+   use mesh, only: mesh_type
+   use model, only: model_type
+   use text, only: nearest_known, string_type, to_upper
+   implicit none
+   private
+   public :: build_contacts
+
+contains
+
+   !> Takes all contact pairs.
+   subroutine build_contacts(cards, context, model, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(model_type), intent(inout) :: model             !! receives the pairs
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: k, n
+
+      allocate(model%contacts(card_count(cards, 'CONTACT PAIR')))
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'CONTACT PAIR') cycle
+         n = n + 1
+         call build_contact(cards, cards%keywords(k), context, model, report, model%contacts(n))
+         call check_name(cards%keywords(k), model%contacts(:n), report)
+      end do
+   end subroutine build_contacts
+
+   subroutine build_contact(cards, card, context, model, report, contact)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(contact_definition_type), intent(out) :: contact
+      character(:), allocatable :: name
+      type(string_type), allocatable :: names(:)
+      integer :: i
+
+      call need_parameter(card, 'INTERACTION', report, name)
+      contact%interaction = find_interaction(model%interactions, name)
+      if (contact%interaction == 0 .and. len(name) > 0) then
+         allocate(names(size(model%interactions)))
+         do i = 1, size(names)
+            names(i)%value = model%interactions(i)%name
+         end do
+         call report%error(parameter_place(card, 'INTERACTION'), 'unknown surface interaction '// &
+            name//nearest_known(name, names))
+      end if
+      contact%name = parameter_text(card, 'NAME')
+      if (card%last_data < card%first_data) return
+      associate (data => cards%data(card%first_data))
+         call read_surface(data, 1, 'slave surface', model%mesh, report, contact%slave)
+         call read_surface(data, 2, 'master surface', model%mesh, report, contact%master)
+         call check_extra(data, 2, 'slave surface, master surface', report)
+         if (contact%slave > 0 .and. contact%slave == contact%master) then
+            call report%error(field_place(data, 2), 'a surface cannot be in contact with itself')
+         end if
+         if (has_parameter(card, 'NAME')) return
+         if (size(data%fields) > 0) contact%name = data%fields(1)%text
+         call context%note('*CONTACT PAIR without NAME=: '//contact%name//', the slave surface')
+      end associate
+   end subroutine build_contact
+
+   subroutine read_surface(data, position, what, mesh, report, surface)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position
+      character(*), intent(in) :: what
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(inout) :: surface
+      character(:), allocatable :: name
+      type(string_type), allocatable :: names(:)
+      integer :: i
+      logical :: valid
+
+      valid = .true.
+      call need_field(data, position, what, report, name, valid)
+      if (.not. valid) return
+      allocate(names(size(mesh%surfaces)))
+      do i = 1, size(names)
+         names(i)%value = mesh%surfaces(i)%name
+         if (names(i)%value == to_upper(name)) surface = i
+      end do
+      if (surface == 0) call report%error(field_place(data, position), 'unknown surface '// &
+         to_upper(name)//nearest_known(name, names))
+   end subroutine read_surface
+
+   !> A name stands for a group of the result file: it is used once, and holds no slash.
+   subroutine check_name(card, contacts, report)
+      type(keyword_card_type), intent(in) :: card
+      type(contact_definition_type), intent(in) :: contacts(:)
+      type(deck_report_type), intent(inout) :: report
+      integer :: i, n
+
+      n = size(contacts)
+      do i = 1, n - 1
+         if (to_upper(contacts(i)%name) == to_upper(contacts(n)%name)) then
+            call report%error(parameter_place(card, 'NAME'), 'contact pair '//contacts(n)%name// &
+               ' is defined twice')
+         end if
+      end do
+      if (scan(contacts(n)%name, '/@') > 0) call report%error(parameter_place(card, 'NAME'), &
+         'the name of a contact pair holds no / and no @')
+   end subroutine check_name
+
+end module deck_builder_contact

@@ -1,0 +1,115 @@
+!> *AMPLITUDE and *INITIAL CONDITIONS: what loads and temperatures start from and follow.
+module deck_builder_courses
+   use amplitudes, only: amplitude_type
+   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place
+   use card_values, only: check_extra, field_place, need_field
+   use cards, only: cards_type, keyword_card_type
+   use deck_context, only: deck_context_type, read_target
+   use deck_report, only: deck_report_type
+   use deck_structure, only: card_count
+   use kinds, only: dp
+   use load_requests, only: request_type
+   use model, only: model_type
+   implicit none
+   private
+   public :: build_amplitudes, build_temperatures, find_amplitude
+
+contains
+
+   !> Takes all amplitudes.
+   subroutine build_amplitudes(cards, model, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(model_type), intent(inout) :: model             !! receives the amplitudes
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: k, n
+
+      allocate(model%amplitudes(card_count(cards, 'AMPLITUDE')))
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'AMPLITUDE') cycle
+         n = n + 1
+         call build_amplitude(cards, cards%keywords(k), report, model%amplitudes(n))
+         if (find_amplitude(model%amplitudes(:n - 1), model%amplitudes(n)%name) > 0) then
+            call report%error(parameter_place(cards%keywords(k), 'NAME'), &
+               'amplitude '//model%amplitudes(n)%name//' is defined twice')
+         end if
+      end do
+   end subroutine build_amplitudes
+
+   !> Index of an amplitude by its name; 0 for an unknown one.
+   pure integer function find_amplitude(amplitudes, name)
+      type(amplitude_type), intent(in) :: amplitudes(:)   !! amplitudes
+      character(*), intent(in) :: name                    !! name in upper case
+
+      do find_amplitude = size(amplitudes), 1, -1
+         if (amplitudes(find_amplitude)%name == name) return
+      end do
+   end function find_amplitude
+
+   !> Pairs of time and value, any number of them a card.
+   subroutine build_amplitude(cards, card, report, amplitude)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      type(amplitude_type), intent(out) :: amplitude
+      character(:), allocatable :: kind
+      integer :: j, i, n
+      logical :: valid
+
+      call need_parameter(card, 'NAME', report, amplitude%name)
+      kind = 'STEP TIME'
+      call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', '', report, kind)
+      amplitude%total_time = kind == 'TOTAL TIME'
+      n = 0
+      do j = card%first_data, card%last_data
+         n = n + (size(cards%data(j)%fields) + 1)/2
+      end do
+      allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
+      n = 0
+      do j = card%first_data, card%last_data
+         do i = 1, size(cards%data(j)%fields), 2
+            n = n + 1
+            valid = .true.
+            call need_field(cards%data(j), i, 'time', report, amplitude%times(n), valid)
+            call need_field(cards%data(j), i + 1, 'value', report, amplitude%values(n), valid)
+            if (n < 2 .or. .not. valid) cycle
+            if (amplitude%times(n) <= amplitude%times(n - 1)) then
+               call report%error(field_place(cards%data(j), i), 'times must ascend')
+            end if
+         end do
+      end do
+   end subroutine build_amplitude
+
+   !> Takes all initial temperatures.
+   subroutine build_temperatures(cards, context, model, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(inout) :: context    !! receives the requests
+      type(model_type), intent(in) :: model                !! mesh and its sets
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(request_type) :: request
+      character(:), allocatable :: kind
+      integer :: k, j
+      logical :: valid
+
+      do k = 1, size(cards%keywords)
+         associate (card => cards%keywords(k))
+            if (card%name /= 'INITIAL CONDITIONS') cycle
+            kind = ''
+            if (.not. has_parameter(card, 'TYPE')) then
+               call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE')
+            end if
+            call choose(card, 'TYPE', 'TEMPERATURE', '', report, kind)
+            if (kind /= 'TEMPERATURE') cycle
+            do j = card%first_data, card%last_data
+               valid = .true.
+               call read_target(cards%data(j), 1, 'node', context%node_index, &
+                  model%mesh%node_sets, report, request%item, request%set, valid)
+               call need_field(cards%data(j), 2, 'temperature', report, request%value, valid)
+               call check_extra(cards%data(j), 2, 'node or set, temperature', report)
+               if (valid) call context%temperatures%add(request)
+            end do
+         end associate
+      end do
+   end subroutine build_temperatures
+
+end module deck_builder_courses

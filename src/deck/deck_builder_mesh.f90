@@ -1,0 +1,180 @@
+!> *NODE and *ELEMENT -> nodes and elements of the mesh.
+module deck_builder_mesh
+   use card_parameters, only: need_parameter, parameter_place
+   use card_values, only: check_extra, field_place, has_field, need_field, take_field
+   use cards, only: cards_type, data_card_type
+   use deck_context, only: deck_context_type, plane_strain
+   use deck_report, only: deck_report_type
+   use element_types, only: check_element_type
+   use kinds, only: dp
+   use mesh, only: mesh_type, nodes_per_element
+   use sorting, only: repeated
+   use text, only: to_text
+   implicit none
+   private
+   public :: build_nodes, build_elements, data_card_count
+
+contains
+
+   !> Number of data cards of all keyword cards of a name.
+   pure integer function data_card_count(cards, name)
+      type(cards_type), intent(in) :: cards   !! the cards
+      character(*), intent(in) :: name        !! name as in the table of keywords
+      integer :: k
+
+      data_card_count = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= name) cycle
+         data_card_count = data_card_count + cards%keywords(k)%last_data - &
+            cards%keywords(k)%first_data + 1
+      end do
+   end function data_card_count
+
+   !> Takes the nodes, in the order of the deck.
+   subroutine build_nodes(cards, context, mesh, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(inout) :: context    !! receives the numbers
+      type(mesh_type), intent(inout) :: mesh               !! receives the nodes
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, allocatable :: card(:)
+      integer :: k, j, n
+
+      n = data_card_count(cards, 'NODE')
+      allocate(mesh%node_number(n), mesh%coordinates(2, n), card(n))
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'NODE') cycle
+         do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
+            n = n + 1
+            card(n) = j
+            call build_node(cards%data(j), context, report, mesh%node_number(n), &
+               mesh%coordinates(:, n))
+         end do
+      end do
+      call check_repeated('node', cards, card, mesh%node_number, report)
+      call context%node_index%build(mesh%node_number)
+   end subroutine build_nodes
+
+   subroutine build_node(data, context, report, number, coordinates)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: number
+      real(dp), intent(out) :: coordinates(2)
+      real(dp) :: z
+      logical :: valid
+
+      valid = .true.
+      coordinates = 0.0_dp
+      z = 0.0_dp
+      call read_number(data, 'node number', report, number)
+      call need_field(data, 2, 'x', report, coordinates(1), valid)
+      call need_field(data, 3, 'y', report, coordinates(2), valid)
+      call take_field(data, 4, 'z', report, z, valid)
+      call check_extra(data, 4, 'number, x, y', report)
+      if (.not. has_field(data, 4)) return
+      if (abs(z) > 0.0_dp) then
+         call report%error(field_place(data, 4), 'models are two-dimensional: z must be 0')
+      else
+         call context%note('*NODE: third coordinates of 0 are read and not needed')
+      end if
+   end subroutine build_node
+
+   !> The number of a node or element, from 1; 0 after an error.
+   subroutine read_number(data, what, report, number)
+      type(data_card_type), intent(in) :: data
+      character(*), intent(in) :: what
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: number
+      logical :: valid
+
+      number = 0
+      valid = .true.
+      call need_field(data, 1, what, report, number, valid)
+      if (.not. valid) return
+      if (number < 1) call report%error(field_place(data, 1), 'numbers begin with 1')
+   end subroutine read_number
+
+   subroutine check_repeated(noun, cards, card, numbers, report)
+      character(*), intent(in) :: noun
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: card(:), numbers(:)
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: places(:)
+      integer :: i
+
+      places = repeated(numbers)
+      do i = 1, size(places)
+         if (numbers(places(i)) < 1) cycle
+         call report%error(field_place(cards%data(card(places(i))), 1), &
+            noun//' '//to_text(numbers(places(i)))//' is defined twice')
+      end do
+   end subroutine check_repeated
+
+   !> Takes the elements, in the order of the deck; one of a type that cannot be used keeps its
+   !> number only.
+   subroutine build_elements(cards, context, mesh, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(inout) :: context    !! receives the numbers
+      type(mesh_type), intent(inout) :: mesh               !! receives the elements
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: name, message
+      integer, allocatable :: card(:)
+      integer :: k, j, n
+
+      n = data_card_count(cards, 'ELEMENT')
+      allocate(mesh%element_number(n), mesh%element_section(n), card(n))
+      allocate(mesh%element_nodes(nodes_per_element, n), source=0)
+      allocate(context%element_place(n))
+      allocate(context%element_valid(n), source=.false.)
+      mesh%element_section = 0
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'ELEMENT') cycle
+         call need_parameter(cards%keywords(k), 'TYPE', report, name)
+         message = ''
+         if (len(name) > 0) message = check_element_type(name, context%plane == plane_strain)
+         if (len(message) > 0) call report%error(parameter_place(cards%keywords(k), 'TYPE'), &
+            message)
+         do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
+            n = n + 1
+            card(n) = j
+            context%element_place(n) = field_place(cards%data(j), 1)
+            call read_number(cards%data(j), 'element number', report, mesh%element_number(n))
+            if (len(name) == 0 .or. len(message) > 0) cycle
+            call read_element_nodes(cards%data(j), context, report, mesh%element_nodes(:, n), &
+               context%element_valid(n))
+         end do
+      end do
+      call check_repeated('element', cards, card, mesh%element_number, report)
+      call context%element_index%build(mesh%element_number)
+   end subroutine build_elements
+
+   subroutine read_element_nodes(data, context, report, nodes, valid)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(inout) :: nodes(:)
+      logical, intent(out) :: valid
+      integer :: q, number
+      logical :: is_number
+
+      valid = .true.
+      do q = 1, size(nodes)
+         is_number = .true.
+         call need_field(data, q + 1, 'node '//to_text(q), report, number, is_number)
+         valid = valid .and. is_number
+         if (.not. is_number) then
+            if (q + 1 > size(data%fields)) exit
+            cycle
+         end if
+         nodes(q) = context%node_index%find(number)
+         valid = valid .and. nodes(q) > 0
+         if (nodes(q) == 0 .and. .not. context%node_index%is_empty()) then
+            call report%error(field_place(data, q + 1), 'there is no node '//to_text(number))
+         end if
+      end do
+      call check_extra(data, size(nodes) + 1, 'element, 4 corners, 4 midside nodes', report)
+   end subroutine read_element_nodes
+
+end module deck_builder_mesh

@@ -1,0 +1,123 @@
+!> *HEADING, *OPTIONS, *SOLVER and *REFINE.
+module deck_builder_options
+   use card_parameters, only: choose, has_parameter, parameter_place, parameter_text, &
+      take_parameter
+   use cards, only: cards_type, keyword_card_type
+   use controls, only: solver_mumps, solver_skyline
+   use deck_context, only: deck_context_type, plane_strain
+   use deck_report, only: deck_report_type
+   use model, only: model_type
+   use text, only: to_text, to_upper
+   implicit none
+   private
+   public :: build_options
+
+   integer, parameter :: most_levels = 12   !! *REFINE: 4**12 elements of each one
+
+contains
+
+   !> Takes *HEADING, *OPTIONS, *SOLVER and *REFINE.
+   subroutine build_options(cards, context, model, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(inout) :: context    !! receives plane, levels, load axis
+      type(model_type), intent(inout) :: model             !! receives heading, units, solver
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: k
+
+      model%heading = ''
+      model%units%length = ''
+      model%units%stress = ''
+      model%units%power = ''
+      model%units%temperature = ''
+      do k = 1, size(cards%keywords)
+         associate (card => cards%keywords(k))
+            select case (card%name)
+            case ('HEADING')
+               if (card%last_data < card%first_data .or. len(model%heading) > 0) cycle
+               model%heading = cards%data(card%first_data)%fields(1)%text
+            case ('OPTIONS')
+               call build_option_card(card, context, model, report)
+            case ('SOLVER')
+               call build_solver(card, model, report)
+            case ('REFINE')
+               call build_levels(card, context, report)
+            case ('CONTROLS', 'SPECIFIC HEAT')
+               call context%note('*'//card%name//' is read and not needed')
+            case default
+               cycle
+            end select
+         end associate
+      end do
+   end subroutine build_options
+
+   subroutine build_option_card(card, context, model, report)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(model_type), intent(inout) :: model
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: plane
+
+      plane = ''
+      call choose(card, 'PLANE', 'STRAIN', 'STRESS/AXISYMMETRIC', report, plane)
+      if (plane == 'STRAIN') context%plane = plane_strain
+      if (has_parameter(card, 'UNITS')) call build_units(card, model, report)
+      if (.not. has_parameter(card, 'LOAD')) return
+      context%load_set = to_upper(parameter_text(card, 'LOAD'))
+      context%load_place = parameter_place(card, 'LOAD')
+   end subroutine build_option_card
+
+   !> UNITS="length stress power temperature".
+   subroutine build_units(card, model, report)
+      type(keyword_card_type), intent(in) :: card
+      type(model_type), intent(inout) :: model
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: rest
+      character(len(parameter_text(card, 'UNITS'))) :: words(4)
+      integer :: i, blank
+
+      rest = trim(adjustl(parameter_text(card, 'UNITS')))
+      words = ''
+      do i = 1, 4
+         blank = index(rest//' ', ' ')
+         words(i) = rest(:blank - 1)
+         rest = trim(adjustl(rest(blank:)))
+      end do
+      if (len(rest) > 0 .or. words(4) == '') then
+         call report%error(parameter_place(card, 'UNITS'), &
+            'UNITS= has four words: length, stress, power, temperature')
+         return
+      end if
+      model%units%length = trim(words(1))
+      model%units%stress = trim(words(2))
+      model%units%power = trim(words(3))
+      model%units%temperature = trim(words(4))
+   end subroutine build_units
+
+   subroutine build_solver(card, model, report)
+      type(keyword_card_type), intent(in) :: card
+      type(model_type), intent(inout) :: model
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: kind
+
+      kind = ''
+      if (.not. has_parameter(card, 'TYPE')) call report%error(card%place, '*SOLVER needs TYPE=')
+      call choose(card, 'TYPE', 'SKYLINE/MUMPS', '', report, kind)
+      if (kind == 'SKYLINE') model%solver = solver_skyline
+      if (kind == 'MUMPS') model%solver = solver_mumps
+   end subroutine build_solver
+
+   subroutine build_levels(card, context, report)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+
+      if (.not. has_parameter(card, 'LEVELS')) call report%error(card%place, &
+         '*REFINE needs LEVELS=')
+      call take_parameter(card, 'LEVELS', report, context%levels)
+      if (context%levels >= 0 .and. context%levels <= most_levels) return
+      call report%error(parameter_place(card, 'LEVELS'), 'LEVELS= must lie between 0 and '// &
+         to_text(most_levels))
+      context%levels = 0
+   end subroutine build_levels
+
+end module deck_builder_options

@@ -1,0 +1,103 @@
+!> *SOLID SECTION -> material and thickness of elements.
+module deck_builder_sections
+   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
+   use card_values, only: check_extra, field_place, take_field
+   use cards, only: cards_type, keyword_card_type
+   use deck_builder_materials, only: find_material
+   use deck_context, only: deck_context_type, find_set, set_names
+   use deck_report, only: deck_report_type
+   use deck_structure, only: card_count
+   use kinds, only: dp
+   use materials, only: section_type
+   use mesh, only: mesh_type
+   use model, only: model_type
+   use text, only: nearest_known, string_type, to_text, to_upper
+   implicit none
+   private
+   public :: build_sections
+
+contains
+
+   !> Takes all sections, and gives the elements theirs.
+   subroutine build_sections(cards, context, model, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(model_type), intent(inout) :: model             !! receives the sections
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: k, n
+
+      allocate(model%sections(card_count(cards, 'SOLID SECTION')))
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'SOLID SECTION') cycle
+         n = n + 1
+         call build_section(cards, cards%keywords(k), context, model, report, model%sections(n))
+         call give_section(cards%keywords(k), n, model%mesh, report)
+      end do
+   end subroutine build_sections
+
+   subroutine build_section(cards, card, context, model, report, section)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(section_type), intent(out) :: section
+      character(:), allocatable :: name
+      type(string_type), allocatable :: names(:)
+      integer :: i
+      logical :: valid
+
+      call need_parameter(card, 'MATERIAL', report, name)
+      section%material = find_material(model%materials, name)
+      if (section%material == 0 .and. len(name) > 0) then
+         allocate(names(size(model%materials)))
+         do i = 1, size(names)
+            names(i)%value = model%materials(i)%name
+         end do
+         call report%error(parameter_place(card, 'MATERIAL'), 'unknown material '//name// &
+            nearest_known(name, names))
+      end if
+      if (card%last_data < card%first_data) then
+         call context%note('*SOLID SECTION without a thickness: '//to_text(section%thickness))
+         return
+      end if
+      valid = .true.
+      associate (data => cards%data(card%first_data))
+         call take_field(data, 1, 'thickness', report, section%thickness, valid)
+         call check_extra(data, 1, 'thickness', report)
+         if (section%thickness <= 0.0_dp) then
+            call report%error(field_place(data, 1), 'the thickness must be positive')
+         end if
+      end associate
+   end subroutine build_section
+
+   subroutine give_section(card, section, mesh, report)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: section
+      type(mesh_type), intent(inout) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: name
+      integer :: set
+
+      if (.not. has_parameter(card, 'ELSET')) then
+         call report%error(card%place, '*SOLID SECTION needs ELSET=')
+         return
+      end if
+      name = to_upper(parameter_text(card, 'ELSET'))
+      set = find_set(mesh%element_sets, name)
+      if (set == 0) then
+         call report%error(parameter_place(card, 'ELSET'), 'unknown element set '//name// &
+            nearest_known(name, set_names(mesh%element_sets)))
+         return
+      end if
+      associate (members => mesh%element_sets(set)%members)
+         if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
+            to_text(count(mesh%element_section(members) > 0))// &
+            ' elements already have a section; '// &
+            'this one takes its place')
+         mesh%element_section(members) = section
+      end associate
+   end subroutine give_section
+
+end module deck_builder_sections

@@ -1,0 +1,181 @@
+!> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets.
+module deck_builder_sets
+   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
+   use card_values, only: check_extra, field_place, need_field, take_field
+   use cards, only: cards_type, data_card_type, keyword_card_type
+   use deck_context, only: read_target
+   use deck_report, only: deck_report_type
+   use mesh, only: set_type
+   use sorting, only: number_index_type, unique_sorted
+   use text, only: read_integer, to_text, to_upper
+   implicit none
+   private
+   public :: build_sets
+
+   !> Sets while they grow.
+   type :: draft_type
+      integer :: sets = 0                          !! number of sets
+      type(set_type), allocatable :: items(:)   !! (capacity) members with a capacity of their own
+      integer, allocatable :: counts(:)            !! (capacity) members so far
+   end type draft_type
+
+contains
+
+   !> Takes all sets of nodes or of elements; a name that stands on several cards is one set.
+   subroutine build_sets(noun, cards, numbers, report, sets)
+      character(*), intent(in) :: noun                           !! node or element
+      type(cards_type), intent(in) :: cards                      !! the cards
+      type(number_index_type), intent(in) :: numbers             !! numbers -> indexes
+      type(deck_report_type), intent(inout) :: report            !! receives errors
+      type(set_type), allocatable, intent(out) :: sets(:)        !! the sets
+      type(draft_type) :: draft
+      character(:), allocatable :: parameter, definer
+      integer :: k, first, i
+
+      parameter = merge('NSET ', 'ELSET', noun == 'node')
+      parameter = trim(parameter)
+      definer = to_upper(noun)
+      allocate(draft%items(size(cards%keywords)), draft%counts(size(cards%keywords)))
+      first = 0
+      do k = 1, size(cards%keywords)
+         associate (card => cards%keywords(k))
+            if (card%name == definer) then
+               if (has_parameter(card, parameter)) call open_set(card, parameter, report, draft, i)
+               if (has_parameter(card, parameter)) call add_range(draft, i, first + 1, &
+                  first + card%last_data - card%first_data + 1)
+               first = first + card%last_data - card%first_data + 1
+            else if (card%name == parameter) then
+               call build_set(noun, cards, card, numbers, report, draft)
+            end if
+         end associate
+      end do
+      allocate(sets(draft%sets))
+      do i = 1, draft%sets
+         call move_alloc(draft%items(i)%name, sets(i)%name)
+         sets(i)%members = unique_sorted(draft%items(i)%members(:draft%counts(i)))
+      end do
+   end subroutine build_sets
+
+   !> Finds the set that a card names, or begins it.
+   subroutine open_set(card, parameter, report, draft, set)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: parameter
+      type(deck_report_type), intent(inout) :: report
+      type(draft_type), intent(inout) :: draft
+      integer, intent(out) :: set
+      character(:), allocatable :: name
+      integer :: number
+      logical :: is_number
+
+      name = to_upper(parameter_text(card, parameter))
+      do set = 1, draft%sets
+         if (draft%items(set)%name == name) return
+      end do
+      call read_integer(name, number, is_number)
+      if (is_number) call report%error(parameter_place(card, parameter), &
+         'the name of a set must not be a number')
+      draft%sets = set
+      draft%items(set)%name = name
+      allocate(draft%items(set)%members(16))
+      draft%counts(set) = 0
+   end subroutine open_set
+
+   !> Adds members that stand in a row.
+   subroutine add_range(draft, set, first, last)
+      type(draft_type), intent(inout) :: draft
+      integer, intent(in) :: set, first, last
+      integer :: i
+
+      call add_members(draft, set, [(i, i=first, last)])
+   end subroutine add_range
+
+   subroutine add_members(draft, set, members)
+      type(draft_type), intent(inout) :: draft
+      integer, intent(in) :: set
+      integer, intent(in) :: members(:)
+      integer, allocatable :: more(:)
+      integer :: n
+
+      n = draft%counts(set)
+      if (n + size(members) > size(draft%items(set)%members)) then
+         allocate(more(2*(n + size(members))))
+         more(:n) = draft%items(set)%members(:n)
+         call move_alloc(more, draft%items(set)%members)
+      end if
+      draft%items(set)%members(n + 1:n + size(members)) = members
+      draft%counts(set) = n + size(members)
+   end subroutine add_members
+
+   !> Takes one *NSET or *ELSET card.
+   subroutine build_set(noun, cards, card, numbers, report, draft)
+      character(*), intent(in) :: noun
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(number_index_type), intent(in) :: numbers
+      type(deck_report_type), intent(inout) :: report
+      type(draft_type), intent(inout) :: draft
+      character(:), allocatable :: name
+      integer :: set, other, item, j, i, known
+      logical :: valid
+
+      call need_parameter(card, card%name, report, name)
+      if (len(name) == 0) return
+      known = draft%sets
+      call open_set(card, card%name, report, draft, set)
+      do j = card%first_data, card%last_data
+         if (has_parameter(card, 'GENERATE')) then
+            call generate(noun, cards%data(j), numbers, report, draft, set)
+            cycle
+         end if
+         do i = 1, size(cards%data(j)%fields)
+            valid = .true.
+            call read_target(cards%data(j), i, noun, numbers, draft%items(:known), report, item, &
+               other, valid)
+            if (item > 0) call add_members(draft, set, [item])
+            if (other > 0) call add_members(draft, set, &
+               (draft%items(other)%members(:draft%counts(other))))
+         end do
+      end do
+   end subroutine build_set
+
+   !> Numbers from first to last; those between that do not exist are passed over with a warning.
+   subroutine generate(noun, data, numbers, report, draft, set)
+      character(*), intent(in) :: noun
+      type(data_card_type), intent(in) :: data
+      type(number_index_type), intent(in) :: numbers
+      type(deck_report_type), intent(inout) :: report
+      type(draft_type), intent(inout) :: draft
+      integer, intent(in) :: set
+      integer :: first, last, step, number, missing, steps
+      logical :: valid
+
+      valid = .true.
+      step = 1
+      call need_field(data, 1, 'first number', report, first, valid)
+      call need_field(data, 2, 'last number', report, last, valid)
+      call take_field(data, 3, 'increment', report, step, valid)
+      call check_extra(data, 3, 'first number, last number, increment', report)
+      if (.not. valid .or. numbers%is_empty()) return
+      if (step < 1 .or. last < first) then
+         call report%error(field_place(data, 1), 'the numbers must ascend from first to last')
+         return
+      end if
+      missing = (last - first)/step - (min(last, numbers%largest()) - first)/step
+      do steps = 0, (min(last, numbers%largest()) - first)/step
+         number = first + steps*step
+         if (numbers%find(number) > 0) then
+            call add_members(draft, set, [numbers%find(number)])
+         else
+            missing = missing + 1
+         end if
+      end do
+      if (missing > (last - first)/step) then
+         call report%error(field_place(data, 1), 'there is no '//noun//' from '//to_text(first)// &
+            ' to '//to_text(last))
+      else if (missing > 0) then
+         call report%warning(field_place(data, 1), 'numbers passed over, for there is no such '// &
+            noun//': '//to_text(missing))
+      end if
+   end subroutine generate
+
+end module deck_builder_sets

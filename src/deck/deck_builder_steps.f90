@@ -1,0 +1,206 @@
+!> *STEP to *END STEP -> steps; loads become requests.
+module deck_builder_steps
+   use card_parameters, only: choose, has_parameter, parameter_place, parameter_text, &
+      take_parameter
+   use card_values, only: check_extra, field_place, take_field
+   use cards, only: cards_type, data_card_type, keyword_card_type
+   use controls, only: fixed_point_type
+   use deck_builder_controls, only: build_fixed_point, check_thermal_scheme
+   use deck_builder_loads, only: build_load_card
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use deck_structure, only: card_count
+   use keywords, only: refusal
+   use kinds, only: dp
+   use model, only: model_type
+   use steps, only: analysis_coupled, analysis_static, step_type
+   use text, only: to_text, to_upper
+   implicit none
+   private
+   public :: build_steps, increment_rounding
+
+   real(dp), parameter :: smallest_part = 1.0e-5_dp        !! of a period: smallest increment
+   real(dp), parameter :: increment_rounding = 1.0e-6_dp   !! a shorter rest is none, relative
+
+contains
+
+   !> Takes all steps, in their order.
+   subroutine build_steps(cards, context, model, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(inout) :: context    !! receives requests and notes
+      type(model_type), intent(inout) :: model             !! receives the steps
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(fixed_point_type) :: fixed_point
+      type(step_type) :: before
+      integer :: k, n, analyses, files
+
+      n = card_count(cards, 'STEP')
+      allocate(model%steps(n), context%step_place(n))
+      n = 0
+      analyses = 0
+      files = 0
+      do k = 1, size(cards%keywords)
+         associate (card => cards%keywords(k))
+            select case (card%name)
+            case ('STEP')
+               n = n + 1
+               analyses = 0
+               files = 0
+               context%step_place(n) = card%place
+               if (n > 1) before = model%steps(n - 1)
+               call begin_step(card, before, context, report, model%steps(n))
+               model%steps(n)%fixed_point = fixed_point
+            case ('STATIC', 'COUPLED TEMPERATURE-DISPLACEMENT')
+               analyses = analyses + 1
+               if (analyses > 1) call report%error(card%place, 'a second analysis in one step')
+               if (n > 0) call build_analysis(cards, card, context, report, model%steps(n))
+            case ('END STEP')
+               if (analyses == 0) call report%error(card%place, &
+                  'the step has no *STATIC and no *COUPLED TEMPERATURE-DISPLACEMENT')
+            case ('FIXED POINT')
+               call build_fixed_point(card, report, fixed_point)
+               if (n > 0) model%steps(n)%fixed_point = fixed_point
+            case ('THERMAL SCHEME')
+               call check_thermal_scheme(card, report)
+            case ('BOUNDARY', 'CLOAD', 'DLOAD')
+               call build_load_card(cards, card, n, model, context, report)
+            case ('NODE FILE', 'EL FILE', 'CONTACT FILE')
+               if (n > 0) call build_file_output(card, files, context, report, model%steps(n))
+            case ('CONTACT PRINT')
+               if (n > 0) call read_frequency(card, report, model%steps(n)%contact_print_frequency)
+            case default
+               cycle
+            end select
+         end associate
+      end do
+   end subroutine build_steps
+
+   !> Takes *STEP; output goes on as in the step before.
+   subroutine begin_step(card, before, context, report, step)
+      type(keyword_card_type), intent(in) :: card
+      type(step_type), intent(in) :: before
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: step
+      character(:), allocatable :: course
+
+      call take_parameter(card, 'INC', report, step%max_increments)
+      if (step%max_increments < 1) then
+         call report%error(parameter_place(card, 'INC'), 'INC= must be at least 1')
+      end if
+      if (.not. has_parameter(card, 'INC')) then
+         call context%note('*STEP without INC=: '//to_text(step%max_increments)//' increments')
+      end if
+      course = 'RAMP'
+      call choose(card, 'AMPLITUDE', 'RAMP/STEP', '', report, course)
+      step%ramped = course == 'RAMP'
+      step%field_frequency = before%field_frequency
+      step%contact_print_frequency = before%contact_print_frequency
+      if (.not. has_parameter(card, 'NLGEOM')) return
+      if (to_upper(parameter_text(card, 'NLGEOM')) /= 'NO') call report%error( &
+         parameter_place(card, 'NLGEOM'), 'NLGEOM is refused on *STEP: '//refusal('STEP', 'NLGEOM'))
+   end subroutine begin_step
+
+   !> Takes *STATIC or *COUPLED TEMPERATURE-DISPLACEMENT.
+   subroutine build_analysis(cards, card, context, report, step)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: step
+
+      step%analysis = analysis_static
+      if (card%name /= 'STATIC') then
+         step%analysis = analysis_coupled
+         if (.not. has_parameter(card, 'STEADY STATE')) call report%error(card%place, '*'// &
+            card%name// &
+            ' needs STEADY STATE: heat capacity is not modelled')
+      end if
+      step%direct = has_parameter(card, 'DIRECT')
+      if (card%last_data >= card%first_data) then
+         call build_increments(cards%data(card%first_data), context, report, step)
+      else
+         call context%note('*'//card%name//' without data: one increment, period 1')
+      end if
+      if (step%max_increments < 1) return
+      if (step%period > (step%max_increments + increment_rounding)*step%first_increment) then
+         call report%error(card%place, 'the step takes more increments than the '// &
+            to_text(step%max_increments)//' of INC= on *STEP')
+      end if
+   end subroutine build_analysis
+
+   !> First increment, period, smallest and largest increment.
+   subroutine build_increments(data, context, report, step)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: step
+      real(dp) :: times(4)
+      integer :: i
+      logical :: valid
+
+      valid = .true.
+      call take_field(data, 1, 'first increment', report, step%first_increment, valid)
+      call take_field(data, 2, 'period', report, step%period, valid)
+      step%smallest_increment = min(smallest_part*step%period, step%first_increment)
+      step%largest_increment = step%first_increment
+      call take_field(data, 3, 'smallest increment', report, step%smallest_increment, valid)
+      call take_field(data, 4, 'largest increment', report, step%largest_increment, valid)
+      call check_extra(data, 4, 'first increment, period, smallest, largest increment', report)
+      if (size(data%fields) < 3) call context%note( &
+         'smallest increment not given: '//to_text(smallest_part)//' of the period')
+      if (size(data%fields) < 4) call context%note( &
+         'largest increment not given: the first')
+      times = [step%first_increment, step%period, step%smallest_increment, step%largest_increment]
+      do i = 1, 4
+         if (.not. valid .or. times(i) > 0.0_dp) cycle
+         call report%error(field_place(data, i), 'increments and periods must be positive')
+         valid = .false.
+      end do
+      if (.not. valid) then
+         step%first_increment = 1.0_dp
+         step%period = 1.0_dp
+      else if (step%first_increment > step%period) then
+         call report%error(field_place(data, 1), 'the first increment is longer than the period')
+      else if (step%smallest_increment > step%first_increment) then
+         call report%error(field_place(data, 3), 'the smallest increment is longer than the first')
+      else if (step%largest_increment < step%first_increment) then
+         call report%error(field_place(data, 4), 'the largest increment is shorter than the first')
+      end if
+   end subroutine build_increments
+
+   !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0
+   !> leaves its last increment.
+   subroutine build_file_output(card, files, context, report, step)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(inout) :: files
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: step
+      integer :: frequency
+
+      call read_frequency(card, report, frequency)
+      if (frequency == 0) then
+         call context%note('*'//card%name// &
+            ', FREQUENCY=0: the last increment of the step is written')
+         frequency = huge(frequency)
+      end if
+      files = files + 1
+      if (files > 1) frequency = min(frequency, step%field_frequency)
+      step%field_frequency = frequency
+   end subroutine build_file_output
+
+   !> FREQUENCY=n, default 1.
+   subroutine read_frequency(card, report, frequency)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(inout) :: frequency
+
+      frequency = 1
+      call take_parameter(card, 'FREQUENCY', report, frequency)
+      if (frequency >= 0) return
+      call report%error(parameter_place(card, 'FREQUENCY'), 'FREQUENCY= must not be negative')
+      frequency = 1
+   end subroutine read_frequency
+
+end module deck_builder_steps

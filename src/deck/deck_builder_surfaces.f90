@@ -1,0 +1,112 @@
+!> *SURFACE -> sets of element faces.
+module deck_builder_surfaces
+   use card_parameters, only: choose, need_parameter, parameter_place
+   use card_values, only: check_extra, field_place, field_text, need_field
+   use cards, only: cards_type, keyword_card_type
+   use deck_context, only: deck_context_type, read_target
+   use deck_report, only: deck_report_type
+   use deck_structure, only: card_count
+   use mesh, only: mesh_type, surface_type
+   use sorting, only: unique_sorted
+   use text, only: to_upper
+   implicit none
+   private
+   public :: build_surfaces, read_face
+
+contains
+
+   !> Takes all surfaces.
+   subroutine build_surfaces(cards, context, mesh, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(inout) :: context    !! receives their places
+      type(mesh_type), intent(inout) :: mesh               !! receives the surfaces
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: k, n
+
+      n = card_count(cards, 'SURFACE')
+      allocate(mesh%surfaces(n), context%surface_place(n))
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'SURFACE') cycle
+         n = n + 1
+         context%surface_place(n) = cards%keywords(k)%place
+         call build_surface(cards, cards%keywords(k), context, mesh, report, mesh%surfaces(n))
+         if (.not. is_new(mesh%surfaces(:n))) call report%error( &
+            parameter_place(cards%keywords(k), 'NAME'), 'surface '//mesh%surfaces(n)%name// &
+            ' is defined twice')
+      end do
+   end subroutine build_surfaces
+
+   pure logical function is_new(surfaces)
+      type(surface_type), intent(in) :: surfaces(:)
+      integer :: i, n
+
+      n = size(surfaces)
+      is_new = .true.
+      do i = 1, n - 1
+         if (surfaces(i)%name == surfaces(n)%name .and. len(surfaces(n)%name) > 0) is_new = .false.
+      end do
+   end function is_new
+
+   !> Takes one surface; a face that is named twice counts once, in the order of elements.
+   subroutine build_surface(cards, card, context, mesh, report, surface)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      type(surface_type), intent(out) :: surface
+      character(:), allocatable :: kind
+      integer, allocatable :: keys(:)
+      integer :: element, set, face, j, i
+      logical :: valid
+
+      kind = 'ELEMENT'
+      call need_parameter(card, 'NAME', report, surface%name)
+      call choose(card, 'TYPE', 'ELEMENT', 'NODE', report, kind)
+      allocate(keys(0))
+      do j = card%first_data, card%last_data
+         valid = .true.
+         call read_target(cards%data(j), 1, 'element', context%element_index, mesh%element_sets, &
+            report, element, set, valid)
+         call read_face(cards, j, 'S', report, face, valid)
+         call check_extra(cards%data(j), 2, 'element or set, face', report)
+         if (.not. valid) cycle
+         if (set > 0) then
+            keys = [keys, 4*mesh%element_sets(set)%members + face - 1]
+         else
+            keys = [keys, 4*element + face - 1]
+         end if
+      end do
+      keys = unique_sorted(keys)
+      allocate(surface%faces(2, size(keys)))
+      do i = 1, size(keys)
+         surface%faces(:, i) = [keys(i)/4, mod(keys(i), 4) + 1]
+      end do
+   end subroutine build_surface
+
+   !> Reads the second field of a card as a letter and the number of a face.
+   subroutine read_face(cards, data, letter, report, face, valid)
+      type(cards_type), intent(in) :: cards              !! the cards
+      integer, intent(in) :: data                        !! index of the data card
+      character(1), intent(in) :: letter                 !! S on *SURFACE, P on *DLOAD
+      type(deck_report_type), intent(inout) :: report    !! receives errors
+      integer, intent(out) :: face                       !! 1..4, 0 after an error
+      logical, intent(inout) :: valid                    !! becomes false after an error
+      character(:), allocatable :: label
+
+      face = 0
+      call need_field(cards%data(data), 2, 'face '//letter//'1 to '//letter//'4', report, label, &
+         valid)
+      if (len(label) == 0) return
+      label = to_upper(label)
+      if (len(label) == 2) then
+         if (label(1:1) == letter) face = index('1234', label(2:2))
+      end if
+      if (face > 0) return
+      call report%error(field_place(cards%data(data), 2), ''''//field_text(cards%data(data), 2)// &
+         ''' is no face; faces are '//letter//'1 to '//letter//'4')
+      valid = .false.
+   end subroutine read_face
+
+end module deck_builder_surfaces

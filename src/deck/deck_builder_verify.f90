@@ -1,0 +1,188 @@
+!> *VERIFY -> checks of the results.
+module deck_builder_verify
+   use card_parameters, only: choose, has_parameter, parameter_text
+   use card_values, only: check_extra, field_place, field_text, has_field, need_field
+   use cards, only: cards_type, data_card_type
+   use deck_builder_mesh, only: data_card_count
+   use deck_builder_steps, only: increment_rounding
+   use deck_context, only: deck_context_type, read_target
+   use deck_report, only: deck_report_type
+   use kinds, only: dp
+   use model, only: model_type, verify_type
+   use text, only: nearest_known, read_real, string_type, to_text, to_upper
+   use verify_quantities, only: of_history, of_interface, of_nodes, of_pairs, quantities, &
+      read_quantity
+   implicit none
+   private
+   public :: build_verifications
+
+contains
+
+   !> Takes all checks.
+   subroutine build_verifications(cards, context, model, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(in) :: context       !! numbers of nodes
+      type(model_type), intent(inout) :: model             !! receives the checks
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: kind
+      integer :: k, j, n
+
+      allocate(model%verifications(data_card_count(cards, 'VERIFY')))
+      n = 0
+      do k = 1, size(cards%keywords)
+         associate (card => cards%keywords(k))
+            if (card%name /= 'VERIFY') cycle
+            kind = ''
+            if (.not. has_parameter(card, 'KIND')) call report%error(card%place, &
+               '*VERIFY needs KIND=')
+            call choose(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', '', report, &
+               kind)
+            do j = card%first_data, card%last_data
+               n = n + 1
+               model%verifications(n)%kind = kind
+               model%verifications(n)%source = parameter_text(card, 'SOURCE')
+               call build_check(cards%data(j), context, model, report, model%verifications(n))
+            end do
+         end associate
+      end do
+   end subroutine build_verifications
+
+   !> quantity, where, when, value, tolerance, REL|ABS.
+   subroutine build_check(data, context, model, report, check)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(verify_type), intent(inout) :: check
+      integer :: quantity
+      logical :: valid
+
+      valid = .true.
+      check%line = data%end%image
+      check%quantity = ''
+      check%where = field_text(data, 2)
+      call read_quantity(data, report, quantity)
+      if (quantity > 0) then
+         check%quantity = trim(quantities(quantity)%name)
+         call check_where(data, quantities(quantity)%kind, context, model, report, check)
+      end if
+      call read_when(data, model, report, check)
+      call need_field(data, 4, 'value', report, check%value, valid)
+      call need_field(data, 5, 'tolerance', report, check%tolerance, valid)
+      call check_extra(data, 6, 'quantity, where, when, value, tolerance, REL or ABS', report)
+      if (check%tolerance < 0.0_dp) then
+         call report%error(field_place(data, 5), 'the tolerance must not be negative')
+      end if
+      select case (to_upper(field_text(data, 6)))
+      case ('ABS')
+         check%relative = .false.
+      case ('', 'REL')
+         if (valid .and. .not. abs(check%value) > 0.0_dp) call report%error(field_place(data, 4), &
+            'nothing is measured relative to 0; give ABS')
+      case default
+         call report%error(field_place(data, 6), ''''//field_text(data, &
+            6)//''' is neither REL nor ABS')
+      end select
+   end subroutine build_check
+
+   !> Checks where a quantity is judged; the only interface of a deck need not be named.
+   subroutine check_where(data, kind, context, model, report, check)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: kind
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(verify_type), intent(inout) :: check
+      integer :: node, set
+      logical :: valid
+
+      if (kind == of_history) then
+         if (has_field(data, 2)) call report%error(field_place(data, 2), &
+            check%quantity//' has no place: leave this field empty')
+         return
+      end if
+      if (any(to_upper(check%where) == ['MIN', 'MAX'])) return
+      if (kind == of_nodes) then
+         valid = .true.
+         call read_target(data, 2, 'node', context%node_index, model%mesh%node_sets, report, &
+            node, set, valid)
+      else if (kind == of_interface .and. check%where == '' .and. size(model%contacts) == 1) then
+         check%where = model%contacts(1)%name
+      else
+         call check_interface(data, kind, model, report)
+      end if
+   end subroutine check_where
+
+   !> name or, for a profile, name@s.
+   subroutine check_interface(data, kind, model, report)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: kind
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: name
+      type(string_type), allocatable :: names(:)
+      real(dp) :: s
+      integer :: at, i
+      logical :: valid, known
+
+      valid = .true.
+      call need_field(data, 2, 'contact pair', report, name, valid)
+      if (.not. valid) return
+      at = index(name, '@')
+      if (at > 0) then
+         call read_real(trim(adjustl(name(at + 1:))), s, valid)
+         if (kind /= of_pairs .or. .not. valid) then
+            call report%error(field_place(data, 2), ''''//name//''' is no place of this quantity')
+            return
+         end if
+         name = trim(name(:at - 1))
+      end if
+      known = .false.
+      allocate(names(size(model%contacts)))
+      do i = 1, size(names)
+         names(i)%value = model%contacts(i)%name
+         known = known .or. to_upper(names(i)%value) == to_upper(name)
+      end do
+      if (.not. known) call report%error(field_place(data, 2), 'unknown contact pair '//name// &
+         nearest_known(name, names))
+   end subroutine check_interface
+
+   !> A total time that an increment meets, or LAST.
+   subroutine read_when(data, model, report, check)
+      type(data_card_type), intent(in) :: data
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(verify_type), intent(inout) :: check
+      real(dp) :: start, rest
+      integer :: s
+      logical :: valid
+
+      check%at_last = to_upper(field_text(data, 3)) == 'LAST'
+      if (check%at_last) return
+      valid = .true.
+      call need_field(data, 3, 'time or LAST', report, check%when, valid)
+      if (.not. valid .or. size(model%steps) == 0) return
+      start = 0.0_dp
+      do s = 1, size(model%steps)
+         associate (step => model%steps(s))
+            rest = start + step%period - check%when
+            if (rest >= -increment_rounding*step%first_increment) exit
+            start = start + step%period
+         end associate
+      end do
+      if (check%when <= 0.0_dp .or. s > size(model%steps)) then
+         call report%error(field_place(data, 3), &
+            'no increment ends at this time; the steps end at '// &
+            to_text(sum(model%steps%period)))
+      else if (model%steps(s)%direct) then
+         associate (n => (check%when - start)/model%steps(s)%first_increment)
+            if (abs(n - anint(n)) > increment_rounding .and. &
+               rest > increment_rounding*model%steps(s)%first_increment) then
+               call report%error(field_place(data, 3), &
+                  'no increment of this DIRECT step ends at this time')
+            end if
+         end associate
+      end if
+   end subroutine read_when
+
+end module deck_builder_verify

@@ -1,0 +1,109 @@
+!> What the builder of a model knows beyond the model itself: numbers -> indexes, places for
+!> messages, loads to be applied when the mesh is final; and how a card names nodes and elements.
+module deck_context
+   use card_values, only: field_place, need_field
+   use cards, only: add_note, data_card_type
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use load_requests, only: request_list_type
+   use mesh, only: set_type
+   use sorting, only: number_index_type
+   use text, only: nearest_known, read_integer, string_type, to_text, to_upper
+   implicit none
+   private
+   public :: deck_context_type, find_set, set_names, read_target
+   public :: plane_by_element, plane_strain
+
+   integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
+   integer, parameter :: plane_strain = 1       !! PLANE=STRAIN
+
+   !> State of the builder.
+   type :: deck_context_type
+      type(number_index_type) :: node_index               !! numbers of nodes -> indexes
+      type(number_index_type) :: element_index            !! numbers of elements -> indexes
+      type(place_type), allocatable :: element_place(:)   !! (elements) where the element stands
+      logical, allocatable :: element_valid(:)            !! (elements) whether its nodes are known
+      type(place_type), allocatable :: surface_place(:)   !! (surfaces) where the surface stands
+      type(place_type), allocatable :: material_place(:)  !! (materials) where the material stands
+      type(place_type), allocatable :: step_place(:)      !! (steps) where the step stands
+      integer :: plane = plane_by_element                 !! PLANE=
+      integer :: levels = 0                               !! *REFINE, LEVELS=
+      character(:), allocatable :: load_set   !! LOAD=: node set; unallocated when not given
+      type(place_type) :: load_place                      !! where it stands
+      type(request_list_type) :: boundaries               !! *BOUNDARY
+      type(request_list_type) :: forces                   !! *CLOAD
+      type(request_list_type) :: pressures                !! *DLOAD
+      type(request_list_type) :: temperatures             !! *INITIAL CONDITIONS
+      type(string_type), allocatable :: notes(:)          !! lines for the listing
+   contains
+      procedure :: note
+   end type deck_context_type
+
+contains
+
+   !> Notes a default that was used or a card that is not needed.
+   subroutine note(self, line)
+      class(deck_context_type), intent(inout) :: self   !! the context
+      character(*), intent(in) :: line                  !! the note; each is kept once
+
+      call add_note(self%notes, line)
+   end subroutine note
+
+   !> Index of a set by its name, whatever its case; 0 for an unknown one.
+   pure integer function find_set(sets, name)
+      type(set_type), intent(in) :: sets(:)   !! sets
+      character(*), intent(in) :: name        !! name
+
+      do find_set = size(sets), 1, -1
+         if (sets(find_set)%name == to_upper(name)) return
+      end do
+   end function find_set
+
+   !> The names of sets.
+   pure function set_names(sets) result(names)
+      type(set_type), intent(in) :: sets(:)             !! sets
+      type(string_type) :: names(size(sets))            !! their names
+      integer :: i
+
+      do i = 1, size(sets)
+         names(i)%value = sets(i)%name
+      end do
+   end function set_names
+
+   !> Reads the field of a card that names one node or element by its number, or a set by its name.
+   subroutine read_target(data, position, noun, numbers, sets, report, item, set, valid)
+      type(data_card_type), intent(in) :: data          !! data card
+      integer, intent(in) :: position                   !! position of the field
+      character(*), intent(in) :: noun                  !! node or element
+      type(number_index_type), intent(in) :: numbers    !! numbers -> indexes
+      type(set_type), intent(in) :: sets(:)             !! sets that are known
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      integer, intent(out) :: item                      !! index of the node or element, else 0
+      integer, intent(out) :: set                       !! index of the set, else 0
+      logical, intent(inout) :: valid                   !! becomes false after an error
+      character(:), allocatable :: name
+      integer :: number
+      logical :: is_number
+
+      item = 0
+      set = 0
+      call need_field(data, position, noun//' or set', report, name, valid)
+      if (len(name) == 0) return
+      call read_integer(name, number, is_number)
+      if (is_number) then
+         item = numbers%find(number)
+      else
+         set = find_set(sets, name)
+      end if
+      if (item > 0 .or. set > 0) return
+      valid = .false.
+      if (.not. is_number) then
+         call report%error(field_place(data, position), 'unknown '//noun//' set '// &
+            to_upper(name)// &
+            nearest_known(name, set_names(sets)))
+      else if (.not. numbers%is_empty()) then
+         call report%error(field_place(data, position), 'there is no '//noun//' '//to_text(number))
+      end if
+   end subroutine read_target
+
+end module deck_context

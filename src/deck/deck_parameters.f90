@@ -1,0 +1,134 @@
+!> *PARAMETER: names with values, used as <name> in the deck, and the command line's --set that
+!> overrides them.
+module deck_parameters
+   use card_fields, only: first_text, without_quotes
+   use cards, only: field_type
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use text, only: append, nearest_known, string_type, to_upper
+   implicit none
+   private
+   public :: deck_parameters_type
+
+   !> The parameters of a deck.
+   type :: deck_parameters_type
+      private
+      type(string_type), allocatable :: names(:)            !! names in upper case
+      type(string_type), allocatable :: values(:)           !! their values
+      type(string_type), allocatable :: setting_names(:)    !! names that --set gave
+      type(string_type), allocatable :: setting_values(:)   !! their values
+   contains
+      procedure :: take_settings
+      procedure :: define
+      procedure :: substitute
+      procedure :: check_settings
+   end type deck_parameters_type
+
+contains
+
+   !> Takes what the command line sets.
+   subroutine take_settings(self, settings, report)
+      class(deck_parameters_type), intent(inout) :: self   !! the parameters
+      type(string_type), intent(in) :: settings(:)         !! each NAME=VALUE
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: i, equals
+
+      allocate(self%names(0), self%values(0), self%setting_names(0), self%setting_values(0))
+      do i = 1, size(settings)
+         equals = index(settings(i)%value, '=')
+         if (equals < 2) then
+            call report%error(place_type(), '--set '//settings(i)%value//' is not NAME=VALUE')
+            cycle
+         end if
+         call append(self%setting_names, to_upper(trim(settings(i)%value(:equals - 1))))
+         call append(self%setting_values, settings(i)%value(equals + 1:))
+      end do
+   end subroutine take_settings
+
+   !> Takes one field `name = value` of a *PARAMETER card.
+   subroutine define(self, field, report)
+      class(deck_parameters_type), intent(inout) :: self   !! the parameters
+      type(field_type), intent(in) :: field                !! the field
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: name, value
+      integer :: equals, setting
+
+      equals = index(field%text, '=')
+      if (equals < 2 .or. equals == len(field%text)) then
+         call report%error(field%place, '*PARAMETER has name = value')
+         return
+      end if
+      name = to_upper(trim(field%text(:equals - 1)))
+      value = field%text(equals + 1:)
+      value = without_quotes(value(first_text(value):))
+      if (position(self%names, name) > 0) then
+         call report%error(field%place, 'parameter '//name//' is defined twice')
+         return
+      end if
+      setting = position(self%setting_names, name)
+      if (setting > 0) value = self%setting_values(setting)%value
+      call append(self%names, name)
+      call append(self%values, value)
+   end subroutine define
+
+   !> Replaces each <name> in a field by its value.
+   subroutine substitute(self, field, report)
+      class(deck_parameters_type), intent(in) :: self      !! the parameters
+      type(field_type), intent(inout) :: field             !! the field
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: done, rest, name
+      integer :: left, right, known
+
+      left = index(field%text, '<')
+      if (left == 0) return
+      done = ''
+      rest = field%text
+      do
+         left = index(rest, '<')
+         if (left == 0) exit
+         right = index(rest, '>')
+         if (right < left) then
+            call report%error(field%place, 'this < has no >')
+            exit
+         end if
+         name = to_upper(trim(adjustl(rest(left + 1:right - 1))))
+         known = position(self%names, name)
+         if (known == 0) then
+            call report%error(field%place, 'no *PARAMETER before this card defines '//name// &
+               nearest_known(name, self%names))
+            exit
+         end if
+         done = done//rest(:left - 1)//self%values(known)%value
+         rest = rest(right + 1:)
+      end do
+      field%text = done//rest
+   end subroutine substitute
+
+   !> Reports settings that no *PARAMETER of the deck takes.
+   subroutine check_settings(self, report)
+      class(deck_parameters_type), intent(in) :: self      !! the parameters
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: i
+
+      do i = 1, size(self%setting_names)
+         associate (name => self%setting_names(i)%value)
+            if (position(self%names, name) > 0) cycle
+            call report%error(place_type(), '--set '// &
+               name//': no *PARAMETER of the deck has this name'// &
+               nearest_known(name, self%names))
+         end associate
+      end do
+   end subroutine check_settings
+
+   pure integer function position(names, name)
+      type(string_type), intent(in) :: names(:)
+      character(*), intent(in) :: name
+      integer :: i
+
+      position = 0
+      do i = 1, size(names)
+         if (names(i)%value == name) position = i
+      end do
+   end function position
+
+end module deck_parameters

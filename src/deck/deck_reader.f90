@@ -1,0 +1,134 @@
+!> Files -> cards: the deck, the files that it includes, and the width of a card.
+module deck_reader
+   use card_fields, only: is_comment, last_text
+   use card_lines, only: card_lines_type, default_width
+   use cards, only: cards_type, trim_cards
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type, read_lines
+   use text, only: append, string_type, to_text
+   implicit none
+   private
+   public :: read_deck
+
+   integer, parameter :: deepest_include = 16 !! files that may include each other
+
+contains
+
+   !> Reads a deck and the files that it includes.
+   subroutine read_deck(path, width, settings, cards, report)
+      character(*), intent(in) :: path                  !! the deck as given
+      integer, intent(in) :: width                      !! --width, 0 for none
+      type(string_type), intent(in) :: settings(:)      !! --set, each NAME=VALUE
+      type(cards_type), intent(out) :: cards            !! its cards
+      type(deck_report_type), intent(out) :: report     !! what is wrong with it
+      type(card_lines_type) :: open_lines
+      integer :: i
+      logical :: readable
+
+      cards%path = path
+      report%path = path
+      open_lines%width = max(default_width, width)
+      allocate(report%source%paths(0))
+      call open_lines%parameters%take_settings(settings, report)
+      call read_file(path, path, 1, open_lines, cards, report, readable)
+      call open_lines%finish(cards, report)
+      call trim_cards(cards)
+      if (.not. readable) then
+         call report%error(place_type(), 'the deck cannot be read')
+      else if (size(cards%keywords) == 0 .and. .not. report%has_errors()) then
+         call report%error(place_type(), 'the deck is empty')
+      else
+         call open_lines%parameters%check_settings(report)
+      end if
+      call check_width(open_lines%width, report)
+      do i = 1, report%source%count
+         if (report%source%file(i) == 1) cards%last%image = i
+      end do
+      allocate(cards%images(report%source%count))
+      do i = 1, report%source%count
+         cards%images(i)%value = report%source%images(i)%value
+      end do
+   end subroutine read_deck
+
+   !> Reads one file, and the files that it includes where it includes them.
+   recursive subroutine read_file(path, found, depth, open_lines, cards, report, readable)
+      character(*), intent(in) :: path                       !! file as given, for messages
+      character(*), intent(in) :: found                      !! file as seen from the current folder
+      integer, intent(in) :: depth                           !! files open, this one counted
+      type(card_lines_type), intent(inout) :: open_lines     !! what is open
+      type(cards_type), intent(inout) :: cards               !! receives the cards
+      type(deck_report_type), intent(inout) :: report        !! receives errors
+      logical, intent(out) :: readable                       !! whether the file could be read
+      type(string_type), allocatable :: lines(:)
+      character(:), allocatable :: included
+      type(place_type) :: place
+      logical :: include_readable
+      integer :: i, file
+
+      call read_lines(found, lines, readable)
+      if (.not. readable) return
+      call append(report%source%paths, path)
+      file = size(report%source%paths)
+      do i = 1, size(lines)
+         call report%source%add_image(file, i, lines(i)%value)
+         call open_lines%take_line(lines(i)%value, report%source%count, cards, report)
+         if (.not. allocated(open_lines%include)) cycle
+         call move_alloc(open_lines%include, included)
+         place = open_lines%include_place
+         if (depth == deepest_include) then
+            call report%error(place, 'more than '//to_text(deepest_include)// &
+               ' files include each other')
+            cycle
+         end if
+         call read_file(included, beside(found, included), depth + 1, open_lines, cards, report, &
+            include_readable)
+         if (.not. include_readable) call report%error(place, included//' cannot be read')
+      end do
+   end subroutine read_file
+
+   !> An included file is looked for beside the file that includes it, then in the current folder.
+   function beside(path, included) result(found)
+      character(*), intent(in) :: path       !! file that includes
+      character(*), intent(in) :: included   !! file as given
+      character(:), allocatable :: found     !! where it is
+      logical :: there
+
+      found = included
+      if (index(included, '/') == 1) return
+      inquire (file=path(:index(path, '/', back=.true.))//included, exist=there)
+      if (there) found = path(:index(path, '/', back=.true.))//included
+   end function beside
+
+   !> Reports cards that are wider than they may be; comments have any width.
+   subroutine check_width(width, report)
+      integer, intent(in) :: width
+      type(deck_report_type), intent(inout) :: report
+      integer :: image, column
+
+      do image = 1, report%source%count
+         associate (line => report%source%images(image)%value)
+            if (last_text(line) <= width) cycle
+            if (is_comment(line)) cycle
+            column = first_byte(line, width + 1)
+            if (column > last_text(line)) cycle
+            call report%error(place_type(image, column), 'text past column '//to_text(width)// &
+               '; *OPTIONS, WIDTH=n or --width n widens the card')
+         end associate
+      end do
+   end subroutine check_width
+
+   !> First byte of the n-th character of a line in UTF-8; behind the line where it has fewer.
+   pure integer function first_byte(line, n)
+      character(*), intent(in) :: line
+      integer, intent(in) :: n
+      integer :: characters
+
+      characters = 0
+      do first_byte = 1, len(line)
+         if (iachar(line(first_byte:first_byte)) < 128 .or. &
+            iachar(line(first_byte:first_byte)) >= 192) characters = characters + 1
+         if (characters == n) return
+      end do
+   end function first_byte
+
+end module deck_reader

@@ -1,0 +1,206 @@
+!> What is wrong with a deck: all its errors and warnings, with their places, printed in one go.
+module deck_report
+   use deck_source, only: deck_source_type, place_type
+   use sorting, only: sort_order
+   use text, only: string_type, to_text
+   implicit none
+   private
+   public :: deck_report_type, severity_error, severity_warning
+
+   integer, parameter :: severity_error = 1     !! the deck cannot be solved
+   integer, parameter :: severity_warning = 2   !! the deck can be solved, perhaps not as meant
+   integer, parameter :: most_errors = 50       !! errors that are printed
+
+   !> One error or warning.
+   type :: diagnostic_type
+      integer :: severity = severity_error   !! severity_error or severity_warning
+      type(place_type) :: place              !! where
+      character(:), allocatable :: message   !! what, in plain words
+   end type diagnostic_type
+
+   !> The errors and warnings of one deck, and the card images to which they point.
+   type :: deck_report_type
+      character(:), allocatable :: path                             !! the deck as given
+      type(deck_source_type) :: source                              !! its card images
+      integer, private :: count = 0                                 !! number of diagnostics
+      integer, private :: errors = 0                                !! number of errors among them
+      type(diagnostic_type), allocatable, private :: diagnostics(:) !! (capacity)
+   contains
+      procedure :: error
+      procedure :: warning
+      procedure :: has_errors
+      procedure :: error_count
+      procedure :: warnings
+      procedure :: print => print_report
+   end type deck_report_type
+
+contains
+
+   !> Reports an error.
+   subroutine error(self, place, message)
+      class(deck_report_type), intent(inout) :: self  !! the report
+      type(place_type), intent(in) :: place           !! where
+      character(*), intent(in) :: message             !! what, in plain words
+
+      call add(self, severity_error, place, message)
+      self%errors = self%errors + 1
+   end subroutine error
+
+   !> Reports a warning.
+   subroutine warning(self, place, message)
+      class(deck_report_type), intent(inout) :: self  !! the report
+      type(place_type), intent(in) :: place           !! where
+      character(*), intent(in) :: message             !! what, in plain words
+
+      call add(self, severity_warning, place, message)
+   end subroutine warning
+
+   !> Whether the deck has an error.
+   pure logical function has_errors(self)
+      class(deck_report_type), intent(in) :: self     !! the report
+
+      has_errors = self%errors > 0
+   end function has_errors
+
+   !> Number of errors so far.
+   pure integer function error_count(self)
+      class(deck_report_type), intent(in) :: self     !! the report
+
+      error_count = self%errors
+   end function error_count
+
+   !> The warnings as printed, without images, in the order of the deck.
+   function warnings(self) result(lines)
+      class(deck_report_type), intent(in) :: self     !! the report
+      type(string_type), allocatable :: lines(:)      !! one a warning
+      integer, allocatable :: order(:)
+      integer :: i, n
+
+      order = order_of(self)
+      allocate(lines(self%count - self%errors))
+      n = 0
+      do i = 1, self%count
+         if (self%diagnostics(order(i))%severity /= severity_warning) cycle
+         n = n + 1
+         lines(n)%value = first_line(self, self%diagnostics(order(i)))
+      end do
+   end function warnings
+
+   !> Prints errors and warnings in the order of the deck, each with its card image and a caret; at
+   !> most 50 errors.
+   subroutine print_report(self, unit)
+      class(deck_report_type), intent(in) :: self     !! the report
+      integer, intent(in) :: unit                     !! open for formatted output
+      integer, allocatable :: order(:)
+      integer :: i, errors
+
+      order = order_of(self)
+      errors = 0
+      do i = 1, self%count
+         associate (diagnostic => self%diagnostics(order(i)))
+            if (diagnostic%severity == severity_error) errors = errors + 1
+            if (diagnostic%severity == severity_error .and. errors > most_errors) cycle
+            call print_diagnostic(self, diagnostic, unit)
+         end associate
+      end do
+      if (errors > most_errors) write (unit, '(a)') self%path//': error: '// &
+         'errors that are not shown: '//to_text(errors - most_errors)
+   end subroutine print_report
+
+   subroutine print_diagnostic(self, diagnostic, unit)
+      class(deck_report_type), intent(in) :: self
+      type(diagnostic_type), intent(in) :: diagnostic
+      integer, intent(in) :: unit
+
+      write (unit, '(a)') first_line(self, diagnostic)
+      if (diagnostic%place%image == 0) return
+      associate (image => self%source%images(diagnostic%place%image)%value)
+         write (unit, '(a)') image
+         write (unit, '(a)') caret_line(image, diagnostic%place%column)
+      end associate
+   end subroutine print_diagnostic
+
+   !> `path:line:column: severity: message`, or `path: severity: message` for the deck as a whole.
+   function first_line(self, diagnostic) result(line)
+      class(deck_report_type), intent(in) :: self
+      type(diagnostic_type), intent(in) :: diagnostic
+      character(:), allocatable :: line
+      character(:), allocatable :: severity
+
+      severity = 'error: '
+      if (diagnostic%severity == severity_warning) severity = 'warning: '
+      associate (place => diagnostic%place, source => self%source)
+         if (place%image == 0) then
+            line = self%path//': '//severity//diagnostic%message
+         else
+            line = source%paths(source%file(place%image))%value//':'// &
+               to_text(source%line(place%image))//':'// &
+               to_text(len(caret_line(source%images(place%image)%value, place%column)))// &
+               ': '//severity//diagnostic%message
+         end if
+      end associate
+   end function first_line
+
+   !> A caret under a byte of a line: tabs stay tabs, and a character of several bytes (UTF-8) is
+   !> one column.
+   pure function caret_line(image, column) result(line)
+      character(*), intent(in) :: image
+      integer, intent(in) :: column
+      character(:), allocatable :: line
+      character(column) :: buffer
+      integer :: i, n
+
+      n = 0
+      do i = 1, column - 1
+         if (i > len(image)) then
+            n = n + 1
+            buffer(n:n) = ' '
+         else if (image(i:i) == achar(9)) then
+            n = n + 1
+            buffer(n:n) = achar(9)
+         else if (iachar(image(i:i)) < 128 .or. iachar(image(i:i)) >= 192) then
+            n = n + 1
+            buffer(n:n) = ' '
+         end if
+      end do
+      line = buffer(:n)//'^'
+   end function caret_line
+
+   !> The order of the diagnostics by image, then column, then as reported.
+   function order_of(self) result(order)
+      class(deck_report_type), intent(in) :: self
+      integer, allocatable :: order(:)
+      integer, allocatable :: keys(:)
+      integer :: i
+
+      keys = [(self%diagnostics(i)%place%column, i=1, self%count)]
+      order = sort_order(keys)
+      keys = [(self%diagnostics(order(i))%place%image, i=1, self%count)]
+      order = order(sort_order(keys))
+   end function order_of
+
+   subroutine add(self, severity, place, message)
+      class(deck_report_type), intent(inout) :: self
+      integer, intent(in) :: severity
+      type(place_type), intent(in) :: place
+      character(*), intent(in) :: message
+      type(diagnostic_type), allocatable :: more(:)
+      integer :: i
+
+      if (.not. allocated(self%diagnostics)) allocate(self%diagnostics(most_errors))
+      if (self%count == size(self%diagnostics)) then
+         allocate(more(2*self%count))
+         do i = 1, self%count
+            more(i)%severity = self%diagnostics(i)%severity
+            more(i)%place = self%diagnostics(i)%place
+            call move_alloc(self%diagnostics(i)%message, more(i)%message)
+         end do
+         call move_alloc(more, self%diagnostics)
+      end if
+      self%count = self%count + 1
+      self%diagnostics(self%count)%severity = severity
+      self%diagnostics(self%count)%place = place
+      self%diagnostics(self%count)%message = message
+   end subroutine add
+
+end module deck_report

@@ -1,0 +1,189 @@
+!> Fields of a keyword card -> the card with its parameters, each of them known.
+module keyword_cards
+   use card_fields, only: first_text, without_quotes
+   use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use keywords, only: find_keyword, find_parameter, keyword_names, known_keywords, &
+      known_parameter_type, later, not_needed, parameter_names, refusal, refused
+   use text, only: edit_distance, nearest_known, nearest_name, string_type, to_upper
+   implicit none
+   private
+   public :: make_keyword_card
+
+   integer, parameter :: likely_slip = 2   !! letters that differ in a misspelt keyword
+
+contains
+
+   !> Makes a keyword card of its fields, and reports what is unknown, refused or not built yet.
+   subroutine make_keyword_card(fields, report, cards, card)
+      type(field_type), intent(in) :: fields(:)          !! fields, the first of them with the star
+      type(deck_report_type), intent(inout) :: report    !! receives errors
+      type(cards_type), intent(inout) :: cards   !! receives notes on parameters that are not needed
+      type(keyword_card_type), intent(out) :: card       !! the card, without data
+      character(:), allocatable :: name
+
+      name = without_star(fields(1)%text)
+      card%name = ''
+      card%meant = ''
+      card%place = fields(1)%place
+      card%known = find_keyword(name)
+      allocate(card%parameters(0))
+      if (card%known == 0) then
+         call report_unknown_keyword(name, report, card)
+         return
+      end if
+      card%name = trim(known_keywords(card%known)%name)
+      select case (known_keywords(card%known)%status)
+      case (later)
+         call report%error(card%place, '*'//card%name//' is not built yet')
+      case (refused)
+         call report%error(card%place, '*'//card%name//' is refused: '//refusal(card%name, ''))
+      case default
+         call take_parameters(fields(2:), report, cards, card)
+      end select
+   end subroutine make_keyword_card
+
+   subroutine report_unknown_keyword(name, report, card)
+      character(*), intent(in) :: name
+      type(deck_report_type), intent(inout) :: report
+      type(keyword_card_type), intent(inout) :: card
+      type(string_type), allocatable :: names(:)
+      integer :: i
+
+      names = keyword_names()
+      i = nearest_name(name, names)
+      if (edit_distance(to_upper(name), names(i)%value) <= likely_slip) card%meant = names(i)%value
+      call report%error(card%place, 'unknown keyword *'//to_upper(name)// &
+         '; the nearest known is *'//names(i)%value)
+   end subroutine report_unknown_keyword
+
+   !> Blanks inside a keyword count once.
+   pure function without_star(string) result(name)
+      character(*), intent(in) :: string
+      character(:), allocatable :: name
+      integer :: double
+
+      name = trim(adjustl(string(2:)))
+      double = index(name, '  ')
+      do while (double > 0)
+         name = name(:double)//name(double + 2:)
+         double = index(name, '  ')
+      end do
+   end function without_star
+
+   !> Takes the parameters; LOAD= of *OPTIONS takes the field behind it as well.
+   subroutine take_parameters(fields, report, cards, card)
+      type(field_type), intent(in) :: fields(:)
+      type(deck_report_type), intent(inout) :: report
+      type(cards_type), intent(inout) :: cards
+      type(keyword_card_type), intent(inout) :: card
+      type(parameter_type), allocatable :: found(:)
+      type(parameter_type) :: parameter
+      integer :: i, n
+      logical :: valid
+
+      allocate(found(size(fields)))
+      n = 0
+      i = 1
+      do while (i <= size(fields))
+         call take_parameter(fields(i), report, cards, card, parameter, valid)
+         if (card%name == 'OPTIONS' .and. parameter%name == 'LOAD' .and. i < size(fields)) then
+            i = i + 1
+            parameter%text = parameter%text//','//fields(i)%text
+         end if
+         i = i + 1
+         if (.not. valid) cycle
+         if (is_repeated(found(:n), parameter%name)) then
+            call report%error(parameter%place, parameter%name//' stands twice on this card')
+            cycle
+         end if
+         n = n + 1
+         found(n) = parameter
+      end do
+      deallocate(card%parameters)
+      allocate(card%parameters(n))
+      do i = 1, n
+         card%parameters(i) = found(i)
+      end do
+   end subroutine take_parameters
+
+   pure logical function is_repeated(found, name)
+      type(parameter_type), intent(in) :: found(:)
+      character(*), intent(in) :: name
+      integer :: i
+
+      is_repeated = .false.
+      do i = 1, size(found)
+         if (found(i)%name == name) is_repeated = .true.
+      end do
+   end function is_repeated
+
+   !> Takes one parameter and checks it against the table.
+   subroutine take_parameter(field, report, cards, card, parameter, valid)
+      type(field_type), intent(in) :: field
+      type(deck_report_type), intent(inout) :: report
+      type(cards_type), intent(inout) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(parameter_type), intent(out) :: parameter
+      logical, intent(out) :: valid
+      type(known_parameter_type) :: known
+      integer :: equals
+
+      equals = index(field%text, '=')
+      if (equals == 0) equals = len(field%text) + 1
+      known = find_parameter(card%known, field%text(:equals - 1))
+      parameter%name = known%name
+      parameter%place = field%place
+      parameter%value_place = field%place
+      call take_value(field%text(min(equals + 1, len(field%text) + 1):), equals, parameter)
+      valid = .false.
+      if (len(field%text) == 0) then
+         call report%error(field%place, 'an empty parameter')
+      else if (known%name == '') then
+         call report_unknown(field%text(:equals - 1), field%place, report, card)
+      else if (known%status == refused) then
+         call report%error(field%place, known%name//' is refused on *'//card%name//': '// &
+            refusal(card%name, known%name))
+      else if (known%status == later) then
+         call report%error(field%place, known%name//' on *'//card%name//' is not built yet')
+      else if (known%needs_value .and. len(parameter%text) == 0) then
+         call report%error(field%place, known%name//' needs a value')
+      else if (.not. known%takes_value .and. equals <= len(field%text)) then
+         call report%error(field%place, known%name//' takes no value')
+      else
+         valid = known%status /= not_needed
+         if (.not. valid) call add_note(cards%notes, '*'//card%name//': '//known%name// &
+            ' is read and not needed')
+      end if
+   end subroutine take_parameter
+
+   !> The value behind the equals sign.
+   pure subroutine take_value(string, equals, parameter)
+      character(*), intent(in) :: string
+      integer, intent(in) :: equals
+      type(parameter_type), intent(inout) :: parameter
+
+      parameter%text = without_quotes(string(first_text(string):))
+      if (len(string) == 0) return
+      parameter%value_place%column = parameter%place%column + equals + first_text(string) - 1
+   end subroutine take_value
+
+   subroutine report_unknown(name, place, report, card)
+      character(*), intent(in) :: name
+      type(place_type), intent(in) :: place
+      type(deck_report_type), intent(inout) :: report
+      type(keyword_card_type), intent(in) :: card
+      type(string_type), allocatable :: names(:)
+
+      names = parameter_names(card%known)
+      if (size(names) == 0) then
+         call report%error(place, 'unknown parameter '//to_upper(trim(name))//'; *'// &
+            card%name//' has none')
+      else
+         call report%error(place, 'unknown parameter '//to_upper(trim(name))//' of *'// &
+            card%name//nearest_known(name, names))
+      end if
+   end subroutine report_unknown
+
+end module keyword_cards

@@ -1,0 +1,251 @@
+!> The keywords of the dialect: which are built, which come later, which are refused and why, where
+!> each may stand, and which parameters it takes.
+module keywords
+   use text, only: append, string_type, to_upper, without_blanks
+   implicit none
+   private
+   public :: known_keyword_type, known_keywords, find_keyword, keyword_names
+   public :: built, not_needed, later, refused
+   public :: in_model, in_step, in_both
+   public :: known_parameter_type, find_parameter, parameter_names, refusal
+
+   integer, parameter :: built = 1        !! understood
+   integer, parameter :: not_needed = 2   !! read, and means nothing to this program
+   integer, parameter :: later = 3        !! of the dialect, not built yet
+   integer, parameter :: refused = 4      !! will not be built; refusal gives the reason
+
+   integer, parameter :: in_model = 1     !! stands before the first *STEP
+   integer, parameter :: in_step = 2      !! stands between *STEP and *END STEP
+   integer, parameter :: in_both = 3      !! stands anywhere
+
+   integer, parameter :: many = huge(1)
+
+   !> One keyword. Its parameters are separated by slashes; `=` marks one that needs a value and `?`
+   !> one that may have one; `~` stands before one that is not needed, `+` before one that is not
+   !> built yet, `!` before a refused one.
+   type :: known_keyword_type
+      character(32) :: name          !! without the star
+      integer :: status              !! built, not_needed, later or refused
+      integer :: section             !! in_model, in_step or in_both
+      integer :: least_data          !! fewest data cards
+      integer :: most_data           !! most data cards
+      character(72) :: parameters    !! its parameters
+   end type known_keyword_type
+
+   !> One parameter of a keyword.
+   type :: known_parameter_type
+      character(:), allocatable :: name     !! its name
+      integer :: status = built             !! built, not_needed, later or refused
+      logical :: needs_value = .false.      !! whether a value must follow
+      logical :: takes_value = .false.      !! whether a value may follow
+   end type known_parameter_type
+
+   !> Why a keyword, or a parameter of it, is refused.
+   type :: refusal_type
+      character(32) :: keyword     !! keyword
+      character(16) :: parameter   !! parameter, blank for the keyword itself
+      character(72) :: reason      !! why
+   end type refusal_type
+
+   type(known_keyword_type), parameter :: model_keywords(26) = [ &
+      known_keyword_type('HEADING', built, in_model, 0, many, ''), &
+      known_keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE='), &
+      known_keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
+      known_keyword_type('NODE', built, in_model, 1, many, 'NSET='), &
+      known_keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET='), &
+      known_keyword_type('NSET', built, in_model, 1, many, 'NSET=/GENERATE'), &
+      known_keyword_type('ELSET', built, in_model, 1, many, 'ELSET=/GENERATE'), &
+      known_keyword_type('SURFACE', built, in_model, 1, many, 'NAME=/TYPE='), &
+      known_keyword_type('MATERIAL', built, in_model, 0, 0, 'NAME='), &
+      known_keyword_type('ELASTIC', built, in_model, 1, many, 'TYPE='), &
+      known_keyword_type('EXPANSION', built, in_model, 1, many, 'TYPE=/~ZERO='), &
+      known_keyword_type('CONDUCTIVITY', built, in_model, 1, many, 'TYPE='), &
+      known_keyword_type('DENSITY', built, in_model, 1, many, ''), &
+      known_keyword_type('SPECIFIC HEAT', not_needed, in_model, 0, many, ''), &
+      known_keyword_type('ORIENTATION', later, in_model, 0, many, ''), &
+      known_keyword_type('SOLID SECTION', built, in_model, 0, 1, &
+      'ELSET=/MATERIAL=/+ORIENTATION='), &
+      known_keyword_type('AMPLITUDE', built, in_model, 1, many, 'NAME=/TIME='), &
+      known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
+      known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 0, 'NAME='), &
+      known_keyword_type('FRICTION', built, in_model, 1, 1, ''), &
+      known_keyword_type('GAP CONDUCTANCE', later, in_model, 0, many, ''), &
+      known_keyword_type('GAP LAW', built, in_model, 1, 1, 'TYPE='), &
+      known_keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
+      'PRESSURE-OVERCLOSURE='), &
+      known_keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
+      'INTERACTION=/NAME=/~TYPE=/~SMALL SLIDING/!ADJUST=/!TIED'), &
+      known_keyword_type('CLEARANCE', later, in_model, 0, many, ''), &
+      known_keyword_type('TRANSFORM', refused, in_model, 0, many, '')]
+
+   type(known_keyword_type), parameter :: control_keywords(9) = [ &
+      known_keyword_type('FIXED POINT', built, in_both, 0, 0, &
+      'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
+      known_keyword_type('THERMAL SCHEME', built, in_both, 0, 0, 'TYPE='), &
+      known_keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
+      known_keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS='), &
+      known_keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &
+      known_keyword_type('CONTROLS', not_needed, in_both, 0, many, 'PARAMETERS=/RESET'), &
+      known_keyword_type('EQUATION', refused, in_model, 0, many, ''), &
+      known_keyword_type('MPC', refused, in_model, 0, many, ''), &
+      known_keyword_type('RIGID BODY', refused, in_model, 0, many, '')]
+
+   type(known_keyword_type), parameter :: step_keywords(20) = [ &
+      known_keyword_type('STEP', built, in_both, 0, 0, 'INC=/AMPLITUDE=/NLGEOM?'), &
+      known_keyword_type('STATIC', built, in_step, 0, 1, 'DIRECT/~SOLVER='), &
+      known_keyword_type('HEAT TRANSFER', later, in_step, 0, many, ''), &
+      known_keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
+      'STEADY STATE/DIRECT/~SOLVER='), &
+      known_keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('DLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('DSLOAD', later, in_step, 0, many, ''), &
+      known_keyword_type('CFLUX', later, in_step, 0, many, ''), &
+      known_keyword_type('DFLUX', later, in_step, 0, many, ''), &
+      known_keyword_type('FILM', later, in_step, 0, many, ''), &
+      known_keyword_type('TEMPERATURE', later, in_step, 0, many, ''), &
+      known_keyword_type('NODE FILE', built, in_step, 0, many, &
+      'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
+      known_keyword_type('EL FILE', built, in_step, 0, many, &
+      'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
+      known_keyword_type('CONTACT FILE', built, in_step, 0, many, &
+      'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
+      known_keyword_type('NODE PRINT', later, in_step, 0, many, ''), &
+      known_keyword_type('EL PRINT', later, in_step, 0, many, ''), &
+      known_keyword_type('CONTACT PRINT', built, in_step, 0, many, &
+      'FREQUENCY=/~SLAVE=/~MASTER=/~NSET=/~GLOBAL=/~TOTALS='), &
+      known_keyword_type('END STEP', built, in_step, 0, 0, ''), &
+      known_keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
+
+   !> Every keyword of the dialect.
+   type(known_keyword_type), parameter :: known_keywords(55) = &
+      [model_keywords, control_keywords, step_keywords]
+
+   type(refusal_type), parameter :: refusals(7) = [ &
+      refusal_type('TRANSFORM', '', 'displacements and forces are along x and y'), &
+      refusal_type('EQUATION', '', 'bodies are held by *BOUNDARY and by contact only'), &
+      refusal_type('MPC', '', 'bodies are held by *BOUNDARY and by contact only'), &
+      refusal_type('RIGID BODY', '', 'every body is elastic'), &
+      refusal_type('CONTACT PAIR', 'ADJUST', 'it would move nodes; gaps are those of the mesh'), &
+      refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; let the bodies share nodes'), &
+      refusal_type('STEP', 'NLGEOM', 'displacements and strains are small')]
+
+contains
+
+   !> Index of a keyword, whatever its case and blanks; 0 for an unknown one.
+   pure function find_keyword(name) result(known)
+      character(*), intent(in) :: name   !! without the star
+      integer :: known                   !! index into known_keywords
+      character(:), allocatable :: wanted
+      integer :: i
+
+      wanted = to_upper(without_blanks(name))
+      known = 0
+      do i = 1, size(known_keywords)
+         if (without_blanks(known_keywords(i)%name) /= wanted) cycle
+         known = i
+         return
+      end do
+   end function find_keyword
+
+   !> The names of all keywords.
+   pure function keyword_names() result(names)
+      type(string_type) :: names(size(known_keywords))   !! in the order of known_keywords
+      integer :: i
+
+      do i = 1, size(known_keywords)
+         names(i)%value = trim(known_keywords(i)%name)
+      end do
+   end function keyword_names
+
+   !> Names of the parameters of a keyword.
+   pure function parameter_names(known) result(names)
+      integer, intent(in) :: known                     !! index into known_keywords
+      type(string_type), allocatable :: names(:)       !! in the order of the table
+      type(string_type), allocatable :: entries(:)
+      type(known_parameter_type) :: parameter
+      integer :: i
+
+      entries = parameter_entries(known)
+      allocate(names(size(entries)))
+      do i = 1, size(entries)
+         parameter = parsed_entry(entries(i)%value)
+         names(i)%value = parameter%name
+      end do
+   end function parameter_names
+
+   !> Finds a parameter of a keyword, whatever its case and blanks; its name is empty for an unknown
+   !> one.
+   pure function find_parameter(known, name) result(parameter)
+      integer, intent(in) :: known              !! index into known_keywords
+      character(*), intent(in) :: name          !! name as written
+      type(known_parameter_type) :: parameter   !! what the table says of it
+      type(string_type), allocatable :: entries(:)
+      character(:), allocatable :: wanted
+      integer :: i
+
+      wanted = to_upper(without_blanks(name))
+      entries = parameter_entries(known)
+      do i = 1, size(entries)
+         parameter = parsed_entry(entries(i)%value)
+         if (without_blanks(parameter%name) == wanted) return
+      end do
+      parameter%name = ''
+   end function find_parameter
+
+   !> Why a keyword or a parameter of it is refused.
+   pure function refusal(keyword, parameter) result(reason)
+      character(*), intent(in) :: keyword     !! name of the keyword
+      character(*), intent(in) :: parameter   !! name of the parameter, empty for the keyword itself
+      character(:), allocatable :: reason     !! why
+      integer :: i
+
+      reason = ''
+      do i = 1, size(refusals)
+         if (refusals(i)%keyword == keyword .and. refusals(i)%parameter == parameter) then
+            reason = trim(refusals(i)%reason)
+         end if
+      end do
+   end function refusal
+
+   !> What stands between the slashes of the table.
+   pure function parameter_entries(known) result(entries)
+      integer, intent(in) :: known
+      type(string_type), allocatable :: entries(:)
+      character(:), allocatable :: rest
+      integer :: slash
+
+      allocate(entries(0))
+      rest = trim(known_keywords(known)%parameters)
+      do while (len(rest) > 0)
+         slash = index(rest, '/')
+         if (slash == 0) slash = len(rest) + 1
+         call append(entries, rest(:slash - 1))
+         rest = rest(min(slash + 1, len(rest) + 1):)
+      end do
+   end function parameter_entries
+
+   pure function parsed_entry(entry) result(parameter)
+      character(*), intent(in) :: entry
+      type(known_parameter_type) :: parameter
+      integer :: first, last
+
+      first = 2
+      select case (entry(1:1))
+      case ('~')
+         parameter%status = not_needed
+      case ('+')
+         parameter%status = later
+      case ('!')
+         parameter%status = refused
+      case default
+         first = 1
+      end select
+      last = len(entry)
+      parameter%needs_value = entry(last:last) == '='
+      parameter%takes_value = parameter%needs_value .or. entry(last:last) == '?'
+      if (parameter%takes_value) last = last - 1
+      parameter%name = entry(first:last)
+   end function parsed_entry
+
+end module keywords

@@ -1,0 +1,151 @@
+!> The command line: what is to be done with which decks.
+module command_line
+   use errors, only: error_type, set_error, status_deck
+   use text, only: string_type
+   implicit none
+   private
+   public :: command_type, read_command, usage
+   public :: command_run, command_check, command_help, command_version
+
+   integer, parameter :: command_run = 1       !! solve
+   integer, parameter :: command_check = 2     !! read and check only
+   integer, parameter :: command_help = 3      !! print the usage
+   integer, parameter :: command_version = 4   !! print versions
+
+   !> What the command line asks for.
+   type :: command_type
+      integer :: action = command_help                !! one of the command_* constants
+      type(string_type), allocatable :: decks(:)      !! paths as given
+      type(string_type), allocatable :: settings(:)   !! NAME=VALUE of each --set
+      character(:), allocatable :: folder             !! --out, the current folder unless given
+      integer :: width = 0                            !! --width, 0 unless given
+      logical :: quiet = .false.                      !! --quiet
+   end type command_type
+
+   character(*), parameter :: usage = &
+      'usage: thercon run DECK... [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]'// &
+      new_line('a')// &
+      '       thercon check DECK... [--width N] [--set NAME=VALUE]'//new_line('a')// &
+      '       thercon --help | --version'//new_line('a')//new_line('a')// &
+      '  run      solve each deck a/b.inp; results are DIR/b.vtkhdf, .lst, .sta and .cvg'// &
+      new_line('a')// &
+      '  check    read each deck, report every mistake at once, solve nothing'// &
+      new_line('a')//new_line('a')// &
+      '  --out DIR          folder of the results, made if missing (the current one)'// &
+      new_line('a')// &
+      '  --width N          columns of a card (80)'//new_line('a')// &
+      '  --set NAME=VALUE   value of a *PARAMETER, before the deck''s own'//new_line('a')// &
+      '  --quiet            no progress, no summary; errors and warnings all the same'// &
+      new_line('a')//new_line('a')// &
+      'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,'// &
+      new_line('a')// &
+      '             4 a *VERIFY check failed; of several decks the largest'   !! text of --help
+
+contains
+
+   !> Reads the arguments of the program.
+   !> Error: status_deck, with what is wrong.
+   subroutine read_command(command, error)
+      type(command_type), intent(out) :: command          !! what is asked for
+      type(error_type), allocatable, intent(out) :: error !! see above
+      character(:), allocatable :: word
+      integer :: i
+
+      allocate (command%decks(0), command%settings(0))
+      command%folder = '.'
+      if (command_argument_count() == 0) return
+      word = argument(1)
+      select case (word)
+      case ('run')
+         command%action = command_run
+      case ('check')
+         command%action = command_check
+      case ('--help', '-h', 'help')
+         return
+      case ('--version')
+         command%action = command_version
+         return
+      case ('trade')
+         call set_error(error, status_deck, 'command trade is not built yet')
+         return
+      case default
+         call set_error(error, status_deck, 'unknown command '//word//'; see thercon --help')
+         return
+      end select
+      i = 2
+      do while (i <= command_argument_count())
+         call read_argument(command, i, error)
+         if (allocated(error)) return
+      end do
+      if (size(command%decks) == 0) call set_error(error, status_deck, 'no deck is named')
+   end subroutine read_command
+
+   !> Reads the argument at a place, with its value where it has one.
+   subroutine read_argument(command, i, error)
+      type(command_type), intent(inout) :: command
+      integer, intent(inout) :: i
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: word, value
+
+      word = argument(i)
+      i = i + 1
+      select case (word)
+      case ('--quiet')
+         command%quiet = .true.
+         return
+      case ('--jobs')
+         call set_error(error, status_deck, 'option --jobs is not built yet')
+         return
+      case ('--out', '--width', '--set')
+         if (i > command_argument_count()) then
+            call set_error(error, status_deck, 'option '//word//' needs a value')
+            return
+         end if
+         value = argument(i)
+         i = i + 1
+      case default
+         if (index(word, '-') == 1) then
+            call set_error(error, status_deck, 'unknown option '//word//'; see thercon --help')
+         else
+            command%decks = [command%decks, string_type(word)]
+         end if
+         return
+      end select
+      if (command%action == command_check .and. word == '--out') then
+         call set_error(error, status_deck, 'option --out does not go with check')
+         return
+      end if
+      call take_value(command, word, value, error)
+   end subroutine read_argument
+
+   subroutine take_value(command, word, value, error)
+      type(command_type), intent(inout) :: command
+      character(*), intent(in) :: word, value
+      type(error_type), allocatable, intent(out) :: error
+      integer :: status
+
+      select case (word)
+      case ('--out')
+         command%folder = value
+      case ('--set')
+         command%settings = [command%settings, string_type(value)]
+      case ('--width')
+         status = verify(value, '0123456789')
+         if (status == 0 .and. len(value) > 0) read (value, *, iostat=status) command%width
+         if (status /= 0 .or. command%width < 1) call set_error(error, status_deck, &
+            'option --width needs a positive whole number, not '//value)
+      end select
+   end subroutine take_value
+
+   !> An argument without trailing blanks of its buffer.
+   function argument(i) result(word)
+      integer, intent(in) :: i
+      character(:), allocatable :: word
+      integer :: length
+
+      call get_command_argument(i, length=length)
+      allocate (character(length) :: word)
+      if (length > 0) call get_command_argument(i, word)
+   end function argument
+
+end module command_line

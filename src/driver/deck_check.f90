@@ -1,0 +1,68 @@
+!> What `thercon check` prints of a deck that it understood.
+module deck_check
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use cards, only: cards_type
+   use command_line, only: command_type
+   use deck_run, only: prepare_deck
+   use increments, only: simulation_type
+   use model, only: model_type
+   use run_description, only: describe_run
+   use run_summaries, only: run_summary_type
+   use text, only: to_text
+   implicit none
+   private
+   public :: check_deck
+
+contains
+
+   !> Reads one deck and prints what was understood; nothing is solved.
+   subroutine check_deck(path, command, status)
+      character(*), intent(in) :: path            !! the deck as given
+      type(command_type), intent(in) :: command   !! options of the command line
+      integer, intent(out) :: status              !! exit status
+      type(cards_type) :: cards
+      type(model_type) :: model
+      type(simulation_type) :: simulation
+      type(run_summary_type) :: run
+
+      call prepare_deck(path, command, cards, model, simulation, status)
+      if (status == 0) then
+         call describe_run(path, model, simulation, run)
+         call print_deck(model, simulation, run)
+      end if
+      call simulation%release()
+   end subroutine check_deck
+
+   subroutine print_deck(model, simulation, run)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(run_summary_type), intent(in) :: run
+      integer :: i
+
+      write (output_unit, '(2a)') run%deck_path, ': the deck is sound'
+      call line('modelled', run%modelled)
+      call line('bodies', to_text(model%mesh%body_count))
+      call line('nodes', to_text(size(model%mesh%node_number)))
+      call line('elements', to_text(size(model%mesh%element_number)))
+      call line('steps', to_text(size(model%steps)))
+      call line('unknown temperatures', to_text(run%equations_thermal))
+      call line('unknown displacements', to_text(run%equations_mechanical))
+      call line('contact unknowns', to_text(run%contact_unknowns))
+      do i = 1, size(simulation%operators%interfaces)
+         associate (pairs => simulation%operators%interfaces(i))
+            call line('contact pair '//pairs%name, to_text(size(pairs%slave_node))// &
+               ' node pairs, initial gaps '//to_text(minval(pairs%initial_gap))//' to '// &
+               to_text(maxval(pairs%initial_gap)))
+         end associate
+      end do
+      if (run%has_biot) call line('contact Biot number', to_text(run%contact_biot(1))//' to '// &
+         to_text(run%contact_biot(2))//' at the initial gaps')
+   end subroutine print_deck
+
+   subroutine line(name, value)
+      character(*), intent(in) :: name, value
+
+      write (output_unit, '(3x, 4a)') name, ' ', repeat('.', max(26 - len(name), 2)), ' '//value
+   end subroutine line
+
+end module deck_check

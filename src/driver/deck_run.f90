@@ -1,0 +1,139 @@
+!> One deck from its cards to its results, or to what is wrong with it.
+module deck_run
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use cards, only: cards_type
+   use clock, only: wall_seconds
+   use command_line, only: command_type
+   use deck_builder, only: build_model
+   use deck_reader, only: read_deck
+   use deck_report, only: deck_report_type
+   use errors, only: error_type, status_deck, status_no_convergence, status_verify
+   use increments, only: simulation_type
+   use kinds, only: dp
+   use model, only: model_type
+   use progress, only: deck_outcome_type
+   use records, only: increment_record_type, iteration_record_type
+   use run_description, only: describe_run
+   use run_output, only: run_output_type
+   implicit none
+   private
+   public :: run_deck, prepare_deck, base_name
+
+contains
+
+   !> Solves one deck. What goes wrong is printed on stderr and stands in the outcome's status.
+   subroutine run_deck(path, command, outcome)
+      character(*), intent(in) :: path                  !! the deck as given
+      type(command_type), intent(in) :: command         !! options of the command line
+      type(deck_outcome_type), intent(inout) :: outcome !! how it ended
+      type(cards_type) :: cards
+      type(model_type) :: model
+      type(simulation_type) :: simulation
+      type(run_output_type) :: output
+      type(error_type), allocatable :: error
+      real(dp) :: since
+
+      since = wall_seconds()
+      outcome%path = path
+      call prepare_deck(path, command, cards, model, simulation, outcome%status)
+      if (outcome%status == 0) then
+         output%run%seconds_read = wall_seconds() - since - simulation%seconds%assemble - &
+            simulation%seconds%reduce
+         call describe_run(path, model, simulation, output%run)
+         call solve_deck(path, command, cards, model, simulation, output, error)
+         if (allocated(error)) call report_failure(path, error, outcome)
+         outcome%increments = output%accepted()
+         outcome%verify_passed = output%run%verify_passed
+         outcome%verify_failed = output%run%verify_failed
+         if (outcome%status == 0 .and. outcome%verify_failed > 0) outcome%status = status_verify
+      end if
+      call simulation%release()
+      outcome%seconds = wall_seconds() - since
+   end subroutine run_deck
+
+   !> Reads a deck and prepares its run. Warnings and errors go to stderr.
+   subroutine prepare_deck(path, command, cards, model, simulation, status)
+      character(*), intent(in) :: path                    !! the deck as given
+      type(command_type), intent(in) :: command           !! options of the command line
+      type(cards_type), intent(out) :: cards              !! its cards
+      type(model_type), intent(out) :: model              !! its model
+      type(simulation_type), intent(inout) :: simulation  !! a fresh run
+      integer, intent(out) :: status                      !! exit status so far
+      type(deck_report_type) :: report
+      type(error_type), allocatable :: error
+
+      status = 0
+      call read_deck(path, command%width, command%settings, cards, report)
+      call build_model(cards, model, report)
+      call report%print(error_unit)
+      if (report%has_errors()) then
+         status = status_deck
+         return
+      end if
+      call simulation%start(model, error)
+      if (.not. allocated(error)) return
+      status = error%status
+      write (error_unit, '(3a)') path, ': error: ', error%message
+   end subroutine prepare_deck
+
+   !> All increments, with their output.
+   subroutine solve_deck(path, command, cards, model, simulation, output, error)
+      character(*), intent(in) :: path
+      type(command_type), intent(in) :: command
+      type(cards_type), intent(in) :: cards
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(inout) :: simulation
+      type(run_output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: output_error
+      type(increment_record_type) :: record
+      type(iteration_record_type), allocatable :: passes(:)
+
+      associate (pairs => simulation%operators%interfaces, points => simulation%points)
+         call output%start(command%folder//'/'//base_name(path), model, pairs, points%node, &
+            points%element_points, cards%images, command%quiet, error)
+         if (allocated(error)) return
+         do while (.not. simulation%finished(model))
+            call simulation%advance(model, record, error)
+            output%run%seconds_assemble = simulation%seconds%assemble
+            output%run%seconds_reduce = simulation%seconds%reduce
+            output%run%seconds_iterate = simulation%seconds%iterate
+            output%run%seconds_recover = simulation%seconds%recover
+            if (allocated(error)) exit
+            call output%accept(record, model, pairs, error)
+            if (allocated(error)) return
+         end do
+         if (allocated(error)) then
+            allocate (passes(0))
+            if (allocated(record%iterations)) passes = record%iterations
+            call output%fail(error%message, passes)
+         end if
+         call output%finish(model, pairs, output_error)
+         if (allocated(output_error)) call move_alloc(output_error, error)
+      end associate
+   end subroutine solve_deck
+
+   !> Prints why a run ended early.
+   subroutine report_failure(path, error, outcome)
+      character(*), intent(in) :: path
+      type(error_type), intent(in) :: error
+      type(deck_outcome_type), intent(inout) :: outcome
+
+      outcome%status = error%status
+      write (error_unit, '(3a)') path, ': error: ', error%message
+      if (error%status == status_no_convergence) write (error_unit, '(2a)') path, &
+         ': error: not converged; the listing has the iteration history'
+   end subroutine report_failure
+
+   !> Name of a deck's results: its file name without folder and extension.
+   pure function base_name(path) result(name)
+      character(*), intent(in) :: path           !! the deck as given
+      character(:), allocatable :: name          !! such as b for a/b.inp
+      integer :: dot
+
+      name = path(index(path, '/', back=.true.) + 1:)
+      dot = index(name, '.', back=.true.)
+      if (dot > 1) name = name(:dot - 1)
+   end function base_name
+
+end module deck_run

@@ -1,0 +1,41 @@
+!> Versions of the program, its compiler and its libraries.
+module version_report
+   use, intrinsic :: iso_fortran_env, only: compiler_version
+   use blas_lapack, only: ilaver
+   use hdf5, only: h5close_f, h5get_libversion_f, h5open_f
+   use mumps_solver, only: mumps_version
+   use text, only: to_text
+   use version, only: metis_version, program_version
+   implicit none
+   private
+   public :: print_versions
+
+contains
+
+   !> Prints one line each.
+   subroutine print_versions(unit)
+      integer, intent(in) :: unit   !! open for formatted output
+      character(:), allocatable :: mumps
+      integer :: lapack(3), hdf5(3), status
+
+      mumps = mumps_version()
+      call ilaver(lapack(1), lapack(2), lapack(3))
+      call h5open_f(status)
+      call h5get_libversion_f(hdf5(1), hdf5(2), hdf5(3), status)
+      call h5close_f(status)
+      write (unit, '(2a)') 'thercon ', program_version
+      write (unit, '(2a)') 'compiler ', compiler_version()
+      write (unit, '(2a)') 'MUMPS ', mumps
+      write (unit, '(2a)') 'METIS ', metis_version
+      write (unit, '(2a)') 'HDF5 ', dotted(hdf5)
+      write (unit, '(2a)') 'LAPACK ', dotted(lapack)
+   end subroutine print_versions
+
+   pure function dotted(numbers) result(string)
+      integer, intent(in) :: numbers(3)
+      character(:), allocatable :: string
+
+      string = to_text(numbers(1))//'.'//to_text(numbers(2))//'.'//to_text(numbers(3))
+   end function dotted
+
+end module version_report

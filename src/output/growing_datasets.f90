@@ -1,0 +1,152 @@
+!> Datasets that grow row by row: rows gather in memory and go to the file as one block.
+module growing_datasets
+   use, intrinsic :: iso_c_binding, only: c_loc
+   use errors, only: error_type
+   use hdf5, only: hid_t, hsize_t, h5dcreate_f, h5dopen_f, h5dclose_f, h5dset_extent_f, &
+      h5dget_space_f, h5dwrite_f, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5p_dataset_create_f, &
+      h5screate_simple_f, h5sclose_f, h5sselect_hyperslab_f, h5s_select_set_f, h5s_unlimited_f, &
+      h5t_native_double
+   use hdf5_helpers, only: check_status, stored_type
+   use kinds, only: dp, long
+   implicit none
+   private
+   public :: growing_dataset_type, growing_dataset, bytes_in, flush_sets
+
+   integer, parameter :: chunk_bytes = 32768   !! bytes of a chunk, unless one append is larger
+
+   !> One dataset and the rows of it that are not in the file yet.
+   type :: growing_dataset_type
+      private
+      character(:), allocatable :: path         !! path in the file
+      integer :: storage = 0                    !! as_real, as_integer or as_long
+      integer :: width = 0                      !! values in a row; 0: rows are single numbers
+      integer(hsize_t) :: chunk_rows = 1        !! rows in a chunk
+      logical :: in_file = .false.              !! whether the file has the dataset
+      integer(hsize_t) :: rows_in_file = 0      !! rows that the file holds
+      integer :: used = 0                       !! values in the buffer
+      real(dp), allocatable :: buffer(:)        !! the rows that are not in the file yet
+   contains
+      procedure :: append
+      procedure :: flush => flush_rows
+   end type growing_dataset_type
+
+contains
+
+   !> A dataset without rows; the file gets it at the first flush.
+   pure function growing_dataset(path, storage, width, rows_at_once, times) result(dataset)
+      character(*), intent(in) :: path     !! path in the file
+      integer, intent(in) :: storage       !! as_real, as_integer or as_long
+      integer, intent(in) :: width         !! values in a row; 0: shape (rows), else (rows, width)
+      integer, intent(in) :: rows_at_once  !! rows of one append
+      integer, intent(in) :: times         !! appends that are expected
+      type(growing_dataset_type) :: dataset
+      integer(long) :: append_bytes, appends
+
+      dataset%path = path
+      dataset%storage = storage
+      dataset%width = width
+      append_bytes = 8_long*max(width, 1)*rows_at_once
+      appends = max(1_long, min(chunk_bytes/append_bytes, int(times, long)))
+      dataset%chunk_rows = appends*rows_at_once
+      allocate(dataset%buffer(max(width, 1)*rows_at_once))
+   end function growing_dataset
+
+   !> Adds rows.
+   pure subroutine append(self, values)
+      class(growing_dataset_type), intent(inout) :: self  !! the dataset
+      real(dp), intent(in) :: values(:)                   !! rows, one after the other
+      real(dp), allocatable :: larger(:)
+
+      if (self%used + size(values) > size(self%buffer)) then
+         allocate(larger(2*(self%used + size(values))))
+         larger(:self%used) = self%buffer(:self%used)
+         call move_alloc(larger, self%buffer)
+      end if
+      self%buffer(self%used + 1:self%used + size(values)) = values
+      self%used = self%used + size(values)
+   end subroutine append
+
+   !> Bytes that wait in memory.
+   pure function bytes_in(datasets) result(bytes)
+      type(growing_dataset_type), intent(in) :: datasets(:)  !! the datasets
+      integer(long) :: bytes                                 !! bytes of their rows in memory
+
+      bytes = 8_long*sum(int(datasets%used, long))
+   end function bytes_in
+
+   !> Writes the waiting rows of all datasets.
+   !> Error: status_internal, when they cannot be written.
+   subroutine flush_sets(datasets, file, error)
+      type(growing_dataset_type), intent(inout) :: datasets(:) !! the datasets
+      integer(hid_t), intent(in) :: file                       !! the open file
+      type(error_type), allocatable, intent(out) :: error      !! what went wrong
+      integer :: i
+
+      do i = 1, size(datasets)
+         call datasets(i)%flush(file, error)
+         if (allocated(error)) return
+      end do
+   end subroutine flush_sets
+
+   !> Writes the waiting rows behind those in the file; creates the dataset the first time.
+   !> Error: status_internal, when they cannot be written.
+   subroutine flush_rows(self, file, error)
+      class(growing_dataset_type), target, intent(inout) :: self !! the dataset
+      integer(hid_t), intent(in) :: file                         !! the open file
+      type(error_type), allocatable, intent(out) :: error        !! what went wrong
+      integer(hsize_t) :: offset(2), extent(2), whole(2)
+      integer(hid_t) :: dataset, memory, space
+      integer :: rank, status(8)
+
+      if (self%used == 0 .and. self%in_file) return
+      status = 0
+      rank = merge(1, 2, self%width == 0)
+      extent = int([max(self%width, 1), self%used/max(self%width, 1)], hsize_t)
+      offset = [0_hsize_t, self%rows_in_file]
+      whole = [extent(1), offset(2) + extent(2)]
+      if (.not. self%in_file) then
+         call create(self, file, whole, dataset, status(1))
+      else
+         call h5dopen_f(file, self%path, dataset, status(1))
+         call h5dset_extent_f(dataset, whole(3 - rank:), status(2))
+      end if
+      if (extent(2) > 0) then
+         call h5dget_space_f(dataset, space, status(3))
+         call h5sselect_hyperslab_f(space, h5s_select_set_f, offset(3 - rank:), &
+            extent(3 - rank:), status(4))
+         call h5screate_simple_f(rank, extent(3 - rank:), memory, status(5))
+         call h5dwrite_f(dataset, h5t_native_double, c_loc(self%buffer), status(6), memory, space)
+         call h5sclose_f(memory, status(7))
+         call h5sclose_f(space, status(8))
+      end if
+      if (status(1) >= 0) call h5dclose_f(dataset, status(1))
+      call check_status(status, 'cannot write dataset '//self%path, error)
+      self%in_file = .true.
+      self%rows_in_file = whole(2)
+      self%used = 0
+   end subroutine flush_rows
+
+   subroutine create(self, file, whole, dataset, status)
+      class(growing_dataset_type), intent(in) :: self
+      integer(hid_t), intent(in) :: file
+      integer(hsize_t), intent(in) :: whole(2)
+      integer(hid_t), intent(out) :: dataset
+      integer, intent(out) :: status
+      integer(hsize_t) :: chunk(2), largest(2)
+      integer(hid_t) :: creation, space
+      integer :: results(5), rank
+
+      rank = merge(1, 2, self%width == 0)
+      chunk = [whole(1), self%chunk_rows]
+      largest = [whole(1), h5s_unlimited_f]
+      call h5pcreate_f(h5p_dataset_create_f, creation, results(1))
+      call h5pset_chunk_f(creation, rank, chunk(3 - rank:), results(2))
+      call h5screate_simple_f(rank, whole(3 - rank:), space, results(3), largest(3 - rank:))
+      call h5dcreate_f(file, self%path, stored_type(self%storage), space, dataset, results(4), &
+         creation)
+      call h5sclose_f(space, results(5))
+      status = minval(results)
+      call h5pclose_f(creation, results(1))
+   end subroutine create
+
+end module growing_datasets

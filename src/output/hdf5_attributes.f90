@@ -1,0 +1,154 @@
+!> Attributes of HDF5 objects: written new, or over one of the same name.
+module hdf5_attributes
+   use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_ptr
+   use errors, only: error_type
+   use hdf5, only: hid_t, hsize_t, size_t, h5oopen_f, h5oclose_f, h5aopen_f, &
+      h5acreate_f, h5aexists_f, h5awrite_f, h5aclose_f, h5screate_simple_f, &
+      h5screate_f, h5sclose_f, h5s_scalar_f, h5tcopy_f, h5tclose_f, h5tset_size_f, &
+      h5t_native_character, h5t_native_double, h5t_native_integer, h5kind_to_type, h5_integer_kind
+   use hdf5_helpers, only: as_integer, as_long, as_real, check_status, stored_type, utf8_string_type
+   use kinds, only: dp, long
+   implicit none
+   private
+   public :: write_attribute, write_fixed_text
+
+   !> Writes an attribute.
+   interface write_attribute
+      module procedure write_integer_attribute
+      module procedure write_integers_attribute
+      module procedure write_long_attribute
+      module procedure write_real_attribute
+      module procedure write_text_attribute
+   end interface write_attribute
+
+contains
+
+   !> Error: status_internal, when the attribute cannot be written.
+   subroutine write_integer_attribute(file, path, name, value, error)
+      integer(hid_t), intent(in) :: file                  !! the open file
+      character(*), intent(in) :: path                    !! path of the object
+      character(*), intent(in) :: name                    !! name of the attribute
+      integer, intent(in) :: value                        !! its value
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      integer, target :: copy
+
+      copy = value
+      call write_any(file, path, name, h5t_native_integer, stored_type(as_integer), c_loc(copy), &
+         error=error)
+   end subroutine write_integer_attribute
+
+   !> Error: status_internal, when the attribute cannot be written.
+   subroutine write_integers_attribute(file, path, name, values, error)
+      integer(hid_t), intent(in) :: file                  !! the open file
+      character(*), intent(in) :: path                    !! path of the object
+      character(*), intent(in) :: name                    !! name of the attribute
+      integer, contiguous, target, intent(in) :: values(:) !! its values
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+
+      call write_any(file, path, name, h5t_native_integer, stored_type(as_integer), &
+         c_loc(values), size(values), error)
+   end subroutine write_integers_attribute
+
+   !> Error: status_internal, when the attribute cannot be written.
+   subroutine write_long_attribute(file, path, name, value, error)
+      integer(hid_t), intent(in) :: file                  !! the open file
+      character(*), intent(in) :: path                    !! path of the object
+      character(*), intent(in) :: name                    !! name of the attribute
+      integer(long), intent(in) :: value                  !! its value
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      integer(long), target :: copy
+
+      copy = value
+      call write_any(file, path, name, h5kind_to_type(long, h5_integer_kind), &
+         stored_type(as_long), c_loc(copy), error=error)
+   end subroutine write_long_attribute
+
+   !> Error: status_internal, when the attribute cannot be written.
+   subroutine write_real_attribute(file, path, name, value, error)
+      integer(hid_t), intent(in) :: file                  !! the open file
+      character(*), intent(in) :: path                    !! path of the object
+      character(*), intent(in) :: name                    !! name of the attribute
+      real(dp), intent(in) :: value                       !! its value
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      real(dp), target :: copy
+
+      copy = value
+      call write_any(file, path, name, h5t_native_double, stored_type(as_real), c_loc(copy), &
+         error=error)
+   end subroutine write_real_attribute
+
+   !> Error: status_internal, when the attribute cannot be written.
+   subroutine write_text_attribute(file, path, name, value, error)
+      integer(hid_t), intent(in) :: file                  !! the open file
+      character(*), intent(in) :: path                    !! path of the object
+      character(*), intent(in) :: name                    !! name of the attribute
+      character(*), intent(in) :: value                   !! its value, shown by h5py as str
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      character(len(value) + 1, kind=c_char), target :: copy
+      type(c_ptr), target :: start
+      integer(hid_t) :: type
+      integer :: status(2)
+
+      copy = value//c_null_char
+      start = c_loc(copy)
+      call utf8_string_type(type, status(1))
+      call write_any(file, path, name, type, type, c_loc(start), error=error)
+      call h5tclose_f(type, status(2))
+      if (.not. allocated(error)) call check_status(status, 'cannot write text', error)
+   end subroutine write_text_attribute
+
+   !> Writes text of fixed length, the form that VTK asks for.
+   !> Error: status_internal, when the attribute cannot be written.
+   subroutine write_fixed_text(file, path, name, value, error)
+      integer(hid_t), intent(in) :: file                  !! the open file
+      character(*), intent(in) :: path                    !! path of the object
+      character(*), intent(in) :: name                    !! name of the attribute
+      character(*), intent(in) :: value                   !! its value
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      character(len(value), kind=c_char), target :: copy
+      integer(hid_t) :: type
+      integer :: status(3)
+
+      copy = value
+      call h5tcopy_f(h5t_native_character, type, status(1))
+      call h5tset_size_f(type, len(value, kind=size_t), status(2))
+      call write_any(file, path, name, type, type, c_loc(copy), error=error)
+      call h5tclose_f(type, status(3))
+      if (.not. allocated(error)) call check_status(status, 'cannot write text', error)
+   end subroutine write_fixed_text
+
+   subroutine write_any(file, path, name, memory_type, file_type, address, extent, error)
+      integer(hid_t), intent(in) :: file
+      character(*), intent(in) :: path
+      character(*), intent(in) :: name
+      integer(hid_t), intent(in) :: memory_type
+      integer(hid_t), intent(in) :: file_type
+      type(c_ptr), intent(in) :: address
+      integer, optional, intent(in) :: extent
+      type(error_type), allocatable, intent(out) :: error
+      integer(hid_t) :: object, attribute, space
+      integer :: status(8)
+      logical :: exists
+
+      status = 0
+      ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.
+      call h5oopen_f(file, path, object, status(7))
+      call h5aexists_f(object, name, exists, status(1))
+      if (exists) then
+         call h5aopen_f(object, name, attribute, status(2))
+      else
+         if (present(extent)) then
+            call h5screate_simple_f(1, [int(extent, hsize_t)], space, status(2))
+         else
+            call h5screate_f(h5s_scalar_f, space, status(2))
+         end if
+         call h5acreate_f(object, name, file_type, space, attribute, status(3))
+         call h5sclose_f(space, status(4))
+      end if
+      call h5awrite_f(attribute, memory_type, address, status(5))
+      call h5aclose_f(attribute, status(6))
+      call h5oclose_f(object, status(8))
+      call check_status(status, 'cannot write attribute '//path//'@'//name, error)
+   end subroutine write_any
+
+end module hdf5_attributes

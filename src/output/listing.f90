@@ -1,0 +1,251 @@
+!> The print file `NAME.lst`: what was read, what is modelled and why, every increment, the zone
+!> diagrams, the verdicts.
+module listing
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_pairs, only: contact_pairs_type
+   use errors, only: error_type, set_error, status_internal
+   use kinds, only: dp
+   use listing_model, only: print_model
+   use listing_tables, only: print_contact_table, print_iterations, print_verdicts
+   use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
+   use model, only: model_type
+   use records, only: contact_record_type, increment_record_type, iteration_record_type
+   use run_summaries, only: or_blank, run_summary_type
+   use text, only: append, string_type, to_text
+   use verification, only: outcome_type
+   use zone_diagram, only: zone_counts, zone_diagram_type
+   implicit none
+   private
+   public :: listing_type
+
+   !> An open listing.
+   type :: listing_type
+      private
+      integer :: unit = 0                                      !! Fortran unit
+      logical :: is_open = .false.                             !! whether the file is open
+      type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
+      type(string_type), allocatable :: warnings(:)            !! warnings of the run
+      integer :: step = 0                                      !! step of the last increment
+      integer :: increment_in_step = 0                         !! its number in the step
+   contains
+      procedure :: open => open_listing
+      procedure :: add
+      procedure :: add_warning
+      procedure :: add_failure
+      procedure :: finish
+   end type listing_type
+
+contains
+
+   !> Begins a listing: heading, echo of the deck, defaults, what is modelled.
+   !> Error: status_internal, when the file cannot be written.
+   subroutine open_listing(self, path, model, pairs, cards, run, error)
+      class(listing_type), intent(inout) :: self          !! the listing
+      character(*), intent(in) :: path                    !! path of the file
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(string_type), intent(in) :: cards(:)           !! card images as read
+      type(run_summary_type), intent(in) :: run           !! the run
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      integer :: status
+
+      open (newunit=self%unit, file=path, status='replace', action='write', iostat=status)
+      if (status /= 0) then
+         call set_error(error, status_internal, 'cannot write "'//path//'"')
+         return
+      end if
+      self%is_open = .true.
+      allocate(self%diagrams(size(pairs)), self%warnings(0))
+      call print_heading(self%unit, model, run)
+      call print_deck(self%unit, cards)
+      call print_list(self%unit, 'DEFAULTS AND CARDS NOT NEEDED', model%notes)
+      call print_model(self%unit, model, pairs, run)
+      call print_title(self%unit, 'INCREMENTS')
+   end subroutine open_listing
+
+   !> Adds the block of an accepted increment, with its *CONTACT PRINT table where that is due.
+   subroutine add(self, record, model, pairs)
+      class(listing_type), intent(inout) :: self          !! the listing
+      type(increment_record_type), intent(in) :: record   !! the increment
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      logical :: table_is_due
+      integer :: i, frequency
+
+      if (record%step /= self%step) self%increment_in_step = 0
+      self%step = record%step
+      self%increment_in_step = self%increment_in_step + 1
+      call print_increment(self%unit, record)
+      frequency = model%steps(record%step)%contact_print_frequency
+      table_is_due = .false.
+      if (frequency > 0) table_is_due = record%last_of_step .or. &
+         modulo(self%increment_in_step, frequency) == 0
+      do i = 1, size(pairs)
+         call print_interface(self%unit, pairs(i)%name, record%contacts(i))
+         call self%diagrams(i)%add(record, record%contacts(i)%status)
+      end do
+      call print_balances(self%unit, record)
+      if (.not. table_is_due) return
+      do i = 1, size(pairs)
+         call print_contact_table(self%unit, pairs(i), record%contacts(i), model%mesh%node_number)
+      end do
+   end subroutine add
+
+   !> Prints a warning of the run; it is repeated at the end.
+   subroutine add_warning(self, warning)
+      class(listing_type), intent(inout) :: self   !! the listing
+      character(*), intent(in) :: warning          !! one sentence
+
+      call print_wrapped(self%unit, '   warning: ', warning)
+      call append(self%warnings, warning)
+   end subroutine add_warning
+
+   !> Names the increment that failed and prints its passes.
+   subroutine add_failure(self, reason, iterations, accepted)
+      class(listing_type), intent(inout) :: self                !! the listing
+      character(*), intent(in) :: reason                        !! what went wrong
+      type(iteration_record_type), intent(in) :: iterations(:)  !! passes of that increment
+      integer, intent(in) :: accepted                           !! increments that were accepted
+
+      call print_title(self%unit, 'NOT CONVERGED')
+      call print_wrapped(self%unit, '   ', reason)
+      if (accepted > 0) then
+         write (self%unit, '(3x, a, i0, a)') 'The results hold the ', accepted, &
+            ' increments before it.'
+      else
+         call print_wrapped(self%unit, '   ', 'No increment was accepted: this run has no '// &
+            'result file and no .sta; those of an earlier run, if there are any, were left.')
+      end if
+      if (size(iterations) > 0) call print_iterations(self%unit, iterations)
+   end subroutine add_failure
+
+   !> Ends the listing: verdicts, times, zone diagrams, all warnings again.
+   !> Error: status_internal, when its end cannot be written.
+   subroutine finish(self, model, pairs, outcomes, run, error)
+      class(listing_type), intent(inout) :: self          !! the listing
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(outcome_type), intent(in) :: outcomes(:)       !! what came of the *VERIFY cards
+      type(run_summary_type), intent(in) :: run           !! the whole run
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      integer :: i, status
+
+      if (.not. self%is_open) return
+      if (size(outcomes) > 0) call print_verdicts(self%unit, model%verifications, outcomes)
+      call print_times(self%unit, run)
+      do i = 1, size(pairs)
+         call self%diagrams(i)%print(self%unit, pairs(i))
+      end do
+      call print_warnings(self%unit, model%warnings, self%warnings)
+      close (self%unit, iostat=status)
+      if (status /= 0) call set_error(error, status_internal, 'cannot finish the listing')
+      self%is_open = .false.
+   end subroutine finish
+
+   subroutine print_heading(unit, model, run)
+      integer, intent(in) :: unit
+      type(model_type), intent(in) :: model
+      type(run_summary_type), intent(in) :: run
+      integer :: now(8)
+
+      call date_and_time(values=now)
+      write (unit, '(a)') repeat('=', page_width)
+      write (unit, '(3a, t112, i4.4, 2("-", i2.2), 1x, 2(i2.2, ":"), i2.2)') 'THERCON ', &
+         or_blank(run%version), '   THERMOMECHANICAL CONTACT OF ELASTIC BODIES', now(1:3), now(5:7)
+      write (unit, '(a)') repeat('=', page_width)
+      write (unit, '(2a)') 'deck      ', or_blank(run%deck_path)
+      call print_wrapped(unit, 'heading   ', or_blank(model%heading))
+   end subroutine print_heading
+
+   subroutine print_increment(unit, record)
+      integer, intent(in) :: unit
+      type(increment_record_type), intent(in) :: record
+      integer :: passes
+
+      write (unit, '(/, a, i0, a, i0, 4a)') 'INCREMENT ', record%increment, '   STEP ', &
+         record%step, '   TIME ', to_text(record%time), '   LOAD ', to_text(record%load)
+      if (.not. allocated(record%iterations)) return
+      passes = size(record%iterations)
+      if (passes == 0) return
+      write (unit, '(3x, 2(a, i0), 2(a, es9.2), a)') 'passes ', passes, '   cut-backs ', &
+         record%iterations(passes)%cut_backs, '   residual', record%iterations(passes)%residual, &
+         '  (floor', record%residual_floor, ')'
+   end subroutine print_increment
+
+   subroutine print_interface(unit, name, contact)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: name
+      type(contact_record_type), intent(in) :: contact
+      integer :: zones(3)
+
+      zones = zone_counts(contact%status)
+      write (unit, '(3x, a, 3(a, i0), 4a)') name, '   I ', zones(1), '   II ', zones(2), &
+         '   III ', zones(3), '   edge of contact s = ', edge_text(contact%edge_contact), &
+         '   of stick s = ', edge_text(contact%edge_stick)
+      write (unit, '(6x, 2(a, es14.6))', advance='no') 'normal force', contact%normal_force, &
+         '   shear force', contact%shear_force
+      if (allocated(contact%heat_flux)) then
+         write (unit, '(a, es14.6)', advance='no') '   heat rate', contact%heat_rate
+      end if
+      write (unit, '()')
+   end subroutine print_interface
+
+   function edge_text(edge) result(string)
+      real(dp), intent(in) :: edge
+      character(:), allocatable :: string
+
+      string = 'none'
+      if (.not. ieee_is_nan(edge)) string = to_text(edge)
+   end function edge_text
+
+   subroutine print_balances(unit, record)
+      integer, intent(in) :: unit
+      type(increment_record_type), intent(in) :: record
+
+      if (allocated(record%fields%heat_flux)) then
+         write (unit, '(3x, 2(a, es14.6), a, es9.2)') 'heat in', record%heat_in, '   out', &
+            record%heat_out, '   heat imbalance', record%heat_imbalance
+      end if
+      write (unit, '(3x, 2(a, es9.2))') 'force imbalance', record%force_imbalance, &
+         '   contact conditions violated by', record%contact_violation
+      associate (work => record%work)
+         if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &
+            'factored again ', work%columns_again, ' of ', work%columns_full, ' columns (', &
+            100.0_dp*work%columns_again/work%columns_full, ' %), ', work%flops_again, ' of ', &
+            work%flops_full, ' flops (', 100.0_dp*work%flops_again/max(1.0_dp, &
+            real(work%flops_full, dp)), ' %)'
+      end associate
+   end subroutine print_balances
+
+   subroutine print_warnings(unit, of_deck, of_run)
+      integer, intent(in) :: unit
+      type(string_type), allocatable, intent(in) :: of_deck(:)
+      type(string_type), intent(in) :: of_run(:)
+      type(string_type), allocatable :: all_warnings(:)
+      integer :: i
+
+      allocate(all_warnings(0))
+      if (allocated(of_deck)) then
+         do i = 1, size(of_deck)
+            call append(all_warnings, of_deck(i)%value)
+         end do
+      end if
+      do i = 1, size(of_run)
+         call append(all_warnings, of_run(i)%value)
+      end do
+      call print_list(unit, 'WARNINGS', all_warnings)
+      if (size(all_warnings) == 0) write (unit, '(/, a)') 'No warnings.'
+   end subroutine print_warnings
+
+   subroutine print_times(unit, run)
+      integer, intent(in) :: unit
+      type(run_summary_type), intent(in) :: run
+
+      call print_title(unit, 'SECONDS')
+      write (unit, '(3x, 6a12)') 'reading', 'assembling', 'reducing', 'iterating', 'recovering', &
+         'writing'
+      write (unit, '(3x, 6f12.4)') run%seconds_read, run%seconds_assemble, run%seconds_reduce, &
+         run%seconds_iterate, run%seconds_recover, run%seconds_write
+   end subroutine print_times
+
+end module listing

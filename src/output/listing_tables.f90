@@ -1,0 +1,111 @@
+!> Tables of the listing: *CONTACT PRINT, the iteration history, the *VERIFY verdicts.
+module listing_tables
+   use contact_pairs, only: contact_pairs_type
+   use kinds, only: dp
+   use model, only: model_type, verify_type
+   use records, only: contact_record_type, iteration_record_type
+   use run_summaries, only: or_blank
+   use text, only: to_text
+   use verification, only: outcome_type
+   use zone_diagram, only: zone_numeral
+   implicit none
+   private
+   public :: print_contact_table, print_iterations, print_verdicts
+
+contains
+
+   !> Prints the pairs of an interface in fixed columns (*CONTACT PRINT); without heat the last four
+   !> are left out.
+   subroutine print_contact_table(unit, pairs, contact, node_number)
+      integer, intent(in) :: unit                         !! unit of the listing
+      type(contact_pairs_type), intent(in) :: pairs       !! pairs of the interface
+      type(contact_record_type), intent(in) :: contact    !! their state
+      integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
+      logical :: has_heat
+      integer :: k
+
+      has_heat = allocated(contact%conductance)
+      write (unit, '(/, 2a)') '   CONTACT PAIRS OF ', pairs%name
+      write (unit, '(a4, 2a8, 2a11, a5, 2a10, 2a11)', advance='no') 'pair', 'slave', 'master', &
+         'x', 'y', 'zone', 'gap', 'p', 'tau', 'slip'
+      if (has_heat) write (unit, '(2a11, a10, a11)', advance='no') 'T1', 'T2', 'omega', 'q'
+      write (unit, '()')
+      do k = 1, size(pairs%slave_node)
+         write (unit, '(i4, 2i8, 2es11.3, a5, 2es10.3, 2es11.3)', advance='no') k, &
+            node_number(pairs%slave_node(k)), node_number(pairs%master_node(k)), &
+            pairs%position(:, k), adjustr('  '//zone_numeral(contact%status(k))), contact%gap(k), &
+            contact%pressure(k), contact%shear(k), contact%slip(k)
+         if (has_heat) write (unit, '(2es11.3, es10.3, es11.3)', advance='no') &
+            contact%slave_temperature(k), contact%master_temperature(k), contact%conductance(k), &
+            contact%heat_flux(k)
+         write (unit, '()')
+      end do
+   end subroutine print_contact_table
+
+   !> Prints the passes of an increment.
+   subroutine print_iterations(unit, iterations)
+      integer, intent(in) :: unit                               !! unit of the listing
+      type(iteration_record_type), intent(in) :: iterations(:)  !! passes, in their order
+      integer :: i
+
+      write (unit, '(/, a)') '   ITERATION HISTORY'
+      write (unit, '(a12, a11, a12, 2a11, a8, a15, a11)') 'increment', 'iteration', 'residual', &
+         'g min', 'g max', 'g kept', 'pairs changed', 'cut-backs'
+      do i = 1, size(iterations)
+         associate (pass => iterations(i))
+            write (unit, '(i12, i11, es12.3, 2f11.6, i8, i15, i11)') pass%increment, &
+               pass%iteration, pass%residual, pass%g_min, pass%g_max, pass%g_kept, &
+               pass%pairs_changed, pass%cut_backs
+         end associate
+      end do
+   end subroutine print_iterations
+
+   !> Prints what came of the *VERIFY cards.
+   subroutine print_verdicts(unit, checks, outcomes)
+      integer, intent(in) :: unit                    !! unit of the listing
+      type(verify_type), intent(in) :: checks(:)     !! the checks
+      type(outcome_type), intent(in) :: outcomes(:)  !! what came of each
+      integer :: i
+
+      write (unit, '(/, a)') 'VERIFICATION'
+      write (unit, '(a6, 2x, a10, 1x, a18, 1x, a16, a12, 2a15, 2a10, a11)') 'card', &
+         'kind      ', 'quantity          ', 'where           ', 'time', 'expected', 'found', &
+         'deviation', 'allowed', 'verdict'
+      do i = 1, size(checks)
+         call print_verdict(unit, checks(i), outcomes(i))
+      end do
+      write (unit, '(/, 3x, i0, a, i0, a)') count(outcomes%passed), ' passed, ', &
+         count(.not. outcomes%passed), ' failed'
+   end subroutine print_verdicts
+
+   subroutine print_verdict(unit, check, outcome)
+      integer, intent(in) :: unit
+      type(verify_type), intent(in) :: check
+      type(outcome_type), intent(in) :: outcome
+      character(10) :: kind
+      character(18) :: quantity
+      character(16) :: where
+      character(12) :: time
+      character(15) :: found
+      character(10) :: deviation
+
+      kind = or_blank(check%kind)
+      quantity = check%quantity
+      where = or_blank(check%where)
+      time = 'LAST'
+      if (.not. check%at_last) time = to_text(check%when)
+      found = '-'
+      deviation = '-'
+      if (outcome%reason == '') then
+         write (found, '(es15.7)') outcome%found
+         write (deviation, '(es10.2)') outcome%deviation
+      end if
+      write (unit, '(i6, 2x, a, 1x, a, 1x, a, a, es15.7, 2a, es10.2, a4, a7)') check%line, kind, &
+         quantity, where, adjustr(time), check%value, adjustr(found), adjustr(deviation), &
+         check%tolerance, merge(' REL', ' ABS', check%relative), &
+         merge('   PASS', '   FAIL', outcome%passed)
+      if (or_blank(check%source) /= '') write (unit, '(8x, 2a)') 'source: ', check%source
+      if (outcome%reason /= '') write (unit, '(8x, 2a)') 'failed: ', outcome%reason
+   end subroutine print_verdict
+
+end module listing_tables

@@ -1,0 +1,262 @@
+!> The result file `NAME.vtkhdf` of a run, with its `.sta` and `.cvg`.
+!>
+!> Increments gather in memory and are published together: the file in the making is closed and
+!> renamed over the one in place, then their lines go to `.sta`. So a killed run leaves a file that
+!> opens and holds every increment of its `.sta`. A run publishes its first increment, the end of
+!> every step and its own end, and in between whenever that costs less than a tenth of the time. The
+!> first publishing replaces the files of an earlier run.
+module results
+   use contact_pairs, only: contact_pairs_type
+   use errors, only: error_type
+   use growing_datasets, only: bytes_in, flush_sets
+   use hdf5_helpers, only: close_hdf5, create_group, open_hdf5, write_strings
+   use kinds, only: dp, long
+   use model, only: model_type
+   use records, only: increment_record_type, iteration_record_type
+   use result_fields, only: field_results_type
+   use result_mesh, only: write_result_mesh
+   use result_run, only: write_run
+   use result_tables, only: contact_results_type, convergence_results_type, history_results_type
+   use run_summaries, only: or_blank, run_summary_type
+   use status_files, only: status_file_type
+   use steps, only: analysis_coupled
+   use system_calls, only: wall_seconds
+   use text, only: string_type
+   use working_files, only: working_file_type
+   implicit none
+   private
+   public :: results_type
+
+   integer(long), parameter :: memory_limit = 67108864_long   !! bytes that may wait in memory
+
+   !> Writer of the results of one run.
+   type :: results_type
+      private
+      type(working_file_type) :: file                         !! the result file
+      type(status_file_type) :: increments                    !! `.sta`
+      type(status_file_type) :: passes                        !! `.cvg`
+      type(field_results_type) :: fields                      !! `/VTKHDF`
+      type(history_results_type) :: history                   !! `/history`
+      type(convergence_results_type) :: convergence           !! `/convergence`
+      type(contact_results_type), allocatable :: contacts(:)  !! `/contact/<name>`
+      integer, allocatable :: element_points(:, :)            !! (8, elements)
+      type(string_type), allocatable :: cards(:)              !! card images
+      logical :: is_broken = .false.                          !! whether writing has failed
+      integer, public :: accepted = 0                         !! increments appended
+   contains
+      procedure :: open => open_results
+      procedure :: append
+      procedure :: finish
+   end type results_type
+
+contains
+
+   !> Prepares the results of a run; no file is touched yet.
+   !> Error: status_internal, when HDF5 does not start.
+   subroutine open_results(self, path, model, pairs, point_node, element_points, cards, error)
+      class(results_type), intent(inout) :: self          !! the writer
+      character(*), intent(in) :: path                    !! path of the results without extension
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      integer, intent(in) :: point_node(:)                !! (points) node index of each point
+      integer, intent(in) :: element_points(:, :)         !! (8, elements) points of each element
+      type(string_type), intent(in) :: cards(:)           !! card images as read
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      logical :: has_heat
+      integer :: i, expected
+
+      call open_hdf5(error)
+      if (allocated(error)) return
+      self%element_points = element_points
+      self%cards = cards
+      call self%file%start(path//'.vtkhdf')
+      call self%increments%start_increments(path//'.sta')
+      call self%passes%start_iterations(path//'.cvg')
+      has_heat = any(model%steps%analysis == analysis_coupled)
+      expected = expected_increments(model)
+      call self%fields%start(pairs, point_node, has_heat .or. any(model%materials%has_expansion), &
+         has_heat, expected)
+      call self%history%start(expected)
+      call self%convergence%start(8*expected)
+      allocate(self%contacts(size(pairs)))
+      do i = 1, size(pairs)
+         call self%contacts(i)%start(pairs(i), has_heat, expected)
+      end do
+   end subroutine open_results
+
+   !> Adds an accepted increment; publishes where that is due. The last increment of the last step
+   !> waits for `finish`.
+   !> Error: status_internal, when a file cannot be written.
+   subroutine append(self, record, model, pairs, run, error)
+      class(results_type), intent(inout) :: self          !! the writer
+      type(increment_record_type), intent(in) :: record   !! the increment
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(run_summary_type), intent(in) :: run           !! the run so far
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      real(dp) :: since
+      logical :: is_due, ends_run, fields_are_due
+      integer :: i
+
+      since = wall_seconds()
+      self%accepted = self%accepted + 1
+      call self%history%append(record)
+      call self%increments%add_increment(record)
+      if (allocated(record%iterations)) then
+         call self%convergence%append(record%iterations)
+         call self%passes%add_iterations(record%iterations)
+      end if
+      do i = 1, size(pairs)
+         call self%contacts(i)%append(pairs(i), record%contacts(i))
+      end do
+      fields_are_due = self%fields%is_due(record, model%steps(record%step)%field_frequency)
+      if (fields_are_due) call self%fields%append(record, pairs)
+      is_due = self%file%is_due()
+      ends_run = record%last_of_step .and. record%step == size(model%steps)
+      if ((record%last_of_step .or. is_due) .and. .not. ends_run) then
+         call publish(self, model, pairs, run, error)
+      else if (waiting_bytes(self) > memory_limit) then
+         call flush_all(self, model, pairs, error)
+         call self%file%charge(since, ended=.false.)
+      end if
+      self%is_broken = allocated(error)
+   end subroutine append
+
+   !> Publishes what is left and ends HDF5. Without any accepted increment the files of an earlier
+   !> run stay, but for `.cvg`, which then holds the iterations that failed.
+   !> Error: status_internal, when a file cannot be written.
+   subroutine finish(self, model, pairs, run, failed, error)
+      class(results_type), intent(inout) :: self          !! the writer
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(run_summary_type), intent(in) :: run           !! the whole run
+      type(iteration_record_type), intent(in) :: failed(:) !! passes of the increment that failed
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+
+      call self%convergence%append(failed)
+      call self%passes%add_iterations(failed)
+      if (self%accepted > 0) then
+         ! After a failure the working copy may lack rows: the file in place stays.
+         if (.not. self%is_broken) call publish(self, model, pairs, run, error)
+      else
+         call self%passes%empty(error)
+         if (.not. allocated(error)) call self%passes%write_waiting(error)
+      end if
+      call self%increments%close()
+      call self%passes%close()
+      call self%file%discard()
+      call close_hdf5()
+   end subroutine finish
+
+   pure function expected_increments(model) result(expected)
+      type(model_type), intent(in) :: model
+      integer :: expected
+      real(dp) :: total
+
+      total = sum(min(model%steps%period/model%steps%first_increment, &
+         real(model%steps%max_increments, dp)))
+      expected = max(1, nint(min(total, 1.0e6_dp)))
+   end function expected_increments
+
+   pure function waiting_bytes(self) result(bytes)
+      class(results_type), intent(in) :: self
+      integer(long) :: bytes
+      integer :: i
+
+      bytes = bytes_in(self%fields%sets) + bytes_in(self%history%sets) &
+         + bytes_in(self%convergence%sets)
+      do i = 1, size(self%contacts)
+         bytes = bytes + bytes_in(self%contacts(i)%sets)
+      end do
+   end function waiting_bytes
+
+   subroutine publish(self, model, pairs, run, error)
+      class(results_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(run_summary_type), intent(in) :: run
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: since
+      logical :: is_first
+
+      since = wall_seconds()
+      is_first = .not. self%file%in_place
+      call flush_all(self, model, pairs, error)
+      if (allocated(error)) return
+      call write_run(self%file%id, run, model, wall_seconds() - since, error)
+      if (allocated(error)) return
+      call self%file%close(error)
+      if (allocated(error)) return
+      if (is_first) then
+         call self%increments%empty(error)
+         if (allocated(error)) return
+         call self%passes%empty(error)
+         if (allocated(error)) return
+      end if
+      call self%file%put_in_place(error)
+      if (allocated(error)) return
+      call self%passes%write_waiting(error)
+      if (allocated(error)) return
+      call self%increments%write_waiting(error)
+      call self%file%charge(since, ended=.true.)
+   end subroutine publish
+
+   subroutine flush_all(self, model, pairs, error)
+      class(results_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(error_type), allocatable, intent(out) :: error
+      logical :: is_new
+      integer :: i
+
+      call self%file%open(is_new, error)
+      if (allocated(error)) return
+      if (is_new) call write_heads(self, model, pairs, error)
+      if (allocated(error)) return
+      call flush_sets(self%fields%sets, self%file%id, error)
+      if (allocated(error)) return
+      call self%fields%write_count(self%file%id, error)
+      if (allocated(error)) return
+      call flush_sets(self%history%sets, self%file%id, error)
+      if (allocated(error)) return
+      call flush_sets(self%convergence%sets, self%file%id, error)
+      if (allocated(error)) return
+      do i = 1, size(self%contacts)
+         call flush_sets(self%contacts(i)%sets, self%file%id, error)
+         if (allocated(error)) return
+      end do
+      if (is_new) call self%fields%write_links(self%file%id, error)
+      if (allocated(error)) return
+      if (is_new) call self%history%write_static(self%file%id, or_blank(model%load_label), &
+         error)
+   end subroutine flush_all
+
+   subroutine write_heads(self, model, pairs, error)
+      class(results_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      call write_result_mesh(self%file%id, model, self%fields%point_node, self%element_points, &
+         error)
+      if (allocated(error)) return
+      call self%fields%create_groups(self%file%id, error)
+      if (allocated(error)) return
+      call create_group(self%file%id, '/history', error)
+      if (allocated(error)) return
+      call create_group(self%file%id, '/convergence', error)
+      if (allocated(error)) return
+      call create_group(self%file%id, '/contact', error)
+      if (allocated(error)) return
+      do i = 1, size(pairs)
+         call self%contacts(i)%write_static(self%file%id, pairs(i), model%mesh%node_number, &
+            model%interactions(model%contacts(i)%interaction)%friction, error)
+         if (allocated(error)) return
+      end do
+      call create_group(self%file%id, '/run', error)
+      if (allocated(error)) return
+      call write_strings(self%file%id, '/deck', self%cards, error)
+   end subroutine write_heads
+
+end module results

@@ -1,0 +1,132 @@
+!> All that a run writes, in one object: result file, `.sta`, `.cvg`, listing, verdicts, progress
+!> line.
+module run_output
+   use contact_pairs, only: contact_pairs_type
+   use errors, only: error_type
+   use kinds, only: dp
+   use listing, only: listing_type
+   use model, only: model_type
+   use progress, only: progress_type
+   use records, only: increment_record_type, iteration_record_type
+   use results, only: results_type
+   use run_summaries, only: run_summary_type
+   use system_calls, only: wall_seconds
+   use text, only: string_type
+   use verification, only: verifier_type
+   implicit none
+   private
+   public :: run_output_type
+
+   !> The output of one run.
+   type :: run_output_type
+      private
+      type(run_summary_type), public :: run                    !! the caller keeps it up to date
+      type(results_type) :: results                            !! result file, `.sta`, `.cvg`
+      type(listing_type) :: listing                            !! `.lst`
+      type(verifier_type) :: verifier                          !! *VERIFY cards
+      type(progress_type) :: progress                          !! progress line
+      type(iteration_record_type), allocatable :: failed(:)    !! passes of an increment that failed
+      integer, allocatable :: point_node(:)                    !! (points) node index of each point
+   contains
+      procedure :: start
+      procedure :: accept
+      procedure :: warn
+      procedure :: fail
+      procedure :: finish
+      procedure :: accepted
+   end type run_output_type
+
+contains
+
+   !> Begins the output of a run: writes the head of the listing and touches no other file yet.
+   !> `run` is filled in before, but for its times and verdicts.
+   !> Error: status_internal, when the listing cannot be written or HDF5 does not start.
+   subroutine start(self, path, model, pairs, point_node, element_points, cards, quiet, error)
+      class(run_output_type), intent(inout) :: self       !! the output
+      character(*), intent(in) :: path                    !! path of the results without extension
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      integer, intent(in) :: point_node(:)                !! (points) node index of each point
+      integer, intent(in) :: element_points(:, :)         !! (8, elements) points of each element
+      type(string_type), intent(in) :: cards(:)           !! card images as read
+      logical, intent(in) :: quiet                        !! no progress line
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      real(dp) :: since
+
+      since = wall_seconds()
+      self%point_node = point_node
+      allocate(self%failed(0))
+      call self%verifier%start(model)
+      call self%progress%start(quiet)
+      call self%listing%open(path//'.lst', model, pairs, cards, self%run, error)
+      if (allocated(error)) return
+      call self%results%open(path, model, pairs, point_node, element_points, cards, error)
+      self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
+   end subroutine start
+
+   !> Takes an accepted increment.
+   !> Error: status_internal, when a file cannot be written.
+   subroutine accept(self, record, model, pairs, error)
+      class(run_output_type), intent(inout) :: self       !! the output
+      type(increment_record_type), intent(in) :: record   !! the increment
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      real(dp) :: since
+
+      since = wall_seconds()
+      call self%listing%add(record, model, pairs)
+      call self%verifier%judge(record, model, pairs, self%point_node)
+      call self%progress%show(record)
+      call self%results%append(record, model, pairs, self%run, error)
+      self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
+   end subroutine accept
+
+   !> Puts a warning of the run into the listing.
+   subroutine warn(self, warning)
+      class(run_output_type), intent(inout) :: self   !! the output
+      character(*), intent(in) :: warning             !! one sentence
+
+      call self%listing%add_warning(warning)
+   end subroutine warn
+
+   !> Takes the increment at which the run ended without convergence.
+   subroutine fail(self, reason, iterations)
+      class(run_output_type), intent(inout) :: self             !! the output
+      character(*), intent(in) :: reason                        !! what went wrong, one sentence
+      type(iteration_record_type), intent(in) :: iterations(:)  !! its passes, in their order
+
+      self%failed = iterations
+      call self%listing%add_failure(reason, iterations, self%results%accepted)
+   end subroutine fail
+
+   !> Ends the output: publishes what is left, then closes the listing. `run` then holds the
+   !> verdicts.
+   !> Error: status_internal, when a file cannot be written.
+   subroutine finish(self, model, pairs, error)
+      class(run_output_type), intent(inout) :: self       !! the output
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      type(error_type), allocatable :: listing_error
+      real(dp) :: since
+
+      since = wall_seconds()
+      self%run%verify_passed = self%verifier%passed_count()
+      self%run%verify_failed = self%verifier%failed_count()
+      call self%results%finish(model, pairs, self%run, self%failed, error)
+      self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
+      call self%listing%finish(model, pairs, self%verifier%outcomes, self%run, listing_error)
+      if (allocated(listing_error) .and. .not. allocated(error)) error = listing_error
+      call self%progress%clear()
+   end subroutine finish
+
+   !> Number of increments that were accepted.
+   pure function accepted(self) result(number)
+      class(run_output_type), intent(in) :: self   !! the output
+      integer :: number                            !! increments
+
+      number = self%results%accepted
+   end function accepted
+
+end module run_output

@@ -1,0 +1,149 @@
+!> The files `.sta`, one line an accepted increment, and `.cvg`, one line an iteration. Lines wait
+!> here until the result file that holds their increments is in place.
+module status_files
+   use errors, only: error_type, set_error, status_internal
+   use kinds, only: dp
+   use records, only: increment_record_type, iteration_record_type
+   implicit none
+   private
+   public :: status_file_type
+
+   integer, parameter :: line_length = 120   !! length of a line
+
+   !> A file that grows by whole lines.
+   type :: status_file_type
+      private
+      character(:), allocatable :: path               !! path of the file
+      character(:), allocatable :: heading            !! first line; begins with no digit
+      integer :: unit = 0                             !! Fortran unit
+      logical :: is_open = .false.                    !! whether the file is open
+      integer :: waiting = 0                          !! lines not yet written
+      character(line_length), allocatable :: lines(:) !! these lines
+   contains
+      procedure :: start_increments
+      procedure :: start_iterations
+      procedure :: add_increment
+      procedure :: add_iterations
+      procedure :: empty
+      procedure :: write_waiting
+      procedure :: close => close_file
+   end type status_file_type
+
+contains
+
+   !> Makes this the `.sta` file; nothing is touched yet.
+   subroutine start_increments(self, path)
+      class(status_file_type), intent(inout) :: self  !! the file
+      character(*), intent(in) :: path                !! its path
+
+      self%path = path
+      self%heading = 'increment  step            time            load  iterations  cut-backs'// &
+         '    residual  heat imb.  force imb.'
+      allocate(self%lines(64))
+   end subroutine start_increments
+
+   !> Makes this the `.cvg` file; nothing is touched yet.
+   subroutine start_iterations(self, path)
+      class(status_file_type), intent(inout) :: self  !! the file
+      character(*), intent(in) :: path                !! its path
+
+      self%path = path
+      self%heading = 'increment  iteration    residual       g min       g max  g kept'// &
+         '  pairs changed  cut-backs'
+      allocate(self%lines(256))
+   end subroutine start_iterations
+
+   !> Adds the line of an accepted increment.
+   subroutine add_increment(self, record)
+      class(status_file_type), intent(inout) :: self      !! the `.sta` file
+      type(increment_record_type), intent(in) :: record   !! the increment
+      character(line_length) :: line
+      integer :: passes, cut_backs
+      real(dp) :: residual
+
+      passes = 0
+      cut_backs = 0
+      residual = 0.0_dp
+      if (allocated(record%iterations)) passes = size(record%iterations)
+      if (passes > 0) then
+         cut_backs = record%iterations(passes)%cut_backs
+         residual = record%iterations(passes)%residual
+      end if
+      write (line, '(i0,t12,i4,2es16.8,i12,i11,es12.3,2es11.2)') record%increment, record%step, &
+         record%time, record%load, passes, cut_backs, residual, record%heat_imbalance, &
+         record%force_imbalance
+      call add_line(self, line)
+   end subroutine add_increment
+
+   !> Adds the lines of iterations.
+   subroutine add_iterations(self, iterations)
+      class(status_file_type), intent(inout) :: self            !! the `.cvg` file
+      type(iteration_record_type), intent(in) :: iterations(:)  !! passes, in their order
+      character(line_length) :: line
+      integer :: i
+
+      do i = 1, size(iterations)
+         associate (pass => iterations(i))
+            write (line, '(i0,t12,i9,3es12.3,i8,i15,i11)') pass%increment, pass%iteration, &
+               pass%residual, pass%g_min, pass%g_max, pass%g_kept, pass%pairs_changed, &
+               pass%cut_backs
+         end associate
+         call add_line(self, line)
+      end do
+   end subroutine add_iterations
+
+   subroutine add_line(self, line)
+      class(status_file_type), intent(inout) :: self
+      character(line_length), intent(in) :: line
+      character(line_length), allocatable :: more(:)
+
+      if (self%waiting == size(self%lines)) then
+         allocate(more(2*self%waiting))
+         more(:self%waiting) = self%lines
+         call move_alloc(more, self%lines)
+      end if
+      self%waiting = self%waiting + 1
+      self%lines(self%waiting) = line
+   end subroutine add_line
+
+   !> Empties the file of an earlier run and leaves it with its heading.
+   !> Error: status_internal, when it cannot be written.
+   subroutine empty(self, error)
+      class(status_file_type), intent(inout) :: self      !! the file
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      integer :: status
+
+      open (newunit=self%unit, file=self%path, status='replace', action='write', iostat=status)
+      self%is_open = status == 0
+      if (status == 0) write (self%unit, '(a)', iostat=status) self%heading
+      if (status == 0) flush (self%unit, iostat=status)
+      if (status /= 0) call set_error(error, status_internal, 'cannot write "'//self%path//'"')
+   end subroutine empty
+
+   !> Writes the lines that wait; the file was emptied before.
+   !> Error: status_internal, when they cannot be written.
+   subroutine write_waiting(self, error)
+      class(status_file_type), intent(inout) :: self      !! the file
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      integer :: i, status
+
+      do i = 1, self%waiting
+         write (self%unit, '(a)', iostat=status) trim(self%lines(i))
+         if (status /= 0) exit
+      end do
+      if (self%waiting > 0 .and. status == 0) flush (self%unit, iostat=status)
+      if (self%waiting > 0 .and. status /= 0) then
+         call set_error(error, status_internal, 'cannot write "'//self%path//'"')
+      end if
+      self%waiting = 0
+   end subroutine write_waiting
+
+   !> Closes the file.
+   subroutine close_file(self)
+      class(status_file_type), intent(inout) :: self   !! the file
+
+      if (self%is_open) close (self%unit)
+      self%is_open = .false.
+   end subroutine close_file
+
+end module status_files

@@ -1,0 +1,118 @@
+!> Judges the *VERIFY cards of a deck on the increments as they come.
+module verification
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_pairs, only: contact_pairs_type
+   use kinds, only: dp
+   use model, only: model_type, verify_type
+   use records, only: increment_record_type
+   use verify_values, only: values_asked_for
+   implicit none
+   private
+   public :: verifier_type, outcome_type
+
+   real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
+
+   !> What came of one check.
+   type :: outcome_type
+      logical :: judged = .false.               !! whether its time was reached
+      logical :: passed = .false.               !! the verdict
+      real(dp) :: found = 0.0_dp                !! value found, the worst of a set
+      real(dp) :: deviation = 0.0_dp            !! magnitude of its deviation, relative for REL
+      character(:), allocatable :: reason       !! why there is no value; else empty
+   end type outcome_type
+
+   !> All checks of a deck, in its order.
+   type :: verifier_type
+      type(outcome_type), allocatable :: outcomes(:)   !! one for each of model%verifications
+   contains
+      procedure :: start
+      procedure :: judge
+      procedure :: passed_count
+      procedure :: failed_count
+   end type verifier_type
+
+contains
+
+   !> Prepares the outcomes: a check that is never reached fails.
+   subroutine start(self, model)
+      class(verifier_type), intent(inout) :: self   !! the checks
+      type(model_type), intent(in) :: model         !! the model
+      integer :: i
+
+      allocate(self%outcomes(size(model%verifications)))
+      do i = 1, size(self%outcomes)
+         self%outcomes(i)%reason = 'the run ended before this time'
+      end do
+   end subroutine start
+
+   !> Judges the checks that name the time of an increment.
+   subroutine judge(self, record, model, pairs, point_node)
+      class(verifier_type), intent(inout) :: self         !! the checks
+      type(increment_record_type), intent(in) :: record   !! the increment
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      integer, intent(in) :: point_node(:)                !! (points) node index of each point
+      real(dp), allocatable :: values(:)
+      character(:), allocatable :: reason
+      integer :: i
+
+      do i = 1, size(self%outcomes)
+         if (.not. is_time(model%verifications(i), record, model)) cycle
+         call values_asked_for(model%verifications(i), record, model%mesh, pairs, point_node, &
+            values, reason)
+         self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
+      end do
+   end subroutine judge
+
+   !> Number of checks that passed.
+   pure function passed_count(self) result(number)
+      class(verifier_type), intent(in) :: self   !! the checks
+      integer :: number                          !! those that passed
+
+      number = count(self%outcomes%passed)
+   end function passed_count
+
+   !> Number of checks that failed or were never reached.
+   pure function failed_count(self) result(number)
+      class(verifier_type), intent(in) :: self   !! the checks
+      integer :: number                          !! the others
+
+      number = size(self%outcomes) - self%passed_count()
+   end function failed_count
+
+   pure function is_time(check, record, model) result(met)
+      type(verify_type), intent(in) :: check
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
+      logical :: met
+
+      if (check%at_last) then
+         met = record%last_of_step .and. record%step == size(model%steps)
+      else
+         met = abs(record%time - check%when) <= 1.0e-12_dp*abs(check%when) &
+            + landing*model%steps(record%step)%first_increment
+      end if
+   end function is_time
+
+   pure function outcome_of(check, values, reason) result(outcome)
+      type(verify_type), intent(in) :: check
+      real(dp), allocatable, intent(in) :: values(:)
+      character(*), intent(in) :: reason
+      type(outcome_type) :: outcome
+
+      outcome%judged = .true.
+      outcome%reason = reason
+      if (.not. allocated(values)) return
+      if (any(ieee_is_nan(values))) then
+         outcome%reason = 'there is no value (NaN)'
+         return
+      end if
+      outcome%found = values(maxloc(abs(values - check%value), dim=1))
+      outcome%deviation = abs(outcome%found - check%value)
+      outcome%passed = outcome%deviation <= check%tolerance
+      if (.not. check%relative) return
+      outcome%passed = outcome%deviation <= check%tolerance*abs(check%value)
+      if (abs(check%value) > 0.0_dp) outcome%deviation = outcome%deviation/abs(check%value)
+   end function outcome_of
+
+end module verification

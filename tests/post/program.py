@@ -1,0 +1,40 @@
+"""Runs of the program on copies of the published deck, for the tests here."""
+
+import os
+import subprocess
+from pathlib import Path
+
+PROGRAM = os.environ.get("THERCON", "thercon")
+CYLINDER = Path(__file__).resolve().parents[2] / "input" / "cylinder" / "cylinder.inp"
+
+
+def write_deck(path, model_cards=(), end_cards=()):
+    """Write the published deck with more cards before its first *STEP and at its end."""
+    lines = CYLINDER.read_text().splitlines()
+    step = next(i for i, line in enumerate(lines) if line.upper().startswith("*STEP"))
+    path.write_text("\n".join([*lines[:step], *model_cards, *lines[step:], *end_cards]) + "\n")
+    return path
+
+
+def start(deck):
+    """Start the program on a deck; the results go beside it."""
+    return subprocess.Popen(
+        [PROGRAM, "run", "--quiet", str(deck), "--out", str(deck.parent)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def run(deck):
+    """Run the program on a deck; return its exit status and what it said."""
+    process = start(deck)
+    said, _ = process.communicate()
+    return process.returncode, said
+
+
+def increments_in(sta):
+    """Return the running numbers that stand in a .sta file, without its heading."""
+    if not sta.exists():
+        return []
+    return [int(line.split()[0]) for line in sta.read_text().splitlines()[1:]]

@@ -1,0 +1,405 @@
+"""post/plot: every picture and table is written, tables hold the file's values, errors are told."""
+
+import csv
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+POST = Path(__file__).resolve().parents[2] / "post"
+sys.path.insert(0, str(POST))
+
+from synthetic import FRICTION, edge_of_contact, edge_of_stick, write_result  # noqa: E402
+
+from thercon_post import fields, profiles, style, zones  # noqa: E402
+from thercon_post.cells import Cells  # noqa: E402
+from thercon_post.cli import main, parser, spread  # noqa: E402
+from thercon_post.fine_mesh import refine  # noqa: E402
+from thercon_post.overlay import read_overlays  # noqa: E402
+from thercon_post.result import Result  # noqa: E402
+from thercon_post.units import Units  # noqa: E402
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    """Draw few dots: the tests look at what is written, not at the pictures."""
+    monkeypatch.setitem(style.SETTINGS, "savefig.dpi", 50)
+    monkeypatch.setitem(style.SETTINGS, "savefig.bbox", None)
+    monkeypatch.setattr(fields, "FINE_CELLS", 1000)
+
+
+@pytest.fixture
+def draw(tmp_path, capsys):
+    """Return a function that calls plot with --out and gives the names of the files written."""
+
+    def call(*arguments):
+        status = main([*map(str, arguments), "--out", str(tmp_path / "out")])
+        captured = capsys.readouterr()
+        assert status == 0, captured.err
+        written = [Path(line) for line in captured.out.splitlines()]
+        for path in written:
+            assert path.parent == tmp_path / "out"
+            assert path.stat().st_size > 0
+        return [path.name for path in written]
+
+    return call
+
+
+@pytest.fixture
+def fail(tmp_path, capsys):
+    """Return a function that calls plot, expects exit status 1, and gives the message."""
+
+    def call(*arguments):
+        assert main([*map(str, arguments)]) == 1
+        captured = capsys.readouterr()
+        assert captured.err.startswith("plot: error: ")
+        assert captured.err.count("\n") == 1
+        return captured.err
+
+    return call
+
+
+@pytest.fixture
+def result(tmp_path):
+    """Return the path of the usual synthetic result."""
+    path = tmp_path / "case.vtkhdf"
+    write_result(path)
+    return path
+
+
+def table(tmp_path, name):
+    """Return a written table as {column: list of texts}."""
+    with open(tmp_path / "out" / name, newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {column: [row[column] for row in rows] for column in rows[0]}
+
+
+def numbers(column):
+    """Return a column of a table as numbers."""
+    return np.array(column, dtype=float)
+
+
+def three(name):
+    """Return the files of one picture."""
+    return [f"{name}.{kind}" for kind in ("png", "svg", "csv")]
+
+
+def test_mesh_is_drawn_with_the_coordinates_of_the_file(draw, result, tmp_path):
+    assert draw("mesh", result) == three("case.mesh")
+    drawn = table(tmp_path, "case.mesh.csv")
+    with h5py.File(result) as file:
+        points = file["VTKHDF/Points"][()]
+        connectivity = file["VTKHDF/Connectivity"][()]
+    np.testing.assert_array_equal(numbers(drawn["node"]), connectivity + 1)
+    np.testing.assert_array_equal(numbers(drawn["x"]), points[connectivity, 0])
+    np.testing.assert_array_equal(numbers(drawn["y"]), points[connectivity, 1])
+
+
+@pytest.mark.parametrize("loads", [[540], [180, 360, 540]])
+def test_profiles_at_chosen_loads_hold_the_values_of_the_file(draw, result, tmp_path, loads):
+    name = "-".join(["case.profiles", *map(str, loads)])
+    assert draw("profiles", "--load", *loads, result) == three(name)
+    drawn = table(tmp_path, f"{name}.csv")
+    with h5py.File(result) as file:
+        rows = [int(np.flatnonzero(file["history/load"][()] == load)[0]) for load in loads]
+        contact = file["contact/CYLINDER"]
+        for key in ("pressure", "shear", "heat_flux", "status"):
+            np.testing.assert_array_equal(numbers(drawn[key]), contact[key][()][rows].ravel())
+        np.testing.assert_array_equal(numbers(drawn["x"]), np.tile(contact["x"][()], len(rows)))
+        pressure = contact["pressure"][()][rows].ravel()
+    np.testing.assert_array_equal(numbers(drawn["mu_p"]), FRICTION * pressure)
+
+
+def test_profiles_are_of_the_last_load_unless_said(draw, result, tmp_path):
+    assert draw("profiles", result) == three("case.profiles")
+    assert set(table(tmp_path, "case.profiles.csv")["load"]) == {"900.0"}
+
+
+def test_load_can_be_given_more_than_once_and_increments_by_number(draw, result, tmp_path):
+    draw("profiles", "--load", 60, "--load", 120, "--increment", 3, result)
+    drawn = table(tmp_path, "case.profiles-60-120-180.csv")
+    assert set(drawn["load"]) == {"60.0", "120.0", "180.0"}
+    assert set(drawn["increment"]) == {"1", "2", "3"}
+
+
+def test_zone_curves_are_the_sharpened_edges_on_the_axis_of_the_picture(draw, result, tmp_path):
+    assert draw("zones", result) == [*three("case.zones"), "case.zones-pairs.csv"]
+    drawn = table(tmp_path, "case.zones.csv")
+    load = numbers(drawn["load"])
+    np.testing.assert_allclose(numbers(drawn["edge_contact"]), edge_of_contact(load), rtol=1e-12)
+    np.testing.assert_allclose(numbers(drawn["edge_stick"]), edge_of_stick(load), rtol=1e-12)
+    with h5py.File(result) as file:
+        contact = file["contact/CYLINDER"]
+        np.testing.assert_array_equal(numbers(drawn["s_edge_stick"]), contact["edge_stick"][()])
+        pairs = table(tmp_path, "case.zones-pairs.csv")
+        np.testing.assert_array_equal(numbers(pairs["status"]), contact["status"][()].ravel())
+
+
+def test_zone_curves_along_s_are_those_of_the_file_and_keep_nan(draw, tmp_path):
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, loads=(2.0, 300.0, 600.0))
+    draw("zones", path, "--along", "s")
+    drawn = table(tmp_path, "case.zones.csv")
+    with h5py.File(path) as file:
+        stick = file["contact/CYLINDER/edge_stick"][()]
+    assert np.isnan(stick[0]) and not np.isnan(stick[1:]).any()
+    np.testing.assert_array_equal(numbers(drawn["edge_stick"]), stick)
+
+
+def test_zones_with_several_edges_are_drawn(draw, result, tmp_path):
+    with h5py.File(result, "r+") as file:
+        edges = file["contact/CYLINDER/edges_stick"]
+        edges[5:9, 1] = edges[5:9, 0]
+        edges[5:9, 0] *= 0.5
+    draw("zones", result)
+
+
+def test_zones_of_a_load_that_turns_are_drawn_over_time(result):
+    with h5py.File(result, "r+") as file:
+        file["history/load"][10:] = [540.0, 480.0, 420.0, 360.0, 300.0]
+    with Result(result) as opened:
+        contact = opened.contact("CYLINDER")
+        picture = zones.Picture(opened, contact, *contact.axis("x"))
+        np.testing.assert_array_equal(picture.abscissa, opened.history["time"])
+        assert picture.abscissa_label == "Time"
+
+
+def test_fields_are_those_of_the_file_at_the_load(draw, result, tmp_path):
+    quantities = ("temperature", "von_mises", "yy")
+    assert draw("fields", result) == three("case.fields")
+    assert draw("fields", result, "--load", 540, "--region", "contact", "--scale", 2) == three(
+        "case.fields-540-contact"
+    )
+    drawn = table(tmp_path, "case.fields-540-contact.csv")
+    with h5py.File(result) as file:
+        data, count = file["VTKHDF/PointData"], int(file["VTKHDF/NumberOfPoints"][0])
+        step = int(np.flatnonzero(file["VTKHDF/Steps/Values"][()] == 540.0)[0])
+        rows = slice(step * count, (step + 1) * count)
+        expected = [data["temperature"][rows], data["von_mises"][rows], data["stress"][rows, 1]]
+        for quantity, values in zip(quantities, expected):
+            np.testing.assert_array_equal(numbers(drawn[quantity]), values)
+        moved = file["VTKHDF/Points"][:, 1] + 2.0 * data["displacement"][rows, 1]
+        np.testing.assert_allclose(numbers(drawn["y_drawn"]), moved, rtol=1e-14, atol=1e-14)
+
+
+def test_fields_of_chosen_quantities_only(draw, result, tmp_path):
+    assert draw("fields", result, "--quantity", "xy") == three("case.fields-xy")
+    columns = table(tmp_path, "case.fields-xy.csv")
+    assert "xy" in columns and "temperature" not in columns
+    assert parser().parse_args(spread(["fields", "--quantity", "xx", "yy", "r"])).results == ["r"]
+
+
+def test_a_load_without_fields_names_the_nearest_with_fields(fail, tmp_path):
+    write_result(tmp_path / "thin.vtkhdf", fields_every=5)
+    assert "nearest with fields: 600" in fail("fields", tmp_path / "thin.vtkhdf", "--load", 660)
+
+
+def test_convergence_holds_every_iteration_and_marks_what_failed(draw, tmp_path):
+    for name, failing in (("picard", True), ("good", False)):
+        write_result(tmp_path / f"{name}.vtkhdf", failing=failing, loads=(60.0, 120.0, 180.0))
+    picard, good = tmp_path / "picard.vtkhdf", tmp_path / "good.vtkhdf"
+    assert draw("convergence", picard) == three("picard.convergence")
+    drawn = table(tmp_path, "picard.convergence.csv")
+    with h5py.File(picard) as file:
+        for key, values in file["convergence"].items():
+            np.testing.assert_array_equal(numbers(drawn[key]), values[()])
+    outcome = {}
+    for increment, attempt, kind in zip(drawn["increment"], drawn["attempt"], drawn["outcome"]):
+        outcome[int(increment), int(attempt)] = kind
+    accepted = {(increment, 1): "accepted" for increment in (1, 2, 3)}
+    assert outcome == accepted | {(4, 1): "cut back", (4, 2): "failed"}
+    assert draw("convergence", picard, good) == three("picard.convergence-good")
+    both = table(tmp_path, "picard.convergence-good.csv")
+    assert both["result"].count("good") == 12 and "failed" in both["outcome"]
+
+
+def test_convergence_without_iterations_says_so(fail, result):
+    with h5py.File(result, "r+") as file:
+        del file["convergence"]
+    assert "holds no iterations" in fail("convergence", result)
+
+
+@pytest.mark.parametrize("choices", [{"heat": False}, {"friction": None}])
+def test_decks_without_heat_or_friction_are_drawn(draw, tmp_path, choices):
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, loads=(300.0, 600.0), **choices)
+    for picture in ("profiles", "zones", "fields"):
+        draw(picture, path)
+    columns = table(tmp_path, "case.profiles.csv")
+    assert ("heat_flux" in columns) == choices.get("heat", True)
+    assert ("mu_p" in columns) == ("friction" not in choices)
+
+
+def test_every_contact_has_a_picture_of_its_own(draw, fail, tmp_path):
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, loads=(300.0, 600.0), contacts=("LEFT", "RIGHT"))
+    assert draw("profiles", path) == [
+        *three("case.profiles-LEFT"),
+        *three("case.profiles-RIGHT"),
+    ]
+    assert draw("profiles", path, "--contact", "RIGHT") == three("case.profiles-RIGHT")
+    assert "no contact 'RIHGT', nearest: 'RIGHT'" in fail("zones", path, "--contact", "RIHGT")
+
+
+@pytest.mark.parametrize("units", ["cm MPa W C", ""])
+def test_axes_have_the_units_of_the_file_or_none(tmp_path, units):
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, units=units)
+    options = parser().parse_args(["profiles", str(path)])
+    with Result(path) as opened:
+        contact = opened.contact("CYLINDER")
+        figure = profiles.Picture(opened, contact, [8], options).draw([])
+        labels = [axes.get_ylabel() for axes in figure.axes] + [figure.axes[-1].get_xlabel()]
+        style.plt.close(figure)
+        load = opened.units.load_label(opened.load_label)
+    if units:
+        assert labels == ["Contact traction (MPa)", "Heat flux $q$ (W/cm$^2$)", "$x$ (cm)"]
+        assert load == "Temperature of node set TOP (\N{DEGREE SIGN}C)"
+    else:
+        assert labels == ["Contact traction", "Heat flux $q$", "$x$"]
+        assert load == "Temperature of node set TOP"
+
+
+def test_load_labels_tell_temperatures_displacements_and_time():
+    units = Units({"length": "mm", "stress": "MPa", "power": "mW", "temperature": "K"})
+    assert units.load_label("temperature of HOT") == "Temperature of HOT (K)"
+    assert units.load_label("displacement 2 of TOP") == "Displacement 2 of TOP (mm)"
+    assert units.load_label("time") == "Time"
+
+
+def test_a_digitised_figure_is_laid_over(draw, result, tmp_path):
+    figure = tmp_path / "fig2.csv"
+    figure.write_text("# from the printed figure\nx,pressure,heat_flux\n0,70,\n3,60,\n1,,0.9\n")
+    draw("profiles", result, "--load", 540, "--with", figure)
+    svg = (tmp_path / "out" / "case.profiles-540.svg").read_text()
+    draw("profiles", result, "--load", 540)
+    assert svg != (tmp_path / "out" / "case.profiles-540.svg").read_text()
+    figure.write_text("load,edge_contact\n100,2.5\n900,7.5\n")
+    draw("zones", result, "--with", figure)
+
+
+def test_tables_written_here_can_be_laid_over(draw, result, tmp_path):
+    draw("profiles", result, "--load", 300, 540)
+    draw("zones", result)
+    written = tmp_path / "out" / "case.profiles-300-540.csv"
+    (overlay,) = read_overlays([written], "x", profiles.CURVES, ["s", *profiles.PASSED_OVER])
+    pressure = numbers(table(tmp_path, written.name)["pressure"])
+    assert [len(overlay.columns["pressure"][rows]) for rows in overlay.curves("x")] == [21, 21]
+    np.testing.assert_array_equal(overlay.columns["pressure"], pressure)
+    draw("zones", result, "--with", tmp_path / "out" / "case.zones.csv")
+
+
+@pytest.mark.parametrize(
+    ("picture", "text", "message"),
+    [
+        ("profiles", "x,presure\n0,1\n", ":1: unknown column 'presure', nearest: 'pressure'"),
+        ("profiles", "pressure\n1\n", "wanted: 'x' and at least one of pressure, shear, heat_flux"),
+        ("profiles", "x\n1\n", "columns are x; wanted: 'x' and at least one of"),
+        ("profiles", "x,shear,x\n1,2,3\n", "stands twice"),
+        ("profiles", "x,pressure\n0,1\n2\n", ":3: 1 fields, the heading has 2"),
+        ("profiles", "x,pressure\n0,one\n", ":2: 'one' in column pressure is no number"),
+        ("profiles", "x,pressure\n", "no rows"),
+        ("profiles", "", "is empty"),
+        ("zones", "x,pressure\n0,1\n", "wanted: 'load' and at least one of edge_contact"),
+    ],
+)
+def test_a_digitised_figure_that_does_not_fit_is_refused(fail, result, picture, text, message):
+    figure = result.with_name("figure.csv")
+    figure.write_text(text)
+    told = fail(picture, result, "--with", figure)
+    assert str(figure) in told and message in told
+
+
+def test_what_is_no_result_is_refused(fail, tmp_path):
+    assert "no such file" in fail("mesh", tmp_path / "none.vtkhdf")
+    (tmp_path / "text.vtkhdf").write_text("text")
+    assert "is not an HDF5 file" in fail("mesh", tmp_path / "text.vtkhdf")
+    with h5py.File(tmp_path / "other.vtkhdf", "w") as file:
+        file["run"] = 1
+    assert "not a thercon result" in fail("mesh", tmp_path / "other.vtkhdf")
+    assert "is a folder" in fail("mesh", tmp_path)
+
+
+def test_an_unknown_load_names_the_nearest(fail, result):
+    assert "no increment has load 550; nearest: 540 and 600" in fail(
+        "profiles", result, "--load", 550
+    )
+    assert "no increment 99: there are 1 to 15" in fail("profiles", result, "--increment", 99)
+
+
+def test_mistakes_on_the_command_line_have_status_1(fail, result):
+    assert "invalid choice: 'zone'" in fail("zone", result)
+    assert "--lod" in fail("profiles", result, "--lod", 540)
+    assert "no field 'flux_x'" in fail("fields", result, "--quantity", "flux_x")
+    assert "trade: not built yet" in fail("trade", result, "--out", "x")
+
+
+def test_help_of_every_picture(capsys):
+    for picture in ([], ["mesh"], ["profiles"], ["zones"], ["fields"], ["convergence"]):
+        with pytest.raises(SystemExit) as ended:
+            main([*picture, "--help"])
+        assert ended.value.code == 0
+        assert "usage: plot" in capsys.readouterr().out
+
+
+SQUARE = np.array([[0, 0], [2, 0], [2, 1], [0, 1], [1, 0], [2, 0.5], [1, 1], [0, 0.5]])
+TRIANGLE = np.array([[0, 0], [2, 0], [0, 1], [1, 0], [1, 0.5], [0, 0.5]])
+
+
+@pytest.mark.parametrize(
+    ("kind", "points", "area", "degree"),
+    [
+        (23, SQUARE, 2.0, 2),
+        (9, SQUARE[:4], 2.0, 1),
+        (22, TRIANGLE, 1.0, 2),
+        (5, TRIANGLE[:3], 1.0, 1),
+    ],
+)
+def test_cut_elements_fill_their_area_and_carry_polynomials(kind, points, area, degree):
+    one = {kind: np.arange(len(points))[None, :]}
+    body = {kind: np.array([1])}
+    cells = Cells(points.astype(float), np.arange(len(points)), one, body, body)
+    fine = refine(cells, 4)
+    (x, y), (a, b, c) = fine.values(cells.points).T, fine.triangles.T
+    doubled = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
+    assert np.all(doubled > 0.0)
+    np.testing.assert_allclose(0.5 * doubled.sum(), area, rtol=1e-13)
+    np.testing.assert_allclose(fine.values((points[:, 0] + 1.0) ** degree), (x + 1.0) ** degree)
+
+
+def test_bodies_share_no_points_of_the_cut_mesh_and_neighbours_do(result):
+    with Result(result) as opened:
+        cells = opened.cells
+    fine = refine(cells, 3)
+    (_, _, points), (bodies,) = fine.sources[0], cells.bodies.values()
+    upper, lower = set(points[bodies == 1].ravel()), set(points[bodies == 2].ravel())
+    assert not upper & lower
+    # 10 by 4 elements cut in three: 31 by 13 points if neighbours share theirs.
+    assert len(upper) == len(lower) == 31 * 13
+
+
+def test_faces_are_the_boundary_edges_along_the_contact(result):
+    with Result(result) as opened:
+        cells, contact = opened.cells, opened.contact("CYLINDER")
+        face = cells.face(contact["slave_node"])
+    assert len(face) == 10
+    x, y = cells.points[face.ravel()].T
+    np.testing.assert_allclose(y, x**2 / 200.0, atol=1e-12)
+
+
+def test_launcher_takes_the_python_of_the_build_and_names_missing_packages(tmp_path):
+    post = shutil.copytree(POST, tmp_path / "post", ignore=shutil.ignore_patterns("__pycache__"))
+    bare = [sys.executable, "-S", "-E", str(post / "plot"), "--help"]
+    told = subprocess.run(bare, capture_output=True, text=True, check=False)
+    assert told.returncode == 1
+    assert "is missing; `./setup.sh build` prepares" in told.stderr
+    python = tmp_path / "build" / "venv" / "bin" / "python"
+    python.parent.mkdir(parents=True)
+    python.write_text('#!/bin/sh\necho "build: $*"\n')
+    python.chmod(0o755)
+    told = subprocess.run([post / "plot", "mesh", "a"], capture_output=True, text=True, check=False)
+    assert told.stdout == f"build: {post / 'plot'} mesh a\n"

@@ -1,0 +1,249 @@
+"""The result file of the published cylinder, read with VTK's own reader and with h5py."""
+
+import re
+import shutil
+
+import h5py
+import numpy as np
+import pytest
+from program import CYLINDER, increments_in, run, write_deck
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
+from vtkmodules.vtkIOHDF import vtkHDFReader
+
+INCREMENTS, NODES, ELEMENTS, PAIRS = 45, 326, 92, 21
+QUADRATIC_QUAD = 23
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """Return the folder with the results of the published deck."""
+    folder = tmp_path_factory.mktemp("cylinder")
+    deck = folder / "cylinder.inp"
+    shutil.copy(CYLINDER, deck)
+    assert run(deck) == (0, "")
+    return folder
+
+
+@pytest.fixture
+def stored(results):
+    """Return the result file, open with h5py."""
+    with h5py.File(results / "cylinder.vtkhdf") as file:
+        yield file
+
+
+@pytest.fixture
+def reader(results):
+    """Return VTK's reader on the result file."""
+    reader = vtkHDFReader()
+    reader.SetFileName(str(results / "cylinder.vtkhdf"))
+    reader.UpdateInformation()
+    return reader
+
+
+def grid_at(reader, step):
+    """Return the times that the reader knows, and its grid at one of them."""
+    information = reader.GetOutputInformation(0)
+    times = information.Get(pipeline.TIME_STEPS())
+    information.Set(pipeline.UPDATE_TIME_STEP(), times[step])
+    reader.Update()
+    return times, reader.GetOutput()
+
+
+def arrays_of(data):
+    """Return the arrays of point or cell data by their names."""
+    return {
+        data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())
+    }
+
+
+@pytest.mark.parametrize("step", [11, INCREMENTS - 1])
+def test_vtk_reads_the_values_that_h5py_reads(reader, stored, step):
+    times, grid = grid_at(reader, step)
+    assert list(times) == list(stored["history/time"])
+    assert (grid.GetNumberOfPoints(), grid.GetNumberOfCells()) == (NODES, ELEMENTS)
+    points = arrays_of(grid.GetPointData())
+    assert points.keys() == stored["VTKHDF/PointData"].keys()
+    rows = slice(step * NODES, (step + 1) * NODES)
+    for name, values in points.items():
+        expected = stored[f"VTKHDF/PointData/{name}"]
+        expected = expected[()] if name == "node_id" else expected[rows]
+        np.testing.assert_array_equal(values, expected, err_msg=name)
+    cells = arrays_of(grid.GetCellData())
+    assert cells.keys() == {"element_id", "body", "material"}
+    for name, values in cells.items():
+        np.testing.assert_array_equal(values, stored[f"VTKHDF/CellData/{name}"], err_msg=name)
+
+
+def test_the_two_time_steps_differ(reader):
+    fields = []
+    for step in (11, INCREMENTS - 1):
+        _, grid = grid_at(reader, step)
+        fields.append(arrays_of(grid.GetPointData())["temperature"].copy())
+    assert fields[0].max() == pytest.approx(240.0, rel=1e-9)
+    assert fields[1].max() == pytest.approx(900.0, rel=1e-9)
+
+
+def test_cells_are_eight_node_quadrilaterals_with_midside_nodes_in_the_order_of_vtk(reader):
+    _, grid = grid_at(reader, 0)
+    xy = vtk_to_numpy(grid.GetPoints().GetData())[:, :2]
+    for cell in range(ELEMENTS):
+        assert grid.GetCellType(cell) == QUADRATIC_QUAD
+        ids = grid.GetCell(cell).GetPointIds()
+        x = xy[[ids.GetId(i) for i in range(8)]]
+        for side in range(4):
+            ends = x[side], x[(side + 1) % 4]
+            off = np.linalg.norm(x[4 + side] - (ends[0] + ends[1]) / 2)
+            assert off < 0.05 * np.linalg.norm(ends[1] - ends[0])
+
+
+def test_node_and_element_numbers_are_those_of_the_deck(stored):
+    deck = CYLINDER.read_text()
+    for keyword, ids, fields in (("*NODE", "PointData/node_id", 3), ("*ELEMENT", "", 9)):
+        numbers = set()
+        for block in re.split(r"^\*(?!\*)", deck, flags=re.MULTILINE):
+            if not re.match(keyword[1:] + r"\s*(,|$)", block, re.IGNORECASE | re.MULTILINE):
+                continue
+            for card in block.splitlines()[1:]:
+                if not card.startswith("**") and card.count(",") >= fields - 1:
+                    numbers.add(int(card.split(",")[0]))
+        ids = stored["VTKHDF/" + (ids or "CellData/element_id")][()]
+        assert set(ids.tolist()) == numbers
+        assert len(ids) == len(numbers)
+
+
+def test_contact_fields_stand_on_both_faces_and_are_nan_elsewhere(stored):
+    node_id = stored["VTKHDF/PointData/node_id"][()]
+    (name,) = stored["contact"]
+    contact = stored["contact"][name]
+    for face in ("slave_node", "master_node"):
+        points = [int(np.flatnonzero(node_id == node)[0]) for node in contact[face]]
+        for quantity in ("pressure", "shear", "gap", "status", "conductance", "heat_flux"):
+            field = stored[f"VTKHDF/PointData/contact_{quantity}"][()].reshape(INCREMENTS, NODES)
+            np.testing.assert_array_equal(field[:, points], contact[quantity], err_msg=quantity)
+            assert np.count_nonzero(~np.isnan(field)) == INCREMENTS * 2 * PAIRS
+
+
+def test_von_mises_is_that_of_the_stress(stored):
+    xx, yy, zz, xy = stored["VTKHDF/PointData/stress"][()].T
+    expected = np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)
+    np.testing.assert_allclose(stored["VTKHDF/PointData/von_mises"], expected, rtol=1e-12)
+
+
+def test_datasets_have_the_shapes_that_are_promised(stored):
+    shapes = {
+        (): ("time load iterations heat_in heat_out heat_imbalance force_imbalance", "history"),
+        (PAIRS,): (
+            "gap pressure shear slip status conductance heat_flux slave_temperature"
+            " master_temperature",
+            "contact/{}",
+        ),
+        (4,): ("edges_contact edges_stick", "contact/{}"),
+        None: ("normal_force shear_force heat_rate edge_contact edge_stick", "contact/{}"),
+    }
+    (name,) = stored["contact"]
+    for width, (datasets, group) in shapes.items():
+        for dataset in datasets.split():
+            shape = stored[f"{group.format(name)}/{dataset}"].shape
+            assert shape == (INCREMENTS, *(width or ())), dataset
+    for dataset in ("slave_node", "master_node", "x", "y", "s", "weight"):
+        assert stored[f"contact/{name}/{dataset}"].shape == (PAIRS,)
+    status = stored[f"contact/{name}/status"]
+    assert status.dtype.kind == "i"
+    assert set(np.unique(status)) == {0, 1, 2}
+    assert stored["VTKHDF/PointData/displacement"].shape == (INCREMENTS * NODES, 3)
+    assert stored["VTKHDF/PointData/stress"].shape == (INCREMENTS * NODES, 4)
+    assert stored["history/load"].attrs["label"]
+
+
+def test_pairs_are_ordered_along_the_surface(stored):
+    (name,) = stored["contact"]
+    contact = stored["contact"][name]
+    assert contact["s"][0] == 0.0
+    assert np.all(np.diff(contact["s"]) > 0)
+    assert contact["x"][0] < contact["x"][-1]
+
+
+def test_one_row_an_iteration_in_file_and_cvg(results, stored):
+    rows = stored["convergence"]
+    counts = np.bincount(rows["increment"][()], minlength=INCREMENTS + 1)[1:]
+    np.testing.assert_array_equal(counts, stored["history/iterations"])
+    lines = (results / "cylinder.cvg").read_text().splitlines()[1:]
+    assert len(lines) == len(rows["residual"])
+    for line, increment, iteration in zip(lines, rows["increment"], rows["iteration"], strict=True):
+        assert line.split()[:2] == [str(increment), str(iteration)]
+
+
+def test_sta_has_one_line_an_increment_under_a_heading(results):
+    assert increments_in(results / "cylinder.sta") == list(range(1, INCREMENTS + 1))
+    assert not (results / "cylinder.sta").read_text()[0].isdigit()
+
+
+def test_the_file_holds_the_card_images_and_the_run(results, stored):
+    cards = stored["deck"].asstr()[()].tolist()
+    assert cards == (results / "cylinder.inp").read_text().splitlines()
+    run_attributes = stored["run"].attrs
+    assert run_attributes["solver"].upper() == "SKYLINE"
+    for name in "equations_thermal equations_mechanical contact_unknowns factor_bytes".split():
+        assert run_attributes[name] > 0, name
+    for name in "read assemble reduce iterate recover write".split():
+        assert run_attributes[f"seconds_{name}"] > 0, name
+    for name in "heat contact friction coupling".split():
+        assert name in run_attributes["modelled"]
+    checks = sum(line.endswith(("   PASS", "   FAIL")) for line in listing_of(results))
+    assert run_attributes["verify_passed"] == checks > 0
+    assert run_attributes["verify_failed"] == 0
+    assert run_attributes["version"]
+
+
+def listing_of(results):
+    """Return the lines of the listing."""
+    return (results / "cylinder.lst").read_text().splitlines()
+
+
+def test_the_zone_diagram_of_the_listing_is_the_status(results, stored):
+    lines = listing_of(results)
+    assert max(map(len, lines)) <= 132
+    first = next(i for i, line in enumerate(lines) if line.startswith("ZONE DIAGRAM"))
+    rows = [line.split() for line in lines[first:] if re.match(r" *\d+ +\S+ +I", line)]
+    (name,) = stored["contact"]
+    numerals = np.array(["I", "II", "III"])[stored[f"contact/{name}/status"]]
+    assert [row[2:] for row in rows] == numerals.tolist()
+    assert [float(row[1]) for row in rows] == pytest.approx(stored["history/load"][()], rel=1e-5)
+
+
+def test_two_runs_give_the_same_numbers(results, stored, tmp_path):
+    deck = tmp_path / "cylinder.inp"
+    shutil.copy(CYLINDER, deck)
+    assert run(deck) == (0, "")
+    with h5py.File(tmp_path / "cylinder.vtkhdf") as other:
+
+        def compare(name, item):
+            if isinstance(item, h5py.Dataset):
+                np.testing.assert_array_equal(item[()], other[name][()], err_msg=name)
+
+        stored.visititems(compare)
+
+
+def test_a_check_that_fails_is_exit_status_4(tmp_path):
+    cards = ['*VERIFY, KIND=ANALYTIC, SOURCE="wrong on purpose"', "time, , LAST, 901., 1E-6, REL"]
+    deck = write_deck(tmp_path / "wrong.inp", cards)
+    status, _ = run(deck)
+    assert status == 4
+    with h5py.File(tmp_path / "wrong.vtkhdf") as file:
+        assert file["run"].attrs["verify_failed"] == 1
+        assert len(file["history/time"]) == INCREMENTS
+
+
+def test_a_run_without_an_increment_leaves_the_older_result(results, tmp_path):
+    deck = write_deck(tmp_path / "cylinder.inp", ["*FIXED POINT, MAXITER=1, TOL=1E-14"])
+    older = results / "cylinder.vtkhdf"
+    shutil.copy(older, tmp_path)
+    shutil.copy(results / "cylinder.sta", tmp_path)
+    status, said = run(deck)
+    assert status == 2, said
+    assert (tmp_path / "cylinder.vtkhdf").read_bytes() == older.read_bytes()
+    assert increments_in(tmp_path / "cylinder.sta") == list(range(1, INCREMENTS + 1))
+    assert increments_in(tmp_path / "cylinder.cvg")
+    assert set(increments_in(tmp_path / "cylinder.cvg")) == {1}
+    assert "NOT CONVERGED" in (tmp_path / "cylinder.lst").read_text()

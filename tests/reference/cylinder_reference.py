@@ -1,0 +1,399 @@
+#!/usr/bin/env python3
+"""Independent solution of the published cylinder (Zaitsev, 1987), to check thercon against: numpy and scipy only.
+
+It takes the mesh and the material constants from the deck and shares nothing else with the program. Where thercon keeps
+the bodies' stiffness on the contact nodes and iterates by eq. (4.2), this solver takes their flexibility (bodies that
+their supports hold) and Newton's method on log(omega), the statuses of the pairs held within a step. Element matrices,
+refinement, contact geometry and zone edges are written anew from their definitions.
+
+Per pair: gap g >= 0, pressure p >= 0, shear t (on the slave, towards growing s), relative tangential displacement l,
+conductance w, heat flux q = w (T_slave - T_master). Nodal force or heat is traction or flux times the pair's weight.
+
+    cylinder_reference.py [--deck DECK] [--levels N] [--step DT]      prints a table at 180, 360, 540, 720 and 900 C
+"""
+import argparse
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import splu
+
+FRICTION, GAS_A, GAS_B, CLOSED_0, CLOSED_1 = 0.155, 0.24e-5, 0.3e-5, 0.8, 0.24
+OPEN, STICK = 0, 2                    # status; +1 and -1: slip with shear of that sign
+GAUSS = [(-0.6**0.5, 5 / 9), (0.0, 8 / 9), (0.6**0.5, 5 / 9)]
+CORNERS = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+SIDES = [(0, -1), (1, 0), (0, 1), (-1, 0)]
+DECK = Path(__file__).resolve().parents[2] / "input" / "cylinder" / "cylinder.inp"
+
+
+# The deck, shape functions and refinement
+
+def read_deck(path):
+    """Bodies of a deck in its order (coordinates, elements, contact face as ordered nodes, material)."""
+    blocks, constants = [], {}
+    for line in Path(path).read_text().splitlines():
+        if line.startswith("**"):
+            continue
+        if line.startswith("*"):
+            key, *parameters = [field.strip().upper() for field in line.split(",")]
+            blocks.append((key, parameters, []))
+        else:
+            blocks[-1][2].append([field.strip() for field in line.split(",")])
+    nodes = {int(r[0]): tuple(map(float, r[1:3])) for key, _, rows in blocks if key == "*NODE" for r in rows}
+    elements = [{int(r[0]): [int(n) for n in r[1:]] for r in rows} for key, _, rows in blocks if key == "*ELEMENT"]
+    faces = [[(int(r[0]), int(r[1][1:]) - 1) for r in rows] for key, _, rows in blocks if key == "*SURFACE"]
+    for key in ("*ELASTIC", "*EXPANSION", "*CONDUCTIVITY"):
+        constants[key] = [[float(v) for v in rows[0]] for name, _, rows in blocks if name == key]
+    bodies = []
+    for k, own in enumerate(elements):
+        numbers = sorted({n for e in own.values() for n in e})
+        index = {n: i for i, n in enumerate(numbers)}
+        face = {own[e][side] for e, side in faces[k]} | {own[e][(side + 1) % 4] for e, side in faces[k]} \
+            | {own[e][side + 4] for e, side in faces[k]}
+        material = SimpleNamespace(young=constants["*ELASTIC"][k][0], poisson=constants["*ELASTIC"][k][1],
+                                   expansion=constants["*EXPANSION"][k][0], conductivity=constants["*CONDUCTIVITY"][k][0])
+        bodies.append(SimpleNamespace(xy=np.array([nodes[n] for n in numbers]), material=material,
+                                      elements=[[index[n] for n in e] for e in own.values()],
+                                      face=[index[n] for n in sorted(face, key=lambda n: nodes[n][0])]))
+    return bodies
+
+
+def shape(a, b):
+    """The eight shape functions and their derivatives (2, 8) by a and b."""
+    value, slope = [], []
+    for p, q in CORNERS:
+        value.append((1 + a * p) * (1 + b * q) * (a * p + b * q - 1) / 4)
+        slope.append((p * (1 + b * q) * (2 * a * p + b * q) / 4, q * (1 + a * p) * (2 * b * q + a * p) / 4))
+    for p, q in SIDES:
+        value.append((1 - a * a) * (1 + b * q) / 2 if p == 0 else (1 + a * p) * (1 - b * b) / 2)
+        slope.append((-a * (1 + b * q), (1 - a * a) * q / 2) if p == 0 else ((1 - b * b) * p / 2, -b * (1 + a * p)))
+    return np.array(value), np.array(slope).T
+
+
+def refine(body):
+    """Each element becomes four; new nodes lie at the quarter points of the parametric element."""
+    xy, number, elements = list(body.xy), {}, []
+
+    def node(element, a, b, key):
+        if key not in number:
+            number[key] = len(xy)
+            xy.append(shape(a, b)[0] @ body.xy[element])
+        return number[key]
+
+    for element in body.elements:
+        centre = node(element, 0, 0, ("centre", *element))
+        ring = [element[0], element[4], element[1], element[5], element[2], element[6], element[3], element[7]]
+        place = [p for pair in zip(CORNERS, SIDES) for p in pair]
+        outer = [node(element, *np.add(place[k], place[k - 7]) / 2, tuple(sorted((ring[k], ring[k - 7]))))
+                 for k in range(8)]
+        inner = [node(element, *np.multiply(SIDES[k], 0.5), (*element, k)) for k in range(4)]
+        for k in range(4):
+            corners = [ring[2 * k], ring[2 * k + 1], centre, ring[2 * k - 1]]
+            elements.append(corners + [outer[2 * k], inner[k], inner[k - 1], outer[2 * k - 1]])
+    face = [body.face[0]]
+    for first, second in zip(body.face, body.face[1:]):
+        face += [number[tuple(sorted((first, second)))], second]
+    return SimpleNamespace(xy=np.array(xy), elements=elements, face=face, material=body.material)
+
+
+# One body: what its contact nodes do under unit nodal forces, unit nodal heat and unit temperature of its end
+
+def respond(body, end, hot):
+    """Flexibility of the contact nodes (x and y of each): u = load u_load + heating Q + flexibility F, and
+    T = load t_load + resistance Q, with `load` the temperature of the end section y = end when it is `hot`, else 0."""
+    xy, elements, m = body.xy, np.array(body.elements), body.material
+    count, nodes = len(elements), len(xy)
+    factor = m.young / ((1 + m.poisson) * (1 - 2 * m.poisson))
+    elasticity = factor * np.array([[1 - m.poisson, m.poisson, 0], [m.poisson, 1 - m.poisson, 0],
+                                    [0, 0, 0.5 - m.poisson]])
+    thermal_stress = m.young * m.expansion / (1 - 2 * m.poisson) * np.array([1, 1, 0])
+    conduction, stiffness = np.zeros((count, 8, 8)), np.zeros((count, 16, 16))
+    coupling, strain = np.zeros((count, 16, 8)), np.zeros((count, 3, 16))
+    for a, weight_a in GAUSS:
+        for b, weight_b in GAUSS:
+            value, slope = shape(a, b)
+            jacobian = slope @ xy[elements]
+            area = weight_a * weight_b * np.linalg.det(jacobian)
+            slope = np.linalg.solve(jacobian, np.broadcast_to(slope, (count, 2, 8)))
+            strain[:, 0, 0::2] = strain[:, 2, 1::2] = slope[:, 0]
+            strain[:, 1, 1::2] = strain[:, 2, 0::2] = slope[:, 1]
+            turned = strain.transpose(0, 2, 1) * area[:, None, None]
+            conduction += m.conductivity * (slope.transpose(0, 2, 1) * area[:, None, None]) @ slope
+            stiffness += turned @ elasticity @ strain
+            coupling += (turned @ thermal_stress)[:, :, None] * value
+    freedoms = np.stack([2 * elements, 2 * elements + 1], axis=2).reshape(count, 16)
+
+    def assemble(blocks, rows, columns, size):
+        where = np.broadcast_arrays(rows[:, :, None], columns[:, None, :])
+        return csc_matrix((blocks.ravel(), (where[0].ravel(), where[1].ravel())), shape=size)
+
+    conduction = assemble(conduction, elements, elements, (nodes, nodes))
+    stiffness = assemble(stiffness, freedoms, freedoms, (2 * nodes, 2 * nodes))
+    coupling = assemble(coupling, freedoms, elements, (2 * nodes, nodes))
+    at_end = np.abs(xy[:, 1] - end) < 1e-9
+    held = np.stack([np.abs(xy[:, 0]) < 1e-9, at_end], axis=1).ravel()
+
+    def solve(matrix, fixed, right):
+        free, result = np.flatnonzero(~fixed), np.zeros(right.shape)
+        result[free] = splu(matrix[free][:, free]).solve(np.ascontiguousarray(right[free]))
+        return result
+
+    unit_heat = np.zeros((nodes, len(body.face)))
+    unit_heat[body.face, range(len(body.face))] = 1
+    by_load = at_end * float(hot)
+    by_load = by_load + solve(conduction, at_end, -(conduction @ by_load))
+    by_heat = solve(conduction, at_end, unit_heat)
+    contact = (2 * np.array(body.face)[:, None] + [0, 1]).ravel()
+    unit_force = np.zeros((2 * nodes, len(contact)))
+    unit_force[contact, range(len(contact))] = 1
+    reach = solve(stiffness, held, unit_force)
+    return SimpleNamespace(flexibility=reach[contact], heating=reach.T @ (coupling @ by_heat),
+                           u_load=reach.T @ (coupling @ by_load), resistance=by_heat[body.face], t_load=by_load[body.face])
+
+
+# The pairs
+
+def side_functions(t):
+    """Shape functions of a three-node side and their derivatives."""
+    return np.array([t * (t - 1) / 2, 1 - t * t, t * (t + 1) / 2]), np.array([t - 0.5, -2 * t, t + 0.5])
+
+
+def pair_geometry(slave, master):
+    """Arc length s, weight, common normal and tangent of the pairs, from the undeformed faces (m, 2)."""
+    m = len(slave)
+    s, weight, along = np.zeros(m), np.zeros(m), np.zeros((2, m, 2))
+    for first in range(0, m - 2, 2):
+        side = slice(first, first + 3)
+        for k, (t, part) in enumerate([(-0.5, 0), (0.5, 1)]):
+            s[first + 1 + k] = s[first + k] + sum(
+                g * np.linalg.norm(side_functions(t + a / 2)[1] @ slave[side]) / 2 for a, g in GAUSS)
+        for a, g in GAUSS:
+            value, slope = side_functions(a)
+            weight[side] += g * value * np.linalg.norm(slope @ (slave + master)[side] / 2)
+        for face, place in enumerate((slave, master)):
+            for k in range(3):
+                slope = side_functions(k - 1)[1] @ place[side]
+                along[face, first + k] += slope / np.linalg.norm(slope)
+    along /= np.linalg.norm(along, axis=2, keepdims=True)
+    tangent = along.sum(axis=0) / np.linalg.norm(along.sum(axis=0), axis=1, keepdims=True)
+    return s, weight, np.stack([tangent[:, 1], -tangent[:, 0]], axis=1), tangent
+
+
+class Contact:
+    """Both bodies reduced to the pairs, and the increments of load on them."""
+
+    def __init__(self, slave, master, ends):
+        upper, lower = respond(slave, ends[0], True), respond(master, ends[1], False)
+        faces = slave.xy[slave.face], master.xy[master.face]
+        self.s, self.weight, normal, tangent = pair_geometry(*faces)
+        self.count = m = len(self.s)
+        opening, along = np.zeros((m, 2 * m)), np.zeros((m, 2 * m))
+        for k in range(2):
+            opening[range(m), range(k, 2 * m, 2)] = -normal[:, k]
+            along[range(m), range(k, 2 * m, 2)] = tangent[:, k]
+        force = np.hstack([opening.T * self.weight, along.T * self.weight])            # of pressure and shear
+        relative = np.vstack([opening, along])
+        self.initial_gap = opening @ (faces[0] - faces[1]).ravel()
+        self.by_traction = relative @ (upper.flexibility + lower.flexibility) @ force   # (g, l) of (p, t)
+        self.by_heat = -relative @ (upper.heating + lower.heating) * self.weight        # (g, l) of q
+        self.by_load = relative @ (upper.u_load - lower.u_load)
+        self.jump_by_load = upper.t_load - lower.t_load
+        self.resistance = (upper.resistance + lower.resistance) * self.weight
+
+    def start(self):
+        """State before the first increment: no load, the initial gaps."""
+        zero = np.zeros(self.count)
+        state = SimpleNamespace(load=0.0, p=zero, t=zero, l=zero, g=self.initial_gap, slip=zero,
+                                status=np.zeros(self.count, int))
+        state.w = state.w_before = self.law(state)
+        return state
+
+    def law(self, state):
+        """Conductance of the pairs, eq. (1.8)."""
+        return np.where(state.status != OPEN, CLOSED_0 + CLOSED_1 * np.maximum(state.p, 0),
+                        GAS_A / (GAS_B + np.maximum(state.g, 0)))
+
+    def conditions(self, status, closing):
+        """Rows of the contact conditions on (p, t) as they depend on the tractions, and which of them take a gap or a
+        tangential displacement. The first pair lies on the axis: its tangent is held in both bodies."""
+        m, rows = self.count, np.eye(2 * self.count)
+        normal = np.flatnonzero(status != OPEN)
+        slip = np.flatnonzero(np.abs(status) == 1)
+        stick = np.flatnonzero(status == STICK)
+        stick = stick[stick > 0]
+        rows[normal] = self.by_traction[normal]
+        rows[m + slip, slip] = -FRICTION * status[slip]
+        share = np.ones(m)                        # of l in the row of a stuck pair
+        for k, (fraction, yielding, _) in closing.items():
+            share[k] = 1 - fraction
+        rows[m + stick] = self.by_traction[m + stick] * share[stick, None]
+        for k in set(closing) & set(stick):
+            fraction, yielding, _ = closing[k]
+            rows[m + k, [k, m + k]] += fraction * yielding[1]
+        return rows, normal, stick, share
+
+    def tractions(self, status, closing, before, free):
+        """Pressure and shear under the free gaps and tangential displacements (2 m), the statuses given."""
+        m, right = self.count, np.zeros(2 * self.count)
+        rows, normal, stick, share = self.conditions(status, closing)
+        right[normal] = -free[normal]
+        reference = before.l.copy()
+        right[m + stick] = share[stick] * (reference - free[m:])[stick]
+        traction = np.linalg.solve(rows, right)
+        both = free + self.by_traction @ traction
+        return traction[:m], traction[m:], both[:m], both[m:]
+
+    def slips(self, p, t, l, before, closing):
+        """Tangential motion in the increment since friction acts, for a pair that closes in it since that instant."""
+        slip = l - before.l
+        for k, (fraction, yielding, _) in closing.items():
+            slip[k] = (1 - fraction) * slip[k] + fraction * (yielding[1] @ [p[k], t[k]])
+        return slip
+
+    def closing_laws(self, status, before, p, t):
+        """Instant of closing and own flexibility of the pairs that close in the increment: relieved of its tractions
+        alone, a pair would end at the gap g* = -(flexibility (p, t))_n; it closes at the fraction g_i/(g_i - g*), at
+        the place that lies there between l_i and l*. All others keep their conditions, those that close their places."""
+        fresh = [k for k in np.flatnonzero((status != OPEN) & (before.status == OPEN)) if k > 0]
+        held, laws = status.copy(), {}
+        held[fresh] = STICK
+        for k in fresh:
+            rows = self.conditions(held, {})[0]
+            pair = [k, self.count + k]
+            rows[pair] = np.eye(2 * self.count)[pair]
+            yielding = (self.by_traction @ np.linalg.solve(rows, np.eye(2 * self.count)[:, pair]))[pair]
+            overlap = max(yielding[0] @ [p[k], t[k]], 0.0)
+            fraction = before.g[k] / (before.g[k] + overlap) if before.g[k] > 0 else 0.0
+            laws[k] = fraction, yielding, overlap
+        return laws
+
+    def mechanics(self, status, before, free):
+        """Statuses, tractions and displacements that satisfy every contact condition, by an active set."""
+        closing = {}
+        for attempt in range(400):
+            p, t, g, l = self.tractions(status, closing, before, free)
+            slip = self.slips(p, t, l, before, closing)
+            new = status.copy()
+            new[(status == OPEN) & (g < -1e-14)] = STICK
+            new[(status != OPEN) & (p < 0)] = OPEN
+            beyond = (status == STICK) & (new == STICK) & (np.abs(t) > FRICTION * p * (1 + 1e-12))
+            beyond[0] = False
+            new[beyond] = np.sign(t[beyond])
+            driven = (np.abs(status) == 1) & (new != OPEN) & (status * slip > 1e-14)
+            new[driven] = STICK
+            laws = self.closing_laws(new, before, p, t)
+            same = laws.keys() == closing.keys() and all(abs(laws[k][0] - closing[k][0]) < 1e-13 for k in laws)
+            if same and (new == status).all():
+                return status, p, t, g, l, slip, closing
+            if attempt > 50:                      # a set that comes back: one pair at a time
+                changed = np.flatnonzero(new != status)[-1:]
+                new = np.where(np.arange(self.count) == changed[0], new, status) if len(changed) else new
+            status, closing = new, laws
+        raise RuntimeError("the contact zones do not settle")
+
+    def increment(self, before, load, tolerance=1e-12):
+        """State at the next load: Newton's method on log(omega) = log(U(omega))."""
+        m = self.count
+        guess = 2 * before.w - before.w_before
+        x, status = np.log(np.where(guess > 0, guess, before.w)), before.status
+        for iteration in range(100):
+            state = SimpleNamespace(load=load, w_before=before.w)
+            conductor = np.diag(np.exp(-x)) + self.resistance
+            q = np.linalg.solve(conductor, load * self.jump_by_load)
+            free = np.r_[self.initial_gap, np.zeros(m)] + load * self.by_load + self.by_heat @ q
+            status, p, t, g, l, slip, closing = self.mechanics(status, before, free)
+            state.status, state.p, state.t, state.g, state.l, state.q = status, p, t, g, l, q
+            state.w = self.law(state)
+            residual = np.log(state.w) - x
+            if np.abs(residual).max() < tolerance:
+                state.slip = np.where(status != OPEN, slip + np.where(before.status != OPEN, before.slip, 0), 0)
+                state.iterations = iteration + 1
+                return state
+            if iteration < 3:
+                x = x + residual / 2
+                continue
+            heat_slope = np.linalg.solve(conductor, np.diag(q * np.exp(-x)))
+            rows, normal, stick, share = self.conditions(status, closing)
+            right, moved = np.zeros((2 * m, m)), self.by_heat @ heat_slope
+            right[normal] = -moved[normal]
+            right[m + stick] = -share[stick, None] * moved[m + stick]
+            traction = np.linalg.solve(rows, right)
+            moved = moved + self.by_traction @ traction
+            slope = np.where((status != OPEN)[:, None], CLOSED_1 * traction[:m],
+                             -(state.w / (GAS_B + np.maximum(g, 0)))[:, None] * moved[:m]) / state.w[:, None]
+            change = np.linalg.solve(np.eye(m) - slope, residual)
+            x = x + change * min(1, 3 / np.abs(change).max())
+        raise RuntimeError(f"no convergence at load {load}")
+
+    # Zone edges, sharpened below the nodal spacing
+
+    def contact_edge(self, state, k):
+        """Edge between the closed pair k and the open pair k+1: p^2 from inside, g^(2/3) from outside, to zero."""
+        s, places = self.s, []
+        if k > 0 and state.status[k - 1] != OPEN:
+            inner, last = state.p[k - 1]**2, state.p[k]**2
+            reach = (s[k] - s[k - 1]) * last / (inner - last) if inner > last else np.inf
+            places.append(min(s[k] + reach, s[k + 1]))
+        if k + 2 < self.count and state.status[k + 2] == OPEN:
+            first, outer = state.g[k + 1]**(2 / 3), state.g[k + 2]**(2 / 3)
+            reach = (s[k + 2] - s[k + 1]) * first / (outer - first) if outer > first else np.inf
+            places.append(max(s[k + 1] - reach, s[k]))
+        return np.mean(places) if places else (s[k] + s[k + 1]) / 2
+
+    def edges(self, state):
+        """(edge_contact, edge_stick): outer edge of the contact zone with the largest s and of the widest stick zone."""
+        closed = np.flatnonzero(state.status != OPEN)
+        stuck = np.flatnonzero(state.status == STICK)
+        if len(closed) == 0 or len(stuck) == 0:
+            return (self.contact_edge(state, closed[-1]) if len(closed) else np.nan), np.nan
+        zone = max(np.split(stuck, np.flatnonzero(np.diff(stuck) > 1) + 1), key=lambda z: self.s[z[-1]] - self.s[z[0]])
+        k, inside = zone[-1], zone[-5:]
+        slips = state.status[k + 1] != OPEN
+        farthest = self.s[k + 1] if slips else self.contact_edge(state, k)
+        excess = (FRICTION * state.p - np.sign(state.t[k + 1 if slips else k]) * state.t)[inside]
+        s, weight = self.s[inside], self.weight[inside]
+        middle, mean = weight @ s / weight.sum(), weight @ excess / weight.sum()
+        slope = weight @ ((s - middle) * (excess - mean))
+        stick = farthest
+        if len(inside) == 1:
+            stick = (self.s[k] + farthest) / 2
+        elif slope < 0:
+            stick = np.clip(middle - mean * (weight @ (s - middle)**2) / slope, self.s[k], farthest)
+        return self.contact_edge(state, closed[-1]), stick
+
+
+def solve_deck(deck=DECK, levels=0, step=20.0, last=900.0):
+    """The pairs and the states at every increment. Each state has load, status, p, t, g, l, slip, w, q (per pair) and
+    normal_force, shear_force, heat_rate, edge_contact, edge_stick."""
+    bodies = read_deck(deck)
+    ends = bodies[0].xy[:, 1].max(), bodies[1].xy[:, 1].min()
+    for _ in range(levels):
+        bodies = [refine(body) for body in bodies]
+    contact = Contact(*bodies, ends)
+    states = [contact.start()]
+    for k in range(1, round(last / step) + 1):
+        state = contact.increment(states[-1], k * step)
+        state.normal_force, state.shear_force, state.heat_rate = (contact.weight @ v for v in (state.p, state.t, state.q))
+        state.edge_contact, state.edge_stick = contact.edges(state)
+        states.append(state)
+    return contact, states[1:]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--deck", default=DECK, help="deck with the mesh (default: the published cylinder)")
+    parser.add_argument("--levels", type=int, default=0, help="uniform refinements")
+    parser.add_argument("--step", type=float, default=20.0, help="increment of the load")
+    parser.add_argument("--last", type=float, default=900.0, help="last load")
+    options = parser.parse_args()
+    contact, states = solve_deck(options.deck, options.levels, options.step, options.last)
+    print(f"# {contact.count} pairs\n#  load normal_force   shear_force     heat_rate  max pressure  edge_contact    edge_stick")
+    for state in states:
+        if round(state.load) % 180 == 0 or state is states[-1]:
+            values = (state.normal_force, state.shear_force, state.heat_rate, state.p.max(), state.edge_contact, state.edge_stick)
+            print(f"{state.load:7.1f} " + " ".join(f"{v:13.8g}" for v in values))
+
+
+if __name__ == "__main__":
+    main()
