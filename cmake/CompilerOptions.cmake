@@ -31,7 +31,7 @@ endif()
 add_library(thercon_checks INTERFACE)
 if(THERCON_CHECKS)
    target_compile_options(thercon_checks INTERFACE
-      -fcheck=all -fbacktrace -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived)
+      -fcheck=all,no-array-temps -fbacktrace -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived)
 endif()
 if(THERCON_SANITIZERS)
    target_compile_options(thercon_checks INTERFACE

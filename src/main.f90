@@ -2,7 +2,7 @@
 program thercon
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
-   use command_line, only: command_check, command_help, command_run, command_type, &
+   use command_line, only: command_check, command_help, command_type, &
       command_version, read_command, usage
    use deck_check, only: check_deck
    use deck_run, only: base_name, run_deck
@@ -35,7 +35,7 @@ program thercon
       call print_versions(output_unit)
    case (command_check)
       call check_all(status)
-   case (command_run)
+   case default
       call run_all(status)
    end select
    flush (output_unit)
@@ -65,8 +65,9 @@ contains
       worst = 0
       do deck = 2, size(command%decks)
          do other = 1, deck - 1
-            if (base_name(command%decks(deck)%value) /= base_name(command%decks(other)%value)) &
+            if (base_name(command%decks(deck)%value) /= base_name(command%decks(other)%value)) then
                cycle
+            end if
             write (error_unit, '(6a)') 'thercon: error: ', command%decks(other)%value, ' and ', &
                command%decks(deck)%value, ' would have the same results'
             worst = status_deck
@@ -76,8 +77,9 @@ contains
       do deck = 1, size(command%decks)
          call run_deck(command%decks(deck)%value, command, outcomes(deck))
          worst = max(worst, outcomes(deck)%status)
-         if (.not. command%quiet .and. outcomes(deck)%status /= status_deck) &
+         if (.not. command%quiet .and. outcomes(deck)%status /= status_deck) then
             call outcomes(deck)%print(command%folder//'/'//base_name(outcomes(deck)%path))
+         end if
       end do
       if (size(outcomes) > 1 .and. .not. command%quiet) call print_batch_summary(outcomes)
    end subroutine run_all

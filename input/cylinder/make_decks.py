@@ -213,36 +213,59 @@ CDIS, CSTR
 *END STEP
 """
 
-SUPPORTS = """\
+CHECKS = """\
 *VERIFY, KIND=ANALYTIC, SOURCE="prescribed values and symmetry"
 NT, TOP, LAST, 900., 1.E-12
 NT, TOP, 460., 460., 1.E-12
 NT, BOTTOM, LAST, 0., 1.E-9, ABS
+NT, MAX, LAST, 900., 1.E-12
 U1, AXIS, LAST, 0., 1.E-15, ABS
 U2, TOP, LAST, 0., 1.E-15, ABS
 U2, BOTTOM, LAST, 0., 1.E-15, ABS
-*VERIFY, KIND=ANALYTIC, SOURCE="first touch at x = 0; open at the side"
+*VERIFY, KIND=ANALYTIC, SOURCE="closed at x = 0 and open at the side"
 gap, FACE@0., LAST, 0., 1.E-12, ABS
 shear, FACE@0., LAST, 0., 1.E-9, ABS
-status, MIN, LAST, 0., 0.5, ABS
 pressure, MIN, LAST, 0., 1.E-12, ABS
+status, MIN, LAST, 0., 0.5, ABS
 *VERIFY, KIND=ANALYTIC, SOURCE="balance of heat and forces"
 heat_imbalance, , LAST, 0., 1.E-9, ABS
 force_imbalance, , LAST, 0., 1.E-9, ABS
+** From tests/reference/cylinder_reference.py with four uniform refinements.
+*VERIFY, KIND=EXTERNAL, SOURCE="independent solver and 160 contact elements"
+{reference}
+*VERIFY, KIND=EXTERNAL, SOURCE="CalculiX 2.20 with 40 contact elements"
+normal_force, FACE, 540., 1361.3, 1.E-2
+heat_rate, FACE, 540., 17.27, 2.5E-2
+pressure, MAX, 540., 316.6, 2.E-2
 """
 
-COUPLED = """\
+# Load, normal force, heat rate, largest pressure, edge of contact: converged values.
+REFERENCE = [(180, 384.33, 5.044, 167.27, 2.95), (540, 1363.73, 17.27, 316.19, 5.54),
+             (900, 2487.01, 30.78, 428.79, 7.46)]
+
+COUPLED_CHECKS = """\
 *VERIFY, KIND=ANALYTIC, SOURCE="prescribed values and symmetry"
 NT, TOP, 200., 200., 1.E-12
 NT, BOTTOM, 200., 0., 1.E-9, ABS
 U1, AXIS, 200., 0., 1.E-15, ABS
 U2, TOP, 200., 0., 1.E-15, ABS
 *VERIFY, KIND=ANALYTIC, SOURCE="the bodies are apart"
-normal_force, , 200., 0., 1.E-12, ABS
+normal_force, FACE, 200., 0., 1.E-12, ABS
 pressure, MAX, 200., 0., 1.E-12, ABS
 status, MAX, 200., 0., 0.5, ABS
+** Hot to the face but for the heat that the gap lets through, under 0.1 %:
+** height (1 + nu) alpha T downwards, width (1 + nu) alpha T to the side.
+*VERIFY, KIND=ANALYTIC, SOURCE="free expansion in plane strain"
+gap, FACE@0., 20., 0.47984, 1.E-4
+gap, FACE@0., 200., 0.2984, 1.E-3
+U1, 21, 20., 0.01008, 1.E-2
 *VERIFY, KIND=ANALYTIC, SOURCE="balance of heat"
 heat_imbalance, , 200., 0., 1.E-9, ABS
+** From tests/reference/cylinder_reference.py with two uniform refinements.
+*VERIFY, KIND=EXTERNAL, SOURCE="independent solver and 40 contact elements"
+heat_rate, FACE, 200., 0.016398, 5.E-3
+heat_rate, FACE, 480., 0.18426, 5.E-3
+gap, FACE@0., 480., 0.017404, 1.E-3
 """
 
 TOUCH = "** - the bodies touch at x = 0 at the start, without clearance or load;"
@@ -251,23 +274,33 @@ APART = """\
 ** the cylinder stands 0.5 above it."""
 
 
-def write_deck(path, heading, first_touch, base_expansion, lift, verify):
+def write_deck(path, heading, first_touch, base_expansion, lift, checks):
     """Write one deck; no card image may be wider than 80 columns."""
     bodies = make_mesh(lift)
     check_mesh(bodies, lift)
     cards = OPENING.format(heading=heading, first_touch=first_touch).splitlines()
     cards += ['*OPTIONS, UNITS="cm MPa W C", LOAD=TOP,11']
     cards += mesh_cards(bodies)
-    cards += MODEL.format(base_expansion=base_expansion).splitlines() + verify.splitlines()
+    cards += MODEL.format(base_expansion=base_expansion).splitlines() + checks.splitlines()
     assert max(map(len, cards)) <= 80
     path.write_text("\n".join(cards) + "\n")
 
 
+def reference_cards():
+    """*VERIFY data from the converged values, with what the published mesh is due to hold."""
+    cards = []
+    for load, force, heat, pressure, edge in REFERENCE:
+        cards += [f"normal_force, FACE, {load}., {force}, 5.E-3", f"heat_rate, FACE, {load}., {heat}, 2.5E-2",
+                  f"pressure, MAX, {load}., {pressure}, 2.E-2", f"edge_contact, FACE, {load}., {edge}, 0.3, ABS"]
+    return "\n".join(cards)
+
+
 def main():
     folder = Path(__file__).parent
-    write_deck(folder / "cylinder.inp", "Cylinder on a base, heated from the top", TOUCH, "1.2E-5", 0.0, SUPPORTS)
+    write_deck(folder / "cylinder.inp", "Cylinder on a base, heated from the top", TOUCH, "1.2E-5", 0.0,
+               CHECKS.format(reference=reference_cards()))
     write_deck(folder / "cylinder-coupled.inp", "Cylinder above a base that does not expand, strongly coupled",
-               APART, "0.", LIFT, COUPLED)
+               APART, "0.", LIFT, COUPLED_CHECKS)
 
 
 if __name__ == "__main__":

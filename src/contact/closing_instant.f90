@@ -1,14 +1,16 @@
 !> The instant at which a pair closes within an increment, from which its slip counts.
 !>
-!> A pair that was open at gap gamma_i and is closed at the end would, alone relieved of its contact forces, end at the
-!> gap gamma* < 0 and the tangential position d_t*. It closes at the fraction f = gamma_i/(gamma_i - gamma*) of the
-!> increment, and its slip counts from the position that lies there between d_t,i and d_t*:
+!> A pair that was open at gap gamma_i and is closed at the end would, alone relieved of its contact
+!> forces, end at the gap gamma* < 0 and the tangential position d_t*. It closes at the fraction f =
+!> gamma_i/(gamma_i - gamma*) of the increment, and its slip counts from the position that lies
+!> there between d_t,i and d_t*:
 !>
 !>    slip = d_t - d_t,i - f (d_t* - d_t,i).
 !>
-!> With C the compliance of the pair while all others keep their conditions (those that close with it, their places),
-!> gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that slip = (1 - f) (d_t - d_t,i) + f C_t.lambda. The contact system
-!> is solved with C and f frozen; both are then computed anew, until they stay.
+!> With C the compliance of the pair while all others keep their conditions (those that close with
+!> it, their places), gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that slip = (1 - f) (d_t -
+!> d_t,i) + f C_t.lambda. The contact system is solved with C and f frozen; both are then computed
+!> anew, until they stay.
 module closing_instant
    use contact_system, only: closing_law_type, contact_state_type, contact_system_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -19,7 +21,7 @@ module closing_instant
    public :: solve_increment
 
    integer, parameter :: most_passes = 60                 !! passes over the closing laws
-   real(dp), parameter :: settled = 1.0e-13_dp            !! relative change of a law that counts as none
+   real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
 
 contains
 
@@ -41,8 +43,9 @@ contains
          if (allocated(error)) return
          if (change <= settled) then
             do k = 1, size(state%status)
-               if (system%closing(k)%acts) &
+               if (system%closing(k)%acts) then
                   state%reference(k) = state%tangential(k) - system%slip(state, k)
+               end if
             end do
             return
          end if
@@ -118,8 +121,9 @@ contains
       law%acts = .true.
       law%start = previous%tangential(k)
       law%compliance = compliance(2, :)
-      if (previous%gap(k) > 0.0_dp) &
+      if (previous%gap(k) > 0.0_dp) then
          law%fraction = previous%gap(k)/(previous%gap(k) + max(overlap, 0.0_dp))
+      end if
    end subroutine make_law
 
 end module closing_instant

@@ -28,7 +28,8 @@ module contact_pairs
 contains
 
    !> The pairs of one *CONTACT PAIR: the k-th nodes along its two surfaces.
-   !> Errors: surfaces that do not form one open line, unequal numbers of nodes, nodes that are not opposite.
+   !> Errors: surfaces that do not form one open line, unequal numbers of nodes, nodes that are not
+   !> opposite.
    subroutine make_pairs(mesh, definition, thickness, pairs, error)
       type(mesh_type), intent(in) :: mesh                     !! the mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
@@ -77,7 +78,8 @@ contains
       if (turned) nodes = nodes(size(nodes):1:-1)
    end subroutine start_at_smaller_x
 
-   !> Unit tangents and normals from the summed tangents of both faces. An unturned line has the slave on its left.
+   !> Unit tangents and normals from the summed tangents of both faces. An unturned line has the
+   !> slave on its left.
    subroutine set_directions(turned, pairs)
       logical, intent(in) :: turned
       type(contact_pairs_type), intent(inout) :: pairs
@@ -114,8 +116,9 @@ contains
       end do
    end function arc_lengths
 
-   !> Integral of each node's shape function along a line of three-node sides. A constant pressure so has constant
-   !> nodal force over weight, which is what makes the lumped recovery pass the patch test.
+   !> Integral of each node's shape function along a line of three-node sides. A constant pressure
+   !> so has constant nodal force over weight, which is what makes the lumped recovery pass the
+   !> patch test.
    pure function tributary_lengths(x) result(weight)
       real(dp), intent(in) :: x(:, :)
       real(dp) :: weight(size(x, 2))
@@ -131,7 +134,8 @@ contains
       end do
    end function tributary_lengths
 
-   !> Unit tangents at the nodes of a line of three-node sides; at a shared corner the direction midway.
+   !> Unit tangents at the nodes of a line of three-node sides; at a shared corner the direction
+   !> midway.
    pure function face_tangents(x) result(tangent)
       real(dp), intent(in) :: x(:, :)
       real(dp) :: tangent(2, size(x, 2))
@@ -150,7 +154,8 @@ contains
       end do
    end function face_tangents
 
-   !> Refuses a pair whose tangential offset exceeds both half the local element edge and half its gap.
+   !> Refuses a pair whose tangential offset exceeds both half the local element edge and half its
+   !> gap.
    subroutine check_opposite(mesh, pairs, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_pairs_type), intent(in) :: pairs

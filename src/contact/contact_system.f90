@@ -1,20 +1,22 @@
 !> Contact with friction on the reduced system, the partial solution of (2.4).
 !>
-!> Unknowns are the relative displacements d = u_xi - u_eta of the pairs, in their own frame; the bodies behind them
-!> enter by the Schur complement S and the condensed load c, so that the contact forces on xi are lambda = S d - c. Per
-!> pair and direction either the force is known and the displacement sought, or the other way round:
+!> Unknowns are the relative displacements d = u_xi - u_eta of the pairs, in their own frame; the
+!> bodies behind them enter by the Schur complement S and the condensed load c, so that the contact
+!> forces on xi are lambda = S d - c. Per pair and direction either the force is known and the
+!> displacement sought, or the other way round:
 !>
 !>    open   lambda_n = 0                            lambda_t = 0
 !>    stick  d_n = h                                 d_t = reference
 !>    slip   d_n = h                                 lambda_t = direction mu (-lambda_n)
 !>
-!> A pair that closes within the increment sticks where it closed, a place that depends on its forces (closing_instant):
+!> A pair that closes within the increment sticks where it closed, a place that depends on its
+!> forces (closing_instant):
 !>
 !>    stick  d_n = h           (1 - f) (d_t - d_t,i) + f (c_n lambda_n + c_t lambda_t) = 0
 !>
-!> The roles are found by an active set: solve, correct every pair that violates its condition, solve again. A set that
-!> comes back is left by correcting only the last offending pair (Murty's least-index rule), which cannot cycle on the
-!> P-matrix of a frictionless problem.
+!> The roles are found by an active set: solve, correct every pair that violates its condition,
+!> solve again. A set that comes back is left by correcting only the last offending pair (Murty's
+!> least-index rule), which cannot cycle on the P-matrix of a frictionless problem.
 module contact_system
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -30,16 +32,18 @@ module contact_system
    !> Contact state of all pairs.
    type :: contact_state_type
       integer, allocatable :: status(:)       !! (m) status_open, status_slip or status_stick
-      integer, allocatable :: direction(:)    !! (m) sign of the friction force on the slave where it slips
-      real(dp), allocatable :: reference(:)   !! (m) d_t from which friction counts in this increment [length]
+      integer, allocatable :: direction(:) !! (m) sign of the friction force on the slave where it
+      !! slips
+      real(dp), allocatable :: reference(:) !! (m) d_t from which friction counts in this increment
+      !! [length]
       real(dp), allocatable :: gap(:)         !! (m) gamma = h - d_n [length]
       real(dp), allocatable :: tangential(:)  !! (m) d_t [length]
       real(dp), allocatable :: force(:)       !! (m) -lambda_n, positive in compression [force]
       real(dp), allocatable :: shear_force(:) !! (m) lambda_t [force]
    end type contact_state_type
 
-   !> Where a pair that closes within the increment sticks: at the reference d_t - slip, where slip is the left-hand side
-   !> of the condition above.
+   !> Where a pair that closes within the increment sticks: at the reference d_t - slip, where slip
+   !> is the left-hand side of the condition above.
    type :: closing_law_type
       logical :: acts = .false.                !! whether the pair closes in this increment
       real(dp) :: start = 0.0_dp               !! d_t,i [length]
@@ -50,13 +54,15 @@ module contact_system
    !> The reduced system, and the factors for the active set of its last solution.
    type :: contact_system_type
       integer, allocatable :: normal(:)           !! (m) place of d_n on the tail
-      integer, allocatable :: tangent(:)          !! (m) place of d_t on the tail, 0 without friction or where held
+      integer, allocatable :: tangent(:) !! (m) place of d_t on the tail, 0 without friction or
+      !! where held
       real(dp), allocatable :: schur(:, :)        !! (tail, tail) S [force/length]
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
       real(dp), allocatable :: friction(:)        !! (m) mu [-]
-      type(closing_law_type), allocatable :: closing(:) !! (m) laws of the pairs that close in the increment
+      type(closing_law_type), allocatable :: closing(:) !! (m) laws of the pairs that close in the
+      !! increment
       integer, allocatable :: free(:)             !! places on the tail that are sought
-      integer, allocatable :: partner(:)          !! (tail) place of d_n whose force enters the row, or 0
+      integer, allocatable :: partner(:) !! (tail) place of d_n whose force enters the row, or 0
       real(dp), allocatable :: share(:)           !! (tail) factor of that force
       real(dp), allocatable :: own(:)             !! (tail) factor of the row's own force
       real(dp), allocatable :: spring(:)          !! (tail) factor of the row's displacement
@@ -178,11 +184,11 @@ contains
          if (self%tangent(k) == 0) cycle
          state%tangential(k) = d(self%tangent(k))
          select case (state%status(k))
-          case (status_open)
+         case (status_open)
             state%shear_force(k) = 0.0_dp
-          case (status_slip)
+         case (status_slip)
             state%shear_force(k) = state%direction(k)*self%friction(k)*state%force(k)
-          case (status_stick)
+         case default
             state%shear_force(k) = lambda(self%tangent(k))
          end select
       end do
@@ -222,7 +228,8 @@ contains
       if (allocated(self%factored)) deallocate (self%factored)
    end subroutine forget_factors
 
-   !> Lists the relative displacements that are sought, and what forces and displacements enter the row of each.
+   !> Lists the relative displacements that are sought, and what forces and displacements enter the
+   !> row of each.
    subroutine list_free(self, state)
       class(contact_system_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: state
@@ -262,8 +269,8 @@ contains
       end subroutine seek
    end subroutine list_free
 
-   !> Forces, or columns of S, as they enter the rows of the active set: a slipping pair's tangential row is
-   !> lambda_t + share*lambda_n = 0.
+   !> Forces, or columns of S, as they enter the rows of the active set: a slipping pair's
+   !> tangential row is lambda_t + share*lambda_n = 0.
    pure function friction_rows(self, columns) result(rows)
       class(contact_system_type), intent(in) :: self  !! the reduced system
       real(dp), intent(in) :: columns(:, :)           !! (tail, columns)
@@ -272,14 +279,16 @@ contains
 
       do i = 1, size(columns, 1)
          rows(i, :) = self%own(i)*columns(i, :)
-         if (self%partner(i) > 0) rows(i, :) = rows(i, :) + self%share(i)*columns(self%partner(i), :)
+         if (self%partner(i) == 0) cycle
+         rows(i, :) = rows(i, :) + self%share(i)*columns(self%partner(i), :)
       end do
    end function friction_rows
 
    !> Free displacements that take up forces, with the factors of the last active set.
    pure subroutine solve_free(self, x)
       class(contact_system_type), intent(in) :: self  !! the reduced system
-      real(dp), intent(inout) :: x(:, :)              !! (tail, columns) forces in; free rows hold displacements out
+      real(dp), intent(inout) :: x(:, :) !! (tail, columns) forces in; free rows hold displacements
+      !! out
       real(dp), allocatable :: rows(:, :)
 
       if (size(self%free) == 0) return

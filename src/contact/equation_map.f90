@@ -1,8 +1,10 @@
-!> Unknowns of a field problem with contact: nodal values on one side, the pairs' relative values last.
+!> Unknowns of a field problem with contact: nodal values on one side, the pairs' relative values
+!> last.
 !>
-!> At a pair the slave's values are written as the master's plus the relative value theta in the pair's own frame (normal,
-!> tangent; one component for temperature). The relative values that contact acts on form the tail of the system: with
-!> them zero the bodies are welded, and the reduced problem on the tail is eq. (2.4) solved partially.
+!> At a pair the slave's values are written as the master's plus the relative value theta in the
+!> pair's own frame (normal, tangent; one component for temperature). The relative values that
+!> contact acts on form the tail of the system: with them zero the bodies are welded, and the
+!> reduced problem on the tail is eq. (2.4) solved partially.
 module equation_map
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
@@ -12,17 +14,19 @@ module equation_map
    public :: equation_map_type, make_map
 
    integer, parameter :: most_terms = 3                 !! own value, two relative ones
-   real(dp), parameter :: aligned = 1.0_dp - 1.0e-9_dp  !! cosine from which a frame counts as aligned
+   real(dp), parameter :: aligned = 1.0_dp - 1.0e-9_dp !! cosine from which a frame counts as
+   !! aligned
 
    !> Every degree of freedom as base value + sum of coefficient*unknown.
    type :: equation_map_type
       integer :: equations = 0                       !! unknowns
-      integer :: tail = 0                            !! relative unknowns that contact acts on, the last ones
+      integer :: tail = 0 !! relative unknowns that contact acts on, the last ones
       integer, allocatable :: term_count(:)          !! (dofs) terms of a degree of freedom
       integer, allocatable :: term(:, :)             !! (3, dofs) its unknowns
       real(dp), allocatable :: coefficient(:, :)     !! (3, dofs) their coefficients
-      integer, allocatable :: base(:)                !! (dofs) degree whose prescribed value it is based on, or 0
-      integer, allocatable :: relative(:, :)         !! (components, m) unknown of a relative value, 0 where prescribed
+      integer, allocatable :: base(:) !! (dofs) degree whose prescribed value it is based on, or 0
+      integer, allocatable :: relative(:, :) !! (components, m) unknown of a relative value, 0 where
+      !! prescribed
    contains
       procedure :: expand
       procedure :: restrict
@@ -33,15 +37,15 @@ module equation_map
 contains
 
    !> Numbers the unknowns. Degree of freedom c of node i is components*(i - 1) + c.
-   !> Error: a pair whose normal motion, component 1, is prescribed on both nodes, or whose motion is prescribed on both
-   !> nodes along a direction that is neither normal nor tangent.
+   !> Error: a pair whose normal motion, component 1, is prescribed on both nodes, or whose motion
+   !> is prescribed on both nodes along a direction that is neither normal nor tangent.
    subroutine make_map(used, prescribed, slave, master, frame, on_tail, map, error)
       logical, intent(in) :: used(:)                      !! (nodes) whether a node carries unknowns
       logical, intent(in) :: prescribed(:)                !! (dofs) prescribed values
       integer, intent(in) :: slave(:)                     !! (m) slave nodes of the pairs
       integer, intent(in) :: master(:)                    !! (m) master nodes of the pairs
-      real(dp), intent(in) :: frame(:, :, :)              !! (components, components, m) columns: unit vectors
-      logical, intent(in) :: on_tail(:, :)                !! (components, m) relative values that contact acts on
+      real(dp), intent(in) :: frame(:, :, :) !! (components, components, m) columns: unit vectors
+      logical, intent(in) :: on_tail(:, :) !! (components, m) relative values that contact acts on
       type(equation_map_type), intent(out) :: map         !! the numbering
       type(error_type), allocatable, intent(out) :: error !! see above
       logical, allocatable :: follows(:)
@@ -75,7 +79,8 @@ contains
          end do
       end do
    contains
-      !> Of the two nodes of a pair the slave follows the master, unless only the slave is prescribed.
+      !> Of the two nodes of a pair the slave follows the master, unless only the slave is
+      !> prescribed.
       subroutine lead(slave_dof, master_dof)
          integer, intent(in) :: slave_dof, master_dof
 

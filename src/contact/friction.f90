@@ -8,31 +8,34 @@ module friction
 
 contains
 
-   !> Contact condition that a pair must have, given what it did under its present one. A stuck pair slips once its
-   !> friction force would leave the cone; a slipping pair sticks once friction would drive it instead of resisting. A pair
-   !> that closes first shows without friction (slip, direction 0) which way it slides.
+   !> Contact condition that a pair must have, given what it did under its present one. A stuck pair
+   !> slips once its friction force would leave the cone; a slipping pair sticks once friction would
+   !> drive it instead of resisting. A pair that closes first shows without friction (slip,
+   !> direction 0) which way it slides.
    pure subroutine next_status(status, direction, gap, force, shear_force, slip, friction, &
       has_tangent, gap_tolerance, force_tolerance, excess)
       integer, intent(inout) :: status        !! status_open, status_slip or status_stick
-      integer, intent(inout) :: direction     !! sign of the friction force on the slave where it slips, 0 unknown
+      integer, intent(inout) :: direction !! sign of the friction force on the slave where it slips,
+      !! 0 unknown
       real(dp), intent(in) :: gap             !! gamma [length]
       real(dp), intent(in) :: force           !! normal force, positive in compression [force]
       real(dp), intent(in) :: shear_force     !! tangential force on the slave [force]
-      real(dp), intent(in) :: slip            !! tangential motion since the start of this increment [length]
+      real(dp), intent(in) :: slip !! tangential motion since the start of this increment [length]
       real(dp), intent(in) :: friction        !! mu [-]
       logical, intent(in) :: has_tangent      !! whether the pair can move along its tangent
       real(dp), intent(in) :: gap_tolerance   !! rounding of gap and slip [length]
       real(dp), intent(in) :: force_tolerance !! rounding of the forces [force]
-      real(dp), intent(out) :: excess         !! relative violation of the present condition, 0 where it holds
+      real(dp), intent(out) :: excess !! relative violation of the present condition, 0 where it
+      !! holds
 
       excess = 0.0_dp
       select case (status)
-       case (status_open)
+      case (status_open)
          if (gap >= -gap_tolerance) return
          excess = -gap/gap_tolerance
          status = status_slip
          direction = 0
-       case default
+      case default
          if (force < -force_tolerance) then
             excess = -force/force_tolerance
             status = status_open

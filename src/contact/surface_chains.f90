@@ -8,8 +8,8 @@ module surface_chains
 
 contains
 
-   !> Nodes along a surface: corner, midside, corner, ..., corner. Each face is followed by the one that begins at its
-   !> second corner, so the line runs with the body on its left.
+   !> Nodes along a surface: corner, midside, corner, ..., corner. Each face is followed by the one
+   !> that begins at its second corner, so the line runs with the body on its left.
    !> Error: the faces do not form one open line.
    subroutine chain_faces(mesh, surface, nodes, error)
       type(mesh_type), intent(in) :: mesh                 !! the mesh
@@ -42,8 +42,10 @@ contains
          nodes(2*i - 1:2*i + 1) = corners(:, face)
          face = leaving(corners(3, face))
       end do
-      if (branched .or. i <= count_faces) call set_error(error, status_deck, 'surface '//surface%name// &
-         ' is not one line of faces with two ends')
+      if (branched .or. i <= count_faces) then
+         call set_error(error, status_deck, 'surface '//surface%name// &
+            ' is not one line of faces with two ends')
+      end if
    end subroutine chain_faces
 
 end module surface_chains

@@ -1,15 +1,17 @@
 !> Edges of the contact and stick zones, sharpened below the nodal spacing.
 !>
-!> Edge of contact, between a closed and an open pair: near it p goes like sqrt(a - s) and the gap like (s - a)^(3/2), so
-!> that p^2 from inside and gap^(2/3) from outside go linearly to zero; the edge is the mean of both zeros, each kept
-!> between the two pairs.
+!> Edge of contact, between a closed and an open pair: near it p goes like sqrt(a - s) and the gap
+!> like (s - a)^(3/2), so that p^2 from inside and gap^(2/3) from outside go linearly to zero; the
+!> edge is the mean of both zeros, each kept between the two pairs.
 !>
-!> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances with the load it has no
-!> root singularity on the nodal scale, but the slip that was frozen at each pair when the next one closed makes it
-!> noisy; so a straight line is fitted to the last two sides, weighted with the tributary lengths, which makes it the
-!> resultant and moment of the nodal forces themselves.
+!> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
+!> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
+!> pair when the next one closed makes it noisy; so a straight line is fitted to the last two sides,
+!> weighted with the tributary lengths, which makes it the resultant and moment of the nodal forces
+!> themselves.
 !>
-!> Edges are looked for towards growing s; an edge on the other side is the same with the arrays turned round.
+!> Edges are looked for towards growing s; an edge on the other side is the same with the arrays
+!> turned round.
 module zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
@@ -22,8 +24,8 @@ module zone_edges
 
 contains
 
-   !> Edges between contact and gap, ascending, padded with NaN, and the outer edge of the contact zone with the largest
-   !> s. A zone that reaches the last pair ends there; that end is no edge.
+   !> Edges between contact and gap, ascending, padded with NaN, and the outer edge of the contact
+   !> zone with the largest s. A zone that reaches the last pair ends there; that end is no edge.
    pure subroutine contact_edges(s, status, pressure, gap, edges, outer)
       real(dp), intent(in) :: s(:)                 !! (m) arc length [length]
       integer, intent(in) :: status(:)             !! (m) status of the pairs
@@ -71,15 +73,17 @@ contains
       if (has_inside) then
          before = pressure(k - 1)**2
          here = pressure(k)**2
-         if (before > here) &
+         if (before > here) then
             inside = min(s(k) + (s(k) - s(k - 1))*here/(before - here), s(k + 1))
+         end if
       end if
       outside = s(k)
       if (has_outside) then
          here = gap(k + 1)**(2.0_dp/3.0_dp)
          before = gap(k + 2)**(2.0_dp/3.0_dp)
-         if (before > here) &
+         if (before > here) then
             outside = max(s(k + 1) - (s(k + 2) - s(k + 1))*here/(before - here), s(k))
+         end if
       end if
       edge = 0.5_dp*(s(k) + s(k + 1))
       if (has_inside .and. has_outside) edge = 0.5_dp*(inside + outside)

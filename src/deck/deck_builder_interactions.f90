@@ -37,8 +37,9 @@ contains
          associate (card => cards%keywords(k))
             select case (card%name)
             case ('SURFACE INTERACTION')
-               if (n > 0 .and. report%error_count() == errors) &
+               if (n > 0 .and. report%error_count() == errors) then
                   call check_law(cards%keywords(last), model%interactions(n), report)
+               end if
                errors = report%error_count()
                n = n + 1
                last = k
@@ -60,8 +61,9 @@ contains
             end select
          end associate
       end do
-      if (n > 0 .and. report%error_count() == errors) &
+      if (n > 0 .and. report%error_count() == errors) then
          call check_law(cards%keywords(last), model%interactions(n), report)
+      end if
    end subroutine build_interactions
 
    !> Index of a surface interaction by its name; 0 for an unknown one.

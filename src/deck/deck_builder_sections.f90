@@ -93,9 +93,8 @@ contains
       end if
       associate (members => mesh%element_sets(set)%members)
          if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
-            to_text(count(mesh%element_section(members) > 0))// &
-            ' elements already have a section; '// &
-            'this one takes its place')
+            'this section replaces an earlier one; elements concerned: '// &
+            to_text(count(mesh%element_section(members) > 0)))
          mesh%element_section(members) = section
       end associate
    end subroutine give_section

@@ -77,11 +77,11 @@ contains
       case ('ABS')
          check%relative = .false.
       case ('', 'REL')
-         if (valid .and. .not. abs(check%value) > 0.0_dp) call report%error(field_place(data, 4), &
-            'nothing is measured relative to 0; give ABS')
+         if (valid .and. .not. abs(check%value) > 0.0_dp) call report%warning( &
+            field_place(data, 4), 'relative to 0 only 0 itself passes; ABS gives a tolerance')
       case default
-         call report%error(field_place(data, 6), ''''//field_text(data, &
-            6)//''' is neither REL nor ABS')
+         call report%error(field_place(data, 6), ''''//field_text(data, 6)// &
+            ''' is neither REL nor ABS')
       end select
    end subroutine build_check
 

@@ -1,7 +1,7 @@
 !> The command line: what is to be done with which decks.
 module command_line
    use errors, only: error_type, set_error, status_deck
-   use text, only: string_type
+   use text, only: append, string_type
    implicit none
    private
    public :: command_type, read_command, usage
@@ -107,7 +107,7 @@ contains
          if (index(word, '-') == 1) then
             call set_error(error, status_deck, 'unknown option '//word//'; see thercon --help')
          else
-            command%decks = [command%decks, string_type(word)]
+            call append(command%decks, word)
          end if
          return
       end select
@@ -128,8 +128,8 @@ contains
       case ('--out')
          command%folder = value
       case ('--set')
-         command%settings = [command%settings, string_type(value)]
-      case ('--width')
+         call append(command%settings, value)
+      case default
          status = verify(value, '0123456789')
          if (status == 0 .and. len(value) > 0) read (value, *, iostat=status) command%width
          if (status /= 0 .or. command%width < 1) call set_error(error, status_deck, &

@@ -50,12 +50,14 @@ contains
       if (heat) call name('heat', '*COUPLED TEMPERATURE-DISPLACEMENT')
       if (size(model%contacts) == 0) return
       call name('contact', '*CONTACT PAIR')
-      if (any(model%interactions(model%contacts%interaction)%friction > 0.0_dp)) &
+      if (any(model%interactions(model%contacts%interaction)%friction > 0.0_dp)) then
          call name('friction', '*FRICTION')
+      end if
       if (.not. heat) return
       if (any(model%interactions(model%contacts%interaction)%law%open_kind == law_gas) .or. &
-         any(model%interactions(model%contacts%interaction)%law%closed_kind == law_power)) &
+         any(model%interactions(model%contacts%interaction)%law%closed_kind == law_power)) then
          call name('coupling', 'conductance that depends on gap or pressure')
+      end if
    contains
       subroutine name(part, reason)
          character(*), intent(in) :: part, reason
@@ -65,7 +67,8 @@ contains
       end subroutine name
    end subroutine name_physics
 
-   !> Contact Biot number omega L/K of the initial gaps: L the length of the interface, K the slave's conductivity.
+   !> Contact Biot number omega L/K of the initial gaps: L the length of the interface, K the
+   !> slave's conductivity.
    subroutine find_biot(model, simulation, run)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation

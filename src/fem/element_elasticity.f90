@@ -56,7 +56,8 @@ contains
       end do
    end function element_stiffness
 
-   !> Nodal forces of a temperature increment, per unit nodal temperature: integral of B^T beta psi^q.
+   !> Nodal forces of a temperature increment, per unit nodal temperature: integral of B^T beta
+   !> psi^q.
    pure function element_thermal_load(coordinates, beta, thickness) result(load)
       real(dp), intent(in) :: coordinates(2, 8)   !! nodes [length]
       real(dp), intent(in) :: beta                !! from thermal_modulus [stress/temperature]
@@ -77,7 +78,8 @@ contains
       end do
    end function element_thermal_load
 
-   !> Stress at a point of an element, eq. (1.5): sigma = E eps - beta T, and sigma_zz of plane strain.
+   !> Stress at a point of an element, eq. (1.5): sigma = E eps - beta T, and sigma_zz of plane
+   !> strain.
    pure function stress_at(coordinates, point, e, beta, displacement, temperature) result(stress)
       real(dp), intent(in) :: coordinates(2, 8)    !! nodes [length]
       real(dp), intent(in) :: point(2)             !! xi, eta

@@ -1,5 +1,6 @@
-!> Stress and heat flux at nodes: evaluated at the 2 x 2 Gauss points, extrapolated bilinearly, averaged over the elements
-!> of one body and section. A node shared by several sections so is several points.
+!> Stress and heat flux at nodes: evaluated at the 2 x 2 Gauss points, extrapolated bilinearly,
+!> averaged over the elements of one body and section. A node shared by several sections so is
+!> several points.
 module field_recovery
    use element_conduction, only: heat_flux_at
    use element_elasticity, only: elastic_matrix, stress_at, thermal_modulus
@@ -21,7 +22,8 @@ module field_recovery
 
 contains
 
-   !> Numbers the points: first one per node in the order of the nodes, then further ones for further sections.
+   !> Numbers the points: first one per node in the order of the nodes, then further ones for
+   !> further sections.
    pure function make_points(mesh) result(points)
       type(mesh_type), intent(in) :: mesh   !! the mesh
       type(point_map_type) :: points        !! the points
@@ -67,7 +69,7 @@ contains
       type(material_type), intent(in) :: materials(:) !! materials
       type(point_map_type), intent(in) :: points      !! the points
       real(dp), intent(in) :: displacement(:, :)      !! (2, nodes) [length]
-      real(dp), intent(in) :: temperature(:)          !! (nodes) over the natural state [temperature]
+      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp) :: stress(4, size(points%node))        !! xx, yy, zz, xy [stress]
       real(dp) :: at_gauss(4, 4), e(3, 3), beta
       integer :: element, g

@@ -1,5 +1,5 @@
-!> The stiffness matrices K^n of (2.4) of all bodies, and the forces that temperatures exert on them.
-!> Rows 2i - 1 and 2i are u_x and u_y of node i; bodies share no entries.
+!> The stiffness matrices K^n of (2.4) of all bodies, and the forces that temperatures exert on
+!> them. Rows 2i - 1 and 2i are u_x and u_y of node i; bodies share no entries.
 module stiffness_matrix
    use element_elasticity, only: elastic_matrix, element_stiffness, element_thermal_load, &
       thermal_modulus

@@ -31,8 +31,9 @@ contains
       call dgetrf(n, n, self%factors, max(n, 1), self%pivots, info)
       singular = info /= 0
       do i = 1, n
-         if (abs(self%factors(i, i)) <= 16*n*epsilon(1.0_dp)*maxval(abs(matrix(:, i)))) &
+         if (abs(self%factors(i, i)) <= 16*n*epsilon(1.0_dp)*maxval(abs(matrix(:, i)))) then
             singular = .true.
+         end if
       end do
    end subroutine factor
 

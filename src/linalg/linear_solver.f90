@@ -1,5 +1,6 @@
-!> What the solution asks of a direct solver for a symmetric positive definite matrix whose last unknowns, the tail, are
-!> the contact's: factor the leading block once, then only ever work on the tail.
+!> What the solution asks of a direct solver for a symmetric positive definite matrix whose last
+!> unknowns, the tail, are the contact's: factor the leading block once, then only ever work on the
+!> tail.
 module linear_solver
    use errors, only: error_type
    use kinds, only: dp, long
@@ -8,7 +9,8 @@ module linear_solver
    private
    public :: linear_solver_type
 
-   !> A direct solver. Order of calls: factor; then condense and recover at any time; refactor_tail before solve_tail.
+   !> A direct solver. Order of calls: factor; then condense and recover at any time; refactor_tail
+   !> before solve_tail.
    type, abstract :: linear_solver_type
       integer :: order = 0               !! unknowns
       integer :: tail = 0                !! tail unknowns, the last ones
@@ -26,8 +28,10 @@ module linear_solver
    end type linear_solver_type
 
    abstract interface
-      !> Orders the leading unknowns, factors their block and forms its Schur complement on the tail.
-      !> Error: the matrix is not positive definite (the message begins with "singular"), or the solver failed.
+      !> Orders the leading unknowns, factors their block and forms its Schur complement on the
+      !> tail.
+      !> Error: the matrix is not positive definite (the message begins with "singular"), or the
+      !> solver failed.
       subroutine factor_interface(self, lower, tail, error)
          import :: linear_solver_type, sparse_matrix_type, error_type
          class(linear_solver_type), intent(inout) :: self   !! the solver
@@ -51,11 +55,12 @@ module linear_solver
          real(dp), intent(out) :: condensed(:, :)           !! (tail, columns)
       end subroutine condense_interface
 
-      !> Solutions in full from the solution on the tail: K_lead x_lead = f_lead - K_lead,tail x_tail.
+      !> Solutions in full from the solution on the tail: K_lead x_lead = f_lead - K_lead,tail
+      !> x_tail.
       subroutine recover_interface(self, rhs, on_tail, solution)
          import :: linear_solver_type, dp
          class(linear_solver_type), intent(inout) :: self   !! the solver
-         real(dp), intent(in) :: rhs(:, :)                  !! (order, columns); tail rows are not used
+         real(dp), intent(in) :: rhs(:, :) !! (order, columns); tail rows are not used
          real(dp), intent(in) :: on_tail(:, :)              !! (tail, columns)
          real(dp), intent(out) :: solution(:, :)            !! (order, columns)
       end subroutine recover_interface
@@ -72,7 +77,7 @@ module linear_solver
       subroutine solve_interface(self, x)
          import :: linear_solver_type, dp
          class(linear_solver_type), intent(in) :: self      !! the solver
-         real(dp), intent(inout) :: x(:)                    !! (tail) condensed right-hand side, then solution
+         real(dp), intent(inout) :: x(:) !! (tail) condensed right-hand side, then solution
       end subroutine solve_interface
 
       !> Operations of refactor_tail.

@@ -1,7 +1,8 @@
 !> Direct solver on sequential MUMPS. The only module that sees MUMPS.
 !>
-!> Debian's MUMPS is built without METIS, so METIS's order is computed here and handed over as PERM_IN. MUMPS factors the
-!> leading block and returns its Schur complement; the tail is factored by Crout, as in the skyline solver.
+!> Debian's MUMPS is built without METIS, so METIS's order is computed here and handed over as
+!> PERM_IN. MUMPS factors the leading block and returns its Schur complement; the tail is factored
+!> by Crout, as in the skyline solver.
 module mumps_solver
    use errors, only: error_type, set_error, status_deck, status_internal
    use kinds, only: dp, long
@@ -24,7 +25,8 @@ module mumps_solver
       end subroutine dmumps
    end interface
 
-   integer, parameter :: job_start = -1, job_analyse = 1, job_factor = 2, job_solve = 3, job_end = -2
+   integer, parameter :: job_start = -1, job_analyse = 1, job_factor = 2
+   integer, parameter :: job_solve = 3, job_end = -2
    integer, parameter :: order_given = 1       !! ICNTL(7) and INFOG(7): the order of PERM_IN
    integer, parameter :: workspace_tries = 5   !! how often ICNTL(14) is raised
 
@@ -105,7 +107,8 @@ contains
       if (reported < 0) entries = -1000000_long*reported
    end function factor_entries
 
-   !> A silent instance for a symmetric positive definite matrix on one process, with the matrix in place.
+   !> A silent instance for a symmetric positive definite matrix on one process, with the matrix in
+   !> place.
    subroutine start(self, lower)
       type(mumps_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
@@ -151,7 +154,8 @@ contains
       self%mumps%icntl(7) = order_given
    end subroutine hand_over_order
 
-   !> Asks for the Schur complement of the tail: its lower triangle by rows, our upper triangle by columns.
+   !> Asks for the Schur complement of the tail: its lower triangle by rows, our upper triangle by
+   !> columns.
    subroutine ask_for_schur(self)
       type(mumps_solver_type), intent(inout) :: self
       integer :: i
@@ -171,12 +175,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       select case (self%mumps%infog(1))
-       case (0:)
+      case (0:)
          return
-       case (-10, -40)
+      case (-10, -40)
          call set_error(error, status_deck, &
             'singular matrix: some body is not held by its supports and contacts')
-       case default
+      case default
          call set_error(error, status_internal, 'MUMPS failed in its '//phase// &
             ' with INFOG(1) = '//to_text(self%mumps%infog(1))// &
             ', INFOG(2) = '//to_text(self%mumps%infog(2)))
@@ -230,8 +234,9 @@ contains
          if (associated(id%rhs)) then
             if (size(id%rhs) /= size(rhs)) deallocate (id%rhs, id%redrhs)
          end if
-         if (.not. associated(id%rhs)) &
+         if (.not. associated(id%rhs)) then
             allocate (id%rhs(size(rhs)), id%redrhs(self%tail*size(rhs, 2)))
+         end if
          id%rhs(:) = reshape(rhs, [size(rhs)])
          id%nrhs = size(rhs, 2)
          id%lrhs = self%order

@@ -1,6 +1,7 @@
 !> Profile order for the skyline: reverse Cuthill-McKee from a pseudo-peripheral start.
 !>
-!> Source: A. George and J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981, ch. 4.
+!> Source: A. George and J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems,
+!> 1981, ch. 4.
 module ordering
    use kinds, only: dp, long
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
@@ -29,7 +30,8 @@ contains
       graph = list%compress(leading, leading)
    end function adjacency
 
-   !> Order that keeps the profile short: reverse Cuthill-McKee, each connected part from a pseudo-peripheral vertex.
+   !> Order that keeps the profile short: reverse Cuthill-McKee, each connected part from a
+   !> pseudo-peripheral vertex.
    pure function profile_order(graph) result(order)
       type(sparse_matrix_type), intent(in) :: graph !! as from adjacency
       integer :: order(graph%row_count)             !! old index at each new place
@@ -141,7 +143,7 @@ contains
    !> Stored entries of a skyline in the given order.
    pure function profile_length(lower) result(length)
       type(sparse_matrix_type), intent(in) :: lower !! lower triangle by rows
-      integer(long) :: length                       !! entries from the first non-zero to the diagonal
+      integer(long) :: length !! entries from the first non-zero to the diagonal
       integer :: i
 
       length = 0

@@ -1,9 +1,9 @@
-!> Crout's LDL^T on a skyline whose last columns, the tail, can be factored again without touching the rest: what the
-!> paper asks for below eq. (3.4).
+!> Crout's LDL^T on a skyline whose last columns, the tail, can be factored again without touching
+!> the rest: what the paper asks for below eq. (3.4).
 !>
-!> Columns are stored from their first non-zero row to the diagonal. The leading columns are factored once. A tail column
-!> keeps its leading rows from that factorisation; its tail rows start each time from the Schur complement of the leading
-!> block, plus what is added to the diagonal.
+!> Columns are stored from their first non-zero row to the diagonal. The leading columns are
+!> factored once. A tail column keeps its leading rows from that factorisation; its tail rows start
+!> each time from the Schur complement of the leading block, plus what is added to the diagonal.
 module skyline
    use blas_lapack, only: daxpy, ddot
    use kinds, only: dp, long
@@ -19,7 +19,7 @@ module skyline
       integer, allocatable :: first_row(:)        !! (order) first stored row of a column
       integer(long), allocatable :: offset(:)     !! (order) entry (i, j) is value(offset(j) + i)
       real(dp), allocatable :: value(:)           !! unit upper factor, its diagonal replaced by D
-      real(dp), allocatable :: schur(:, :)        !! (tail, tail) upper triangle of the Schur complement
+      real(dp), allocatable :: schur(:, :) !! (tail, tail) upper triangle of the Schur complement
       integer(long) :: leading_flops = 0          !! operations of factor_leading
    contains
       procedure :: set_matrix
@@ -35,7 +35,8 @@ module skyline
 
 contains
 
-   !> Takes over a symmetric matrix. Tail columns are stored in full height over the tail, which fills anyway.
+   !> Takes over a symmetric matrix. Tail columns are stored in full height over the tail, which
+   !> fills anyway.
    pure subroutine set_matrix(self, lower, tail)
       class(skyline_type), intent(inout) :: self     !! the skyline
       type(sparse_matrix_type), intent(in) :: lower  !! lower triangle by rows, in the final order
@@ -91,7 +92,7 @@ contains
    !> Factors the leading block and forms its Schur complement on the tail.
    pure subroutine factor_leading(self, bad_column)
       class(skyline_type), intent(inout) :: self  !! matrix in, factors out
-      integer, intent(out) :: bad_column          !! column whose pivot is lost to rounding, 0 for none
+      integer, intent(out) :: bad_column !! column whose pivot is lost to rounding, 0 for none
       integer :: i, j, low, high
       integer(long) :: column_i, column_j
       real(dp) :: original, reduced
@@ -134,8 +135,8 @@ contains
       end do
    end subroutine factor_leading
 
-   !> Factors the tail again, from the first column that changed: tail = Schur complement + diagonal. No stored entry
-   !> before that column, and none in the leading rows, is written.
+   !> Factors the tail again, from the first column that changed: tail = Schur complement +
+   !> diagonal. No stored entry before that column, and none in the leading rows, is written.
    pure subroutine refactor_tail(self, diagonal, first_changed)
       class(skyline_type), intent(inout) :: self  !! the factors
       real(dp), intent(in) :: diagonal(:)         !! (tail) added to the diagonal of the tail
@@ -200,7 +201,8 @@ contains
       end do
    end subroutine solve_tail
 
-   !> Leading rows of the solutions, from condensed right-hand sides whose tail rows hold the tail's solution.
+   !> Leading rows of the solutions, from condensed right-hand sides whose tail rows hold the tail's
+   !> solution.
    pure subroutine recover(self, x)
       class(skyline_type), intent(in) :: self  !! factors of the leading block
       real(dp), intent(inout) :: x(:, :)       !! (order, right-hand sides)

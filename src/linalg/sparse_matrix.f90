@@ -1,4 +1,5 @@
-!> Sparse matrices by rows, neutral between the solvers. A symmetric matrix for a solver is given by its lower triangle.
+!> Sparse matrices by rows, neutral between the solvers. A symmetric matrix for a solver is given by
+!> its lower triangle.
 module sparse_matrix
    use kinds, only: dp
    implicit none
@@ -70,7 +71,8 @@ contains
       self%value(self%length) = value
    end subroutine add
 
-   !> The matrix of a list of entries: a counting sort by column and then by row, equal places summed.
+   !> The matrix of a list of entries: a counting sort by column and then by row, equal places
+   !> summed.
    pure function compress(self, row_count, column_count) result(matrix)
       class(triplet_list_type), intent(in) :: self !! the entries
       integer, intent(in) :: row_count             !! rows of the matrix

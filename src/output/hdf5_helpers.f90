@@ -3,7 +3,7 @@
 module hdf5_helpers
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_ptr
    use errors, only: error_type, set_error, status_internal
-   use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5close_f, h5eset_auto_f, &
+   use hdf5, only: hid_t, hsize_t, h5open_f, h5close_f, h5dont_atexit_f, h5eset_auto_f, &
       h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, h5f_acc_rdwr_f, &
       h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5p_file_access_f, &
       h5f_libver_v18_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5lcreate_hard_f, &
@@ -47,8 +47,10 @@ contains
    !> Error: status_internal, when the library does not start.
    subroutine open_hdf5(error)
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      integer :: status(2)
+      integer :: ignored, status(2)
 
+      ! HDF5 1.10 crashes at exit when a file could not be closed for want of space.
+      call h5dont_atexit_f(ignored)
       call h5open_f(status(1))
       call h5eset_auto_f(0, status(2))
       call check_status(status, 'cannot start HDF5', error)

@@ -1,11 +1,12 @@
 !> What a person at a terminal sees: a progress line, the summary of a run, the table of a batch.
 module progress
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use clock, only: wall_seconds
    use errors, only: status_deck, status_internal, status_interrupted, status_no_convergence, &
       status_ok, status_verify
    use kinds, only: dp
    use records, only: increment_record_type
-   use system_calls, only: is_terminal, wall_seconds
+   use system_calls, only: is_terminal
    use text, only: to_text
    use zone_diagram, only: zone_counts
    implicit none
@@ -97,8 +98,9 @@ contains
          to_text(self%increments)//' increments in ', self%seconds, ' s'
       if (self%verify_passed + self%verify_failed > 0) write (output_unit, '(2x, 4a)') &
          to_text(self%verify_passed), ' checks passed, ', to_text(self%verify_failed), ' failed'
+      if (self%status == status_deck .or. self%status == status_internal) return
       write (output_unit, '(2x, 3a)') 'results: ', results, &
-         merge('.vtkhdf, .lst, .sta, .cvg', '.lst, .cvg               ', self%increments > 0)
+         trim(merge('.vtkhdf, .lst, .sta, .cvg', '.lst, .cvg               ', self%increments > 0))
    end subroutine print_outcome
 
    !> The table at the end of a batch.

@@ -20,7 +20,7 @@ module results
    use run_summaries, only: or_blank, run_summary_type
    use status_files, only: status_file_type
    use steps, only: analysis_coupled
-   use system_calls, only: wall_seconds
+   use clock, only: wall_seconds
    use text, only: string_type
    use working_files, only: working_file_type
    implicit none
@@ -119,7 +119,7 @@ contains
          call flush_all(self, model, pairs, error)
          call self%file%charge(since, ended=.false.)
       end if
-      self%is_broken = allocated(error)
+      if (allocated(error)) call give_up(self)
    end subroutine append
 
    !> Publishes what is left and ends HDF5. Without any accepted increment the files of an earlier
@@ -133,20 +133,34 @@ contains
       type(iteration_record_type), intent(in) :: failed(:) !! passes of the increment that failed
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
+      if (self%is_broken) return
       call self%convergence%append(failed)
       call self%passes%add_iterations(failed)
       if (self%accepted > 0) then
-         ! After a failure the working copy may lack rows: the file in place stays.
-         if (.not. self%is_broken) call publish(self, model, pairs, run, error)
+         call publish(self, model, pairs, run, error)
       else
          call self%passes%empty(error)
          if (.not. allocated(error)) call self%passes%write_waiting(error)
       end if
+      if (allocated(error)) then
+         call give_up(self)
+      else
+         call self%increments%close()
+         call self%passes%close()
+         call close_hdf5()
+      end if
+   end subroutine finish
+
+   !> Leaves the file in place as it is: what could not be written whole is dropped, and nothing
+   !> more is written.
+   subroutine give_up(self)
+      class(results_type), intent(inout) :: self
+
+      self%is_broken = .true.
+      call self%file%discard()
       call self%increments%close()
       call self%passes%close()
-      call self%file%discard()
-      call close_hdf5()
-   end subroutine finish
+   end subroutine give_up
 
    pure function expected_increments(model) result(expected)
       type(model_type), intent(in) :: model

@@ -10,7 +10,7 @@ module run_output
    use records, only: increment_record_type, iteration_record_type
    use results, only: results_type
    use run_summaries, only: run_summary_type
-   use system_calls, only: wall_seconds
+   use clock, only: wall_seconds
    use text, only: string_type
    use verification, only: verifier_type
    implicit none
@@ -79,6 +79,7 @@ contains
       call self%verifier%judge(record, model, pairs, self%point_node)
       call self%progress%show(record)
       call self%results%append(record, model, pairs, self%run, error)
+      if (allocated(error)) call self%progress%clear()
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine accept
 

@@ -1,12 +1,12 @@
-!> The few calls of the operating system that Fortran 2008 lacks, and the wall clock.
+!> The few calls of the operating system that Fortran 2008 lacks.
 module system_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
    use, intrinsic :: iso_fortran_env, only: file_storage_size
    use errors, only: error_type, set_error, status_internal
-   use kinds, only: dp, long
+   use kinds, only: long
    implicit none
    private
-   public :: rename_file, copy_file, remove_file, is_terminal, wall_seconds
+   public :: rename_file, copy_file, remove_file, is_terminal
 
    integer, parameter :: block_size = 1048576                       !! bytes that are copied at once
    integer, parameter :: octets = file_storage_size/8               !! bytes in a file storage unit
@@ -101,14 +101,5 @@ contains
 
       answer = posix_isatty(int(descriptor, c_int)) == 1
    end function is_terminal
-
-   !> Seconds of the wall clock since some instant in the past.
-   function wall_seconds() result(seconds)
-      real(dp) :: seconds   !! [s]
-      integer(long) :: ticks, rate
-
-      call system_clock(ticks, rate)
-      seconds = real(ticks, dp)/real(rate, dp)
-   end function wall_seconds
 
 end module system_calls

@@ -1,11 +1,12 @@
 !> The result file in the making: it grows beside the one in place, and is renamed over it once
 !> closed. So the file in place is always a closed and complete one, whatever ends the program.
 module working_files
+   use clock, only: wall_seconds
    use errors, only: error_type
    use hdf5, only: hid_t
    use hdf5_helpers, only: close_file, create_file, open_file
    use kinds, only: dp
-   use system_calls, only: copy_file, remove_file, rename_file, wall_seconds
+   use system_calls, only: copy_file, remove_file, rename_file
    implicit none
    private
    public :: working_file_type

@@ -1,5 +1,5 @@
-!> Balances of heat and force that can fail: the reactions of each body alone, on the recovered fields, against what the
-!> reduced system says crosses the contacts.
+!> Balances of heat and force that can fail: the reactions of each body alone, on the recovered
+!> fields, against what the reduced system says crosses the contacts.
 module balances
    use contact_system, only: contact_state_type
    use interface_operators, only: pair_row_type
@@ -11,13 +11,15 @@ module balances
 
 contains
 
-   !> Heat that the supports of each node must supply: K T - Q plus what leaves through the pairs, by the reduced system.
+   !> Heat that the supports of each node must supply: K T - Q plus what leaves through the pairs,
+   !> by the reduced system.
    pure function heat_residual(conducted, load, pairs, pair_heat) result(residual)
       real(dp), intent(in) :: conducted(:)       !! (nodes) K T of the bodies alone [power]
       real(dp), intent(in) :: load(:)            !! (nodes) Q [power]
       type(pair_row_type), intent(in) :: pairs   !! the pairs
       real(dp), intent(in) :: pair_heat(:)       !! (m) heat from slave to master [power]
-      real(dp) :: residual(size(conducted))      !! (nodes) zero where no temperature is prescribed [power]
+      real(dp) :: residual(size(conducted)) !! (nodes) zero where no temperature is prescribed
+      !! [power]
       integer :: k
 
       residual = conducted - load
@@ -27,13 +29,16 @@ contains
       end do
    end function heat_residual
 
-   !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces of the reduced system.
+   !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces
+   !> of the reduced system.
    pure function force_residual(internal, load, pairs, state) result(residual)
-      real(dp), intent(in) :: internal(:)            !! (2 nodes) K u less the thermal load, bodies alone [force]
+      real(dp), intent(in) :: internal(:) !! (2 nodes) K u less the thermal load, bodies alone
+      !! [force]
       real(dp), intent(in) :: load(:)                !! (2 nodes) applied forces [force]
       type(pair_row_type), intent(in) :: pairs       !! the pairs
       type(contact_state_type), intent(in) :: state  !! contact forces
-      real(dp) :: residual(size(internal))           !! (2 nodes) zero where no displacement is prescribed [force]
+      real(dp) :: residual(size(internal)) !! (2 nodes) zero where no displacement is prescribed
+      !! [force]
       real(dp) :: on_slave(2)
       integer :: k, s, m
 
@@ -47,8 +52,9 @@ contains
       end do
    end function force_residual
 
-   !> Largest imbalance, relative: of any single unsupported row, and per body and direction of the supports' sum against
-   !> loads and contacts, which is the sum over the unsupported rows because K has no resultant.
+   !> Largest imbalance, relative: of any single unsupported row, and per body and direction of the
+   !> supports' sum against loads and contacts, which is the sum over the unsupported rows because K
+   !> has no resultant.
    pure function imbalance(residual, supported, node_body, scale) result(relative)
       real(dp), intent(in) :: residual(:)      !! (components*nodes) as from the functions above
       logical, intent(in) :: supported(:)      !! (components*nodes) prescribed rows
@@ -73,17 +79,18 @@ contains
       if (scale > 0.0_dp) relative = relative/scale
    end function imbalance
 
-   !> Largest violation of the contact conditions (1.6) by gaps and tractions computed afresh from the recovered
-   !> displacements, relative to the largest displacement and force. Where a row is supported on one body, the traction is
-   !> taken from the other; where on both, the reduced system's stands.
-   pure function contact_violation(displacement, unbalanced, supported, pairs, state, friction_acts, &
-      length_scale, force_scale) result(violation)
+   !> Largest violation of the contact conditions (1.6) by gaps and tractions computed afresh from
+   !> the recovered displacements, relative to the largest displacement and force. Where a row is
+   !> supported on one body, the traction is taken from the other; where on both, the reduced
+   !> system's stands.
+   pure function contact_violation(displacement, unbalanced, supported, pairs, state, &
+      friction_acts, length_scale, force_scale) result(violation)
       real(dp), intent(in) :: displacement(:)        !! (2 nodes) [length]
-      real(dp), intent(in) :: unbalanced(:)          !! (2 nodes) K u - f without the contact forces [force]
+      real(dp), intent(in) :: unbalanced(:) !! (2 nodes) K u - f without the contact forces [force]
       logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
       type(pair_row_type), intent(in) :: pairs       !! the pairs
       type(contact_state_type), intent(in) :: state  !! the state that is checked
-      logical, intent(in) :: friction_acts(:)        !! (m) whether the tangent is an unknown with friction
+      logical, intent(in) :: friction_acts(:) !! (m) whether the tangent is an unknown with friction
       real(dp), intent(in) :: length_scale           !! largest displacement [length]
       real(dp), intent(in) :: force_scale            !! largest force [force]
       real(dp) :: violation                          !! relative
@@ -101,7 +108,8 @@ contains
             else if (.not. supported(m)) then
                force(c) = -unbalanced(m)
             else
-               force(c) = state%shear_force(k)*pairs%tangent(c, k) - state%force(k)*pairs%normal(c, k)
+               force(c) = state%shear_force(k)*pairs%tangent(c, k) - &
+                  state%force(k)*pairs%normal(c, k)
             end if
          end do
          gap = (pairs%initial_gap(k) - dot_product(relative, pairs%normal(:, k)))/length_scale
@@ -115,10 +123,12 @@ contains
          end if
          violation = max(violation, abs(gap), -normal_force)
          if (.not. friction_acts(k)) cycle
-         if (state%status(k) == status_slip) &
+         if (state%status(k) == status_slip) then
             violation = max(violation, abs(abs(shear_force) - cone), sign(slip, slip*shear_force))
-         if (state%status(k) == status_stick) &
+         end if
+         if (state%status(k) == status_stick) then
             violation = max(violation, abs(shear_force) - cone, abs(slip))
+         end if
       end do
    end function contact_violation
 

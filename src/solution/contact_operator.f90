@@ -1,5 +1,5 @@
-!> One pass of the contact operator U = chi H L of section 2: conductance -> temperature jumps -> contact state ->
-!> conductance, all on the pairs.
+!> One pass of the contact operator U = chi H L of section 2: conductance -> temperature jumps ->
+!> contact state -> conductance, all on the pairs.
 module contact_operator
    use closing_instant, only: solve_increment
    use conductance_laws, only: conductance, conductance_slope
@@ -21,10 +21,10 @@ module contact_operator
       type(contact_state_type) :: previous           !! contact state at the start of the increment
       real(dp), allocatable :: omega_old(:)          !! (m) omega_i
       real(dp), allocatable :: jump_old(:)           !! (m) T_xi - T_eta at the start [temperature]
-      real(dp), allocatable :: held_jump(:)          !! (m) jump where both temperatures are prescribed
-      real(dp), allocatable :: diagonal(:)           !! (thermal tail) diagonal of the present tail factors
-      real(dp), allocatable :: welded_load(:)        !! (mechanical tail) condensed load without jumps
-      real(dp) :: displacement_scale = 0.0_dp        !! largest displacement of the last increment [length]
+      real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
+      real(dp), allocatable :: diagonal(:) !! (thermal tail) diagonal of the present tail factors
+      real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
+      real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]
    end type increment_data_type
 
 contains
@@ -48,8 +48,8 @@ contains
       image = law_conductance(operators, state)
    end subroutine contact_operator_pass
 
-   !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first changed one on are
-   !> factored again.
+   !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first
+   !> changed one on are factored again.
    subroutine temperature_jumps(operators, data, omega, jump, work)
       type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
       type(increment_data_type), intent(inout) :: data           !! the increment
@@ -98,8 +98,9 @@ contains
 
       load = data%welded_load
       do k = 1, size(jump)
-         if (operators%jump_place(k) > 0) &
+         if (operators%jump_place(k) > 0) then
             load = load + operators%jump_load(:, operators%jump_place(k))*jump(k)
+         end if
       end do
    end function condensed_load
 
@@ -116,7 +117,8 @@ contains
       end do
    end function law_conductance
 
-   !> What a few units in the last place of the displacements change in omega, relative: no residual can be smaller.
+   !> What a few units in the last place of the displacements change in omega, relative: no residual
+   !> can be smaller.
    pure function residual_floor(operators, data, state, omega) result(floor_value)
       type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
       type(increment_data_type), intent(in) :: data             !! the increment
@@ -133,8 +135,9 @@ contains
          associate (weight => operators%pairs%weight(k), place => operators%contact%normal(k))
             change = few*epsilon(1.0_dp)*max(data%displacement_scale, abs(state%gap(k)), &
                abs(operators%pairs%initial_gap(k) - state%gap(k)))
-            if (state%status(k) /= status_open) &
+            if (state%status(k) /= status_open) then
                change = change*operators%contact%schur(place, place)/weight
+            end if
             pressure = state%force(k)/weight
          end associate
          floor_value = max(floor_value, change/omega(k)*abs(conductance_slope( &

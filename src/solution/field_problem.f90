@@ -12,14 +12,15 @@ module field_problem
    private
    public :: field_problem_type
 
-   !> Matrix of the bodies, numbering of the unknowns, factors, and the load of the present increment.
+   !> Matrix of the bodies, numbering of the unknowns, factors, and the load of the present
+   !> increment.
    type :: field_problem_type
-      type(sparse_matrix_type) :: matrix                      !! (dofs, dofs) bodies alone, both triangles
+      type(sparse_matrix_type) :: matrix !! (dofs, dofs) bodies alone, both triangles
       type(equation_map_type) :: map                          !! numbering of the unknowns
       class(linear_solver_type), allocatable :: solver        !! factors
       real(dp), allocatable :: given(:)                       !! (dofs) prescribed values
       real(dp), allocatable :: rhs(:, :)                      !! (equations, 1) right-hand side
-      real(dp), allocatable :: condensed(:)                   !! (tail) right-hand side condensed on the tail
+      real(dp), allocatable :: condensed(:) !! (tail) right-hand side condensed on the tail
    contains
       procedure :: reduce
       procedure :: set_load
@@ -31,7 +32,8 @@ module field_problem
 
 contains
 
-   !> Factors the matrix for a numbering of the unknowns; done once for all increments with the same supports.
+   !> Factors the matrix for a numbering of the unknowns; done once for all increments with the same
+   !> supports.
    !> Error: as the solver's factor.
    subroutine reduce(self, solver_kind, map, error)
       class(field_problem_type), intent(inout) :: self    !! the problem; its matrix is set
@@ -77,7 +79,8 @@ contains
       values = self%map%expand(solution(:, 1), self%given)
    end function recover
 
-   !> Values of all degrees of freedom for unit values of some tail unknowns, without load and with zero prescribed values.
+   !> Values of all degrees of freedom for unit values of some tail unknowns, without load and with
+   !> zero prescribed values.
    subroutine unit_responses(self, first, values)
       class(field_problem_type), intent(inout) :: self    !! the problem
       integer, intent(in) :: first                        !! first of the tail unknowns

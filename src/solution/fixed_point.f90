@@ -1,5 +1,5 @@
-!> Accelerators of the fixed point omega = U(omega), section 4 of the paper. The loop and its tolerances are the
-!> caller's; an accelerator only chooses the next omega*.
+!> Accelerators of the fixed point omega = U(omega), section 4 of the paper. The loop and its
+!> tolerances are the caller's; an accelerator only chooses the next omega*.
 module fixed_point
    use controls, only: fixed_point_type, method_picard
    use kinds, only: dp
@@ -10,7 +10,7 @@ module fixed_point
    !> What turns omega* and its image U(omega*) into the next omega*.
    type, abstract :: accelerator_type
       real(dp), allocatable :: g(:)   !! (m) g of the last pass
-      integer :: kept = 0             !! pairs whose g was kept in the last pass, eq. (4.2) giving none
+      integer :: kept = 0 !! pairs whose g was kept in the last pass, eq. (4.2) giving none
    contains
       procedure(next_interface), deferred :: next
    end type accelerator_type
@@ -71,7 +71,8 @@ contains
       self%kept = 0
    end subroutine next_picard
 
-   !> g_i = 1/(1 - tan a_i) clipped to (0, 1]. Where tan a_i >= 1 or is 0/0 the paper is silent: the pair's last g stays.
+   !> g_i = 1/(1 - tan a_i) clipped to (0, 1]. Where tan a_i >= 1 or is 0/0 the paper is silent: the
+   !> pair's last g stays.
    subroutine next_zaitsev(self, iteration, omega, image)
       class(zaitsev_type), intent(inout) :: self
       integer, intent(in) :: iteration
@@ -85,8 +86,9 @@ contains
          do k = 1, size(omega)
             star_change = omega(k) - self%last_omega(k)
             tangent = 1.0_dp
-            if (abs(star_change) > 2*epsilon(1.0_dp)*abs(omega(k))) &
+            if (abs(star_change) > 2*epsilon(1.0_dp)*abs(omega(k))) then
                tangent = (image(k) - self%last_image(k))/star_change
+            end if
             if (tangent < 1.0_dp) then
                self%g(k) = min(1.0_dp/(1.0_dp - tangent), 1.0_dp)
             else
@@ -116,7 +118,8 @@ contains
       end do
    end function fixed_point_residual
 
-   !> omega*^0 of an increment, below (4.2): linear extrapolation; where that is not positive omega_i is kept.
+   !> omega*^0 of an increment, below (4.2): linear extrapolation; where that is not positive
+   !> omega_i is kept.
    elemental function predicted_conductance(omega, omega_before, step_ratio) result(predicted)
       real(dp), intent(in) :: omega          !! omega_i
       real(dp), intent(in) :: omega_before   !! omega_(i-1)

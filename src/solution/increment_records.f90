@@ -15,7 +15,8 @@ module increment_records
 
 contains
 
-   !> Completes the record of an increment with contact state, fields and balances, and settles the slip memory.
+   !> Completes the record of an increment with contact state, fields and balances, and settles the
+   !> slip memory.
    subroutine make_record(operators, model, points, loads, with_heat, previous, next, record)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
@@ -37,8 +38,9 @@ contains
       if (with_heat) call balance_heat(operators, model, loads, next, record)
    end subroutine make_record
 
-   !> Slip counts from the instant of closing. Tangential positions that the contact system does not carry, of frictionless
-   !> pairs, are taken from the recovered displacements, and such a pair closes on the straight line between its ends.
+   !> Slip counts from the instant of closing. Tangential positions that the contact system does not
+   !> carry, of frictionless pairs, are taken from the recovered displacements, and such a pair
+   !> closes on the straight line between its ends.
    pure subroutine settle_slip(operators, previous, next)
       type(interface_operators_type), intent(in) :: operators
       type(solution_state_type), intent(in) :: previous
@@ -54,8 +56,9 @@ contains
                relative = next%displacement(s - 1:s) - next%displacement(m - 1:m)
                contact%tangential(k) = dot_product(relative, pairs%tangent(:, k))
                contact%reference(k) = contact%tangential(k)
-               if (previous%contact%status(k) == status_open) &
+               if (previous%contact%status(k) == status_open) then
                   contact%reference(k) = previous%contact%tangential(k)
+               end if
             end if
             if (contact%status(k) == status_open) then
                next%closing(k) = contact%tangential(k)

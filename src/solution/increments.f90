@@ -24,8 +24,10 @@ module increments
    private
    public :: simulation_type, run_seconds_type
 
-   real(dp), parameter :: remainder = 1.0e-6_dp       !! part of an increment that is not worth one of its own
-   real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation that a final contact state may show
+   real(dp), parameter :: remainder = 1.0e-6_dp !! part of an increment that is not worth one of its
+   !! own
+   real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation that a final contact
+   !! state may show
 
    !> Where the time goes.
    type :: run_seconds_type
@@ -104,9 +106,10 @@ contains
       over = self%step_time >= step%period - remainder*step%first_increment
    end function step_is_over
 
-   !> Solves the next increment. On failure the state is that of the last good increment and the record holds the
-   !> iterations of the failing one.
-   !> Errors: no convergence, more increments than INC allows, bodies that nothing holds, a failed self-check.
+   !> Solves the next increment. On failure the state is that of the last good increment and the
+   !> record holds the iterations of the failing one.
+   !> Errors: no convergence, more increments than INC allows, bodies that nothing holds, a failed
+   !> self-check.
    subroutine advance(self, model, record, error)
       class(simulation_type), intent(inout) :: self         !! the run
       type(model_type), intent(in) :: model                 !! the model
@@ -186,15 +189,17 @@ contains
       self%seconds%reduce = self%seconds%reduce + (wall_seconds() - since)
    end subroutine enter_step
 
-   !> The end of the next increment. Increments are counted, not added up, so that they land on their multiples.
+   !> The end of the next increment. Increments are counted, not added up, so that they land on
+   !> their multiples.
    pure function next_instant(self, step) result(clock)
       class(simulation_type), intent(in) :: self
       type(step_type), intent(in) :: step
       type(step_clock_type) :: clock
 
       clock%step_time = (self%increments_of_step + 1)*step%first_increment
-      if (clock%step_time > step%period - remainder*step%first_increment) &
+      if (clock%step_time > step%period - remainder*step%first_increment) then
          clock%step_time = step%period
+      end if
       clock%period = step%period
       clock%total_time = self%step_start + clock%step_time
       clock%ramped = step%ramped
@@ -334,8 +339,9 @@ contains
          allocate (on_tail(operators%mechanical%map%tail))
          on_tail(operators%contact%normal) = operators%pairs%initial_gap - next%contact%gap
          do k = 1, size(next%contact%status)
-            if (operators%contact%tangent(k) > 0) &
+            if (operators%contact%tangent(k) > 0) then
                on_tail(operators%contact%tangent(k)) = next%contact%tangential(k)
+            end if
          end do
          next%displacement = operators%mechanical%recover(on_tail)
       end associate

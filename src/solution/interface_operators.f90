@@ -1,4 +1,5 @@
-!> The bodies reduced once to their contact unknowns: everything that the fixed-point iteration needs, on the pairs alone.
+!> The bodies reduced once to their contact unknowns: everything that the fixed-point iteration
+!> needs, on the pairs alone.
 module interface_operators
    use conductance_laws, only: conductance_law_type
    use contact_pairs, only: contact_pairs_type, make_pairs
@@ -36,7 +37,7 @@ module interface_operators
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       type(contact_system_type) :: contact                    !! the partial solution of (2.4)
-      integer, allocatable :: jump_place(:)                   !! (m) place of the jump on the tail, 0 where held
+      integer, allocatable :: jump_place(:) !! (m) place of the jump on the tail, 0 where held
       real(dp), allocatable :: jump_load(:, :)                !! condensed mechanical load per jump
    contains
       procedure :: prepare
@@ -176,7 +177,7 @@ contains
    !> Condensed mechanical loads of fields of temperature.
    subroutine condense_thermal_load(self, temperature, condensed)
       class(interface_operators_type), intent(inout) :: self !! the reduced bodies
-      real(dp), intent(in) :: temperature(:, :)              !! (nodes, columns) over the natural state
+      real(dp), intent(in) :: temperature(:, :) !! (nodes, columns) over the natural state
       real(dp), intent(out) :: condensed(:, :)               !! (mechanical tail, columns)
       real(dp) :: forces(self%thermal_load%row_count, size(temperature, 2))
       integer :: k

@@ -14,7 +14,8 @@ module load_courses
       logical :: ramped = .true.        !! loads without an amplitude ramp over the step
    end type step_clock_type
 
-   !> A set of numbered loads, each with its present value. Loads stay from step to step until given anew.
+   !> A set of numbered loads, each with its present value. Loads stay from step to step until given
+   !> anew.
    type :: load_course_type
       logical, allocatable :: active(:)      !! (n) whether the load was ever given
       real(dp), allocatable :: start(:)      !! (n) value at the start of the step
@@ -34,7 +35,7 @@ contains
    !> Starts with no load given.
    pure subroutine prepare(self, initial)
       class(load_course_type), intent(inout) :: self !! the loads
-      real(dp), intent(in) :: initial(:)             !! (n) values from which loads ramp when first given
+      real(dp), intent(in) :: initial(:) !! (n) values from which loads ramp when first given
 
       allocate (self%active(size(initial)), source=.false.)
       allocate (self%amplitude(size(initial)), self%card(size(initial)), source=0)
@@ -55,7 +56,7 @@ contains
    pure subroutine give(self, i, value, amplitude, card)
       class(load_course_type), intent(inout) :: self !! the loads
       integer, intent(in) :: i                       !! number of the load
-      real(dp), intent(in) :: value                  !! value at the end of the step, or factor of the amplitude
+      real(dp), intent(in) :: value !! value at the end of the step, or factor of the amplitude
       integer, intent(in) :: amplitude               !! index of the amplitude, or 0
       integer, intent(in) :: card                    !! card that gives it
 

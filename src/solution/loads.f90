@@ -10,7 +10,8 @@ module loads
    private
    public :: loads_type
 
-   !> Courses of the loads; displacements and forces by degree of freedom, temperatures by node, pressures by face.
+   !> Courses of the loads; displacements and forces by degree of freedom, temperatures by node,
+   !> pressures by face.
    type :: loads_type
       type(load_course_type) :: displacement   !! (2 nodes) prescribed displacements [length]
       type(load_course_type) :: temperature    !! (nodes) prescribed temperatures [temperature]
@@ -26,7 +27,8 @@ module loads
 
 contains
 
-   !> Starts with nothing given: displacements, forces and pressures from zero, temperatures from the initial ones.
+   !> Starts with nothing given: displacements, forces and pressures from zero, temperatures from
+   !> the initial ones.
    pure subroutine prepare(self, model)
       class(loads_type), intent(inout) :: self   !! the loads
       type(model_type), intent(in) :: model      !! the model

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every deck of refused/ must be refused by `thercon check`: exit status 1, nothing on stdout, and on stderr exactly
-# what stands in NAME.expected beside it.
+# what stands in NAME.expected beside it. NAME.args, where it is there, holds more arguments.
 #
 #    run_refused.sh [PROGRAM]     PROGRAM defaults to $THERCON
 set -u
@@ -15,7 +15,9 @@ failed=0
 for deck in *.inp; do
    decks=$((decks + 1))
    wrong=""
-   "$program" check "$deck" >"$folder/out" 2>"$folder/err"
+   arguments=()
+   [[ ! -f "${deck%.inp}.args" ]] || read -ra arguments <"${deck%.inp}.args"
+   "$program" check "$deck" "${arguments[@]}" >"$folder/out" 2>"$folder/err"
    status=$?
    ((status == 1)) || wrong="exit status $status instead of 1"
    [[ ! -s "$folder/out" ]] || wrong="$wrong; something on stdout"
@@ -25,5 +27,9 @@ for deck in *.inp; do
    printf '%s: %s\n' "$deck" "${wrong#; }"
    cat "$folder/diff"
 done
+if [[ $("$program" check nowhere.inp 2>&1) != "nowhere.inp: error: the deck cannot be read" ]]; then
+   failed=$((failed + 1))
+   printf 'nowhere.inp: a deck that does not exist is not reported by its path\n'
+fi
 printf '%d decks, %d of them not refused as expected\n' "$decks" "$failed"
 ((decks > 0 && failed == 0))

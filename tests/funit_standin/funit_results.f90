@@ -19,10 +19,11 @@ module funit_results
 
    ! Test sources call the assertions without any handle of the test that runs: its verdict can only
    ! be kept here.
-   character(:), allocatable :: failures   !! what has failed in the test that runs
-   integer :: failed_assertions = 0        !! in the test that runs
-   integer :: tests_run = 0                !! in all
-   integer :: tests_failed = 0             !! in all
+   character(:), allocatable :: failures       !! what has failed in the test that runs
+   character(:), allocatable :: failed_tests   !! what has failed in all of them
+   integer :: failed_assertions = 0            !! in the test that runs
+   integer :: tests_run = 0                    !! in all
+   integer :: tests_failed = 0                 !! in all
 
 contains
 
@@ -70,17 +71,20 @@ contains
       if (anyexceptions()) then
          tests_failed = tests_failed + 1
          write (output_unit, '(a)') ' Failure in <'//name//'>'
-         write (output_unit, '(a)', advance='no') failures
+         if (.not. allocated(failed_tests)) failed_tests = ''
+         failed_tests = failed_tests//'Failure in: '//name//new_line('a')//failures//new_line('a')
       end if
       write (output_unit, '(a)') '   end: <'//name//'>'
       flush (output_unit)
    end subroutine run_test
 
-   !> Prints the verdict over all tests; a failed one, or none at all, makes the exit status.
+   !> Prints what has failed and the verdict over all tests; a failed one, or none at all, makes the
+   !> exit status.
    subroutine end_tests()
       if (tests_failed == 0 .and. tests_run > 0) then
          write (output_unit, '(a,/,a,i0,a)') ' OK', ' (', tests_run, ' tests)'
       else
+         if (allocated(failed_tests)) write (output_unit, '(/,a)', advance='no') failed_tests
          write (output_unit, '(a,/,2(a,i0))') ' FAILURES!!!', &
             'Tests run: ', tests_run, ', Failures: ', tests_failed
          write (output_unit, '(a)') '*** Encountered 1 or more failures/errors during testing ***'

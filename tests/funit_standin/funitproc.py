@@ -29,6 +29,7 @@ ASSERTION_CODE = """\
       call assert{kind}({arguments}, &
          location=sourcelocation("{name}", {line}))
       if (anyexceptions()) return
+# {next_line} "{path}"
 """
 SUITE_CODE = """
 subroutine {module}_suite()
@@ -60,7 +61,12 @@ def convert(text, path):
         elif match := ASSERTION.match(line):
             output.append(
                 ASSERTION_CODE.format(
-                    line=number, path=path, name=path.name, kind=match[1], arguments=match[2]
+                    line=number,
+                    next_line=number + 1,
+                    path=path,
+                    name=path.name,
+                    kind=match[1],
+                    arguments=match[2],
                 )
             )
         elif match := MARK.match(line):

@@ -52,9 +52,8 @@ def grid_at(reader, step):
 
 def arrays_of(data):
     """Return the arrays of point or cell data by their names."""
-    return {
-        data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())
-    }
+    arrays = map(data.GetArray, range(data.GetNumberOfArrays()))
+    return {array.GetName(): vtk_to_numpy(array) for array in arrays}
 
 
 @pytest.mark.parametrize("step", [11, INCREMENTS - 1])

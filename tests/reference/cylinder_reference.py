@@ -31,28 +31,25 @@ DECK = Path(__file__).resolve().parents[2] / "input" / "cylinder" / "cylinder.in
 
 def read_deck(path):
     """Bodies of a deck in its order (coordinates, elements, contact face as ordered nodes, material)."""
-    blocks, constants = [], {}
+    blocks = []
     for line in Path(path).read_text().splitlines():
-        if line.startswith("**"):
-            continue
-        if line.startswith("*"):
-            key, *parameters = [field.strip().upper() for field in line.split(",")]
-            blocks.append((key, parameters, []))
-        else:
-            blocks[-1][2].append([field.strip() for field in line.split(",")])
-    nodes = {int(r[0]): tuple(map(float, r[1:3])) for key, _, rows in blocks if key == "*NODE" for r in rows}
-    elements = [{int(r[0]): [int(n) for n in r[1:]] for r in rows} for key, _, rows in blocks if key == "*ELEMENT"]
-    faces = [[(int(r[0]), int(r[1][1:]) - 1) for r in rows] for key, _, rows in blocks if key == "*SURFACE"]
-    for key in ("*ELASTIC", "*EXPANSION", "*CONDUCTIVITY"):
-        constants[key] = [[float(v) for v in rows[0]] for name, _, rows in blocks if name == key]
+        fields = [field.strip() for field in line.split(",")]
+        if line.startswith("*") and not line.startswith("**"):
+            blocks.append((fields[0].upper(), []))
+        elif not line.startswith("**"):
+            blocks[-1][1].append(fields)
+    nodes = {int(r[0]): tuple(map(float, r[1:3])) for key, rows in blocks if key == "*NODE" for r in rows}
+    elements = [{int(r[0]): [int(n) for n in r[1:]] for r in rows} for key, rows in blocks if key == "*ELEMENT"]
+    faces = [[(int(r[0]), int(r[1][1:]) - 1) for r in rows] for key, rows in blocks if key == "*SURFACE"]
+    keys = ("*ELASTIC", "*EXPANSION", "*CONDUCTIVITY")
+    constants = {key: [[float(v) for v in rows[0]] for name, rows in blocks if name == key] for key in keys}
     bodies = []
     for k, own in enumerate(elements):
         numbers = sorted({n for e in own.values() for n in e})
         index = {n: i for i, n in enumerate(numbers)}
-        face = {own[e][side] for e, side in faces[k]} | {own[e][(side + 1) % 4] for e, side in faces[k]} \
-            | {own[e][side + 4] for e, side in faces[k]}
-        material = SimpleNamespace(young=constants["*ELASTIC"][k][0], poisson=constants["*ELASTIC"][k][1],
-                                   expansion=constants["*EXPANSION"][k][0], conductivity=constants["*CONDUCTIVITY"][k][0])
+        face = {own[e][place] for e, side in faces[k] for place in (side, (side + 1) % 4, side + 4)}
+        (young, poisson), (expansion,), (conductivity,) = (constants[key][k] for key in keys)
+        material = SimpleNamespace(young=young, poisson=poisson, expansion=expansion, conductivity=conductivity)
         bodies.append(SimpleNamespace(xy=np.array([nodes[n] for n in numbers]), material=material,
                                       elements=[[index[n] for n in e] for e in own.values()],
                                       face=[index[n] for n in sorted(face, key=lambda n: nodes[n][0])]))
@@ -149,7 +146,8 @@ def respond(body, end, hot):
     unit_force[contact, range(len(contact))] = 1
     reach = solve(stiffness, held, unit_force)
     return SimpleNamespace(flexibility=reach[contact], heating=reach.T @ (coupling @ by_heat),
-                           u_load=reach.T @ (coupling @ by_load), resistance=by_heat[body.face], t_load=by_load[body.face])
+                           u_load=reach.T @ (coupling @ by_load),
+                           resistance=by_heat[body.face], t_load=by_load[body.face])
 
 
 # The pairs
@@ -215,64 +213,52 @@ class Contact:
                         GAS_A / (GAS_B + np.maximum(state.g, 0)))
 
     def conditions(self, status, closing):
-        """Rows of the contact conditions on (p, t) as they depend on the tractions, and which of them take a gap or a
-        tangential displacement. The first pair lies on the axis: its tangent is held in both bodies."""
-        m, rows = self.count, np.eye(2 * self.count)
-        normal = np.flatnonzero(status != OPEN)
-        slip = np.flatnonzero(np.abs(status) == 1)
-        stick = np.flatnonzero(status == STICK)
-        stick = stick[stick > 0]
-        rows[normal] = self.by_traction[normal]
-        rows[m + slip, slip] = -FRICTION * status[slip]
-        share = np.ones(m)                        # of l in the row of a stuck pair
-        for k, (fraction, yielding, _) in closing.items():
-            share[k] = 1 - fraction
-        rows[m + stick] = self.by_traction[m + stick] * share[stick, None]
-        for k in set(closing) & set(stick):
-            fraction, yielding, _ = closing[k]
-            rows[m + k, [k, m + k]] += fraction * yielding[1]
-        return rows, normal, stick, share
-
-    def tractions(self, status, closing, before, free):
-        """Pressure and shear under the free gaps and tangential displacements (2 m), the statuses given."""
-        m, right = self.count, np.zeros(2 * self.count)
-        rows, normal, stick, share = self.conditions(status, closing)
-        right[normal] = -free[normal]
-        reference = before.l.copy()
-        right[m + stick] = share[stick] * (reference - free[m:])[stick]
-        traction = np.linalg.solve(rows, right)
-        both = free + self.by_traction @ traction
-        return traction[:m], traction[m:], both[:m], both[m:]
+        """Rows of the contact conditions on the tractions (p, t), and the share of gap and l in each (0: traction only).
+        The first pair lies on the axis, its tangent held in both bodies: no shear."""
+        m, rows, share = self.count, np.eye(2 * self.count), np.zeros(2 * self.count)
+        for k in np.flatnonzero(status != OPEN):
+            rows[k], share[k] = self.by_traction[k], 1
+            if status[k] != STICK:
+                rows[m + k, k] = -FRICTION * status[k]
+            elif k > 0:
+                fraction, yielding = closing.get(k, (0.0, 0.0))
+                share[m + k] = 1 - fraction
+                rows[m + k] = share[m + k] * self.by_traction[m + k]
+                rows[m + k, [k, m + k]] += fraction * yielding
+        return rows, share
 
     def slips(self, p, t, l, before, closing):
-        """Tangential motion in the increment since friction acts, for a pair that closes in it since that instant."""
+        """Tangential motion in the increment since friction acts: for a pair that closes in it, since that instant."""
         slip = l - before.l
-        for k, (fraction, yielding, _) in closing.items():
-            slip[k] = (1 - fraction) * slip[k] + fraction * (yielding[1] @ [p[k], t[k]])
+        for k, (fraction, yielding) in closing.items():
+            slip[k] = (1 - fraction) * slip[k] + fraction * (yielding @ [p[k], t[k]])
         return slip
 
     def closing_laws(self, status, before, p, t):
-        """Instant of closing and own flexibility of the pairs that close in the increment: relieved of its tractions
-        alone, a pair would end at the gap g* = -(flexibility (p, t))_n; it closes at the fraction g_i/(g_i - g*), at
-        the place that lies there between l_i and l*. All others keep their conditions, those that close their places."""
+        """Pairs that close in the increment: instant (fraction of it) and own tangential flexibility under (p, t).
+
+        Relieved of its own tractions alone, a pair would end at the gap g* and at l*, less by its own flexibility times
+        (p, t); the others keep their conditions, those that close with it their places. It closes at the fraction
+        g_i/(g_i - g*), at the place that lies there between l_i and l*."""
         fresh = [k for k in np.flatnonzero((status != OPEN) & (before.status == OPEN)) if k > 0]
-        held, laws = status.copy(), {}
+        laws, held = {}, status.copy()
         held[fresh] = STICK
+        all_rows = self.conditions(held, {})[0]
         for k in fresh:
-            rows = self.conditions(held, {})[0]
-            pair = [k, self.count + k]
+            pair, rows = [k, self.count + k], all_rows.copy()
             rows[pair] = np.eye(2 * self.count)[pair]
             yielding = (self.by_traction @ np.linalg.solve(rows, np.eye(2 * self.count)[:, pair]))[pair]
             overlap = max(yielding[0] @ [p[k], t[k]], 0.0)
-            fraction = before.g[k] / (before.g[k] + overlap) if before.g[k] > 0 else 0.0
-            laws[k] = fraction, yielding, overlap
+            laws[k] = (before.g[k] / (before.g[k] + overlap) if before.g[k] > 0 else 0.0), yielding[1]
         return laws
 
     def mechanics(self, status, before, free):
         """Statuses, tractions and displacements that satisfy every contact condition, by an active set."""
         closing = {}
         for attempt in range(400):
-            p, t, g, l = self.tractions(status, closing, before, free)
+            rows, share = self.conditions(status, closing)
+            p, t = traction = np.linalg.solve(rows, share * (np.r_[0 * before.l, before.l] - free)).reshape(2, -1)
+            g, l = (free + self.by_traction @ traction.ravel()).reshape(2, -1)
             slip = self.slips(p, t, l, before, closing)
             new = status.copy()
             new[(status == OPEN) & (g < -1e-14)] = STICK
@@ -314,11 +300,9 @@ class Contact:
                 x = x + residual / 2
                 continue
             heat_slope = np.linalg.solve(conductor, np.diag(q * np.exp(-x)))
-            rows, normal, stick, share = self.conditions(status, closing)
-            right, moved = np.zeros((2 * m, m)), self.by_heat @ heat_slope
-            right[normal] = -moved[normal]
-            right[m + stick] = -share[stick, None] * moved[m + stick]
-            traction = np.linalg.solve(rows, right)
+            rows, share = self.conditions(status, closing)
+            moved = self.by_heat @ heat_slope
+            traction = np.linalg.solve(rows, -share[:, None] * moved)
             moved = moved + self.by_traction @ traction
             slope = np.where((status != OPEN)[:, None], CLOSED_1 * traction[:m],
                              -(state.w / (GAS_B + np.maximum(g, 0)))[:, None] * moved[:m]) / state.w[:, None]
@@ -342,7 +326,8 @@ class Contact:
         return np.mean(places) if places else (s[k] + s[k + 1]) / 2
 
     def edges(self, state):
-        """(edge_contact, edge_stick): outer edge of the contact zone with the largest s and of the widest stick zone."""
+        """(edge_contact, edge_stick): outer edges of the contact zone with the largest s and of the widest stick zone.
+        The stick edge is the zero of the straight line through mu p - |t| of the last five stuck pairs."""
         closed = np.flatnonzero(state.status != OPEN)
         stuck = np.flatnonzero(state.status == STICK)
         if len(closed) == 0 or len(stuck) == 0:
@@ -374,7 +359,8 @@ def solve_deck(deck=DECK, levels=0, step=20.0, last=900.0):
     states = [contact.start()]
     for k in range(1, round(last / step) + 1):
         state = contact.increment(states[-1], k * step)
-        state.normal_force, state.shear_force, state.heat_rate = (contact.weight @ v for v in (state.p, state.t, state.q))
+        state.normal_force, state.shear_force = contact.weight @ state.p, contact.weight @ state.t
+        state.heat_rate = contact.weight @ state.q
         state.edge_contact, state.edge_stick = contact.edges(state)
         states.append(state)
     return contact, states[1:]
@@ -388,11 +374,12 @@ def main():
     parser.add_argument("--last", type=float, default=900.0, help="last load")
     options = parser.parse_args()
     contact, states = solve_deck(options.deck, options.levels, options.step, options.last)
-    print(f"# {contact.count} pairs\n#  load normal_force   shear_force     heat_rate  max pressure  edge_contact    edge_stick")
+    names = ("normal_force", "shear_force", "heat_rate", "max pressure", "edge_contact", "edge_stick")
+    print(f"{contact.count} pairs\n   load " + " ".join(f"{name:>13}" for name in names))
     for state in states:
         if round(state.load) % 180 == 0 or state is states[-1]:
-            values = (state.normal_force, state.shear_force, state.heat_rate, state.p.max(), state.edge_contact, state.edge_stick)
-            print(f"{state.load:7.1f} " + " ".join(f"{v:13.8g}" for v in values))
+            values = (state.normal_force, state.shear_force, state.heat_rate, state.p.max(), *contact.edges(state))
+            print(f"{state.load:7.1f} " + " ".join(f"{value:13.8g}" for value in values))
 
 
 if __name__ == "__main__":
