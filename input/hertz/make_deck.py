@@ -148,10 +148,10 @@ CDIS, CSTR
 """
 
 CHECKS = """\
-*VERIFY, KIND=ANALYTIC, SOURCE="Hertz: half-width goes with the root of the load"
+*VERIFY, KIND=ANALYTIC, SOURCE="Hertz: half-width as root of the load"
 edge_contact, , 0.25, {quarter:.7f}, 1.E-2
 edge_contact, , LAST, {half_width:.7f}, 1.E-2
-*VERIFY, KIND=ANALYTIC, SOURCE="Hertz: pressure at x = 0, 0.5 and outside"
+*VERIFY, KIND=ANALYTIC, SOURCE="Hertz: pressure at x = 0 and 0.5 and outside"
 pressure, MAX, LAST, {peak:.5f}, 1.E-2
 pressure, FACE@0., LAST, {peak:.5f}, 1.E-2
 pressure, FACE@0.5, LAST, {inner:.5f}, 1.E-2
@@ -161,7 +161,7 @@ pressure, FACE@1.25, LAST, 0., 1.E-12, ABS
 normal_force, , 0.25, {quarter_force:g}, 2.E-5
 normal_force, , LAST, {half_force:g}, 2.E-5
 force_imbalance, , LAST, 0., 1.E-10, ABS
-*VERIFY, KIND=ANALYTIC, SOURCE="supports, no friction"
+*VERIFY, KIND=ANALYTIC, SOURCE="supports; no friction"
 U1, AXIS, LAST, 0., 1.E-15, ABS
 U2, BOTTOM, LAST, 0., 1.E-15, ABS
 shear, MAX, LAST, 0., 1.E-12, ABS

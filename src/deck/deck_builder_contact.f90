@@ -46,6 +46,7 @@ contains
       type(string_type), allocatable :: names(:)
       integer :: i
 
+      contact%card = card%place%image
       call need_parameter(card, 'INTERACTION', report, name)
       contact%interaction = find_interaction(model%interactions, name)
       if (contact%interaction == 0 .and. len(name) > 0) then

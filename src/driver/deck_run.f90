@@ -4,9 +4,11 @@ module deck_run
    use cards, only: cards_type
    use clock, only: wall_seconds
    use command_line, only: command_type
+   use contact_pairs, only: contact_pairs_type, make_pairs
    use deck_builder, only: build_model
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use errors, only: error_type, status_deck, status_no_convergence, status_verify
    use increments, only: simulation_type
    use kinds, only: dp
@@ -15,6 +17,7 @@ module deck_run
    use records, only: increment_record_type, iteration_record_type
    use run_description, only: describe_run
    use run_output, only: run_output_type
+   use system_calls, only: make_folder
    implicit none
    private
    public :: run_deck, prepare_deck, base_name
@@ -65,6 +68,7 @@ contains
       status = 0
       call read_deck(path, command%width, command%settings, cards, report)
       call build_model(cards, model, report)
+      if (.not. report%has_errors()) call check_pairs(model, report)
       call report%print(error_unit)
       if (report%has_errors()) then
          status = status_deck
@@ -75,6 +79,22 @@ contains
       status = error%status
       write (error_unit, '(3a)') path, ': error: ', error%message
    end subroutine prepare_deck
+
+   !> Reports every *CONTACT PAIR whose surfaces cannot be paired.
+   subroutine check_pairs(model, report)
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(contact_pairs_type) :: pairs
+      type(error_type), allocatable :: error
+      integer :: i
+
+      do i = 1, size(model%contacts)
+         call make_pairs(model%mesh, model%contacts(i), 1.0_dp, pairs, error)
+         if (allocated(error)) then
+            call report%error(place_type(image=model%contacts(i)%card), error%message)
+         end if
+      end do
+   end subroutine check_pairs
 
    !> All increments, with their output.
    subroutine solve_deck(path, command, cards, model, simulation, output, error)
@@ -90,6 +110,7 @@ contains
       type(iteration_record_type), allocatable :: passes(:)
 
       associate (pairs => simulation%operators%interfaces, points => simulation%points)
+         call make_folder(command%folder)
          call output%start(command%folder//'/'//base_name(path), model, pairs, points%node, &
             points%element_points, cards%images, command%quiet, error)
          if (allocated(error)) return

@@ -18,6 +18,7 @@ module contact_definitions
       character(:), allocatable :: name       !! name as the deck writes it
       integer :: slave = 0                    !! index of the slave surface, the paper's body xi
       integer :: master = 0                   !! index of the master surface, the paper's body eta
+      integer :: card = 0                     !! card image of the *CONTACT PAIR
       integer :: interaction = 0              !! index into model%interactions
    end type contact_definition_type
 

@@ -6,7 +6,7 @@ module system_calls
    use kinds, only: long
    implicit none
    private
-   public :: rename_file, copy_file, remove_file, is_terminal
+   public :: rename_file, copy_file, remove_file, make_folder, is_terminal
 
    integer, parameter :: block_size = 1048576                       !! bytes that are copied at once
    integer, parameter :: octets = file_storage_size/8               !! bytes in a file storage unit
@@ -26,6 +26,14 @@ module system_calls
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int) :: status
       end function posix_unlink
+
+      !> POSIX mkdir(2).
+      function posix_mkdir(path, mode) bind(c, name='mkdir') result(status)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), value :: mode
+         integer(c_int) :: status
+      end function posix_mkdir
 
       !> POSIX isatty(3).
       function posix_isatty(descriptor) bind(c, name='isatty') result(answer)
@@ -48,6 +56,20 @@ contains
          call set_error(error, status_internal, 'cannot rename "'//from//'" to "'//to//'"')
       end if
    end subroutine rename_file
+
+   !> Makes a folder and those above it; one that is there already is left as it is. Whether it can
+   !> be written to shows when a file is opened in it.
+   subroutine make_folder(path)
+      character(*), intent(in) :: path   !! the folder
+      integer :: i
+      integer(c_int) :: status
+      integer(c_int), parameter :: all_may = int(o'777', c_int)
+
+      do i = 2, len(path)
+         if (path(i:i) == '/') status = posix_mkdir(path(:i - 1)//c_null_char, all_may)
+      end do
+      status = posix_mkdir(path//c_null_char, all_may)
+   end subroutine make_folder
 
    !> Copies a file byte by byte; a file that stands at the target is overwritten.
    !> Error: status_internal, when either file cannot be read or written.

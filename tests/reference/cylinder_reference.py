@@ -213,8 +213,8 @@ class Contact:
                         GAS_A / (GAS_B + np.maximum(state.g, 0)))
 
     def conditions(self, status, closing):
-        """Rows of the contact conditions on the tractions (p, t), and the share of gap and l in each (0: traction only).
-        The first pair lies on the axis, its tangent held in both bodies: no shear."""
+        """Rows of the contact conditions on the tractions (p, t), and the share of gap or l in each, 0 where tractions
+        alone enter. The first pair lies on the axis, its tangent held in both bodies: no shear."""
         m, rows, share = self.count, np.eye(2 * self.count), np.zeros(2 * self.count)
         for k in np.flatnonzero(status != OPEN):
             rows[k], share[k] = self.by_traction[k], 1
