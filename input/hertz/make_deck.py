@@ -16,7 +16,8 @@ import numpy as np
 RADIUS, SIZE = 100.0, 40.0               # mm; both bodies are SIZE wide and SIZE high
 YOUNG, POISSON = (2.1e5, 7.0e4), (0.3, 0.33)    # MPa; cylinder, block
 TOP_PRESSURE = 6.0                       # MPa
-FINE, FINE_TO, COLUMNS, ROWS = 0.25, 1.5, 8, 12   # mm; size of the elements at the contact and where they begin to grow
+INNER, ACROSS = 1.5, 6                   # mm; square at the contact, elements along each of its sides
+RINGS = 11                               # rings of elements from there to the outer sides
 
 
 def theory():
@@ -27,37 +28,34 @@ def theory():
     return half_width, 2 * 2 * half_force / (pi * half_width), half_force
 
 
-def growing(start, first, end, count):
-    """Points from `start` to `end`, `count` intervals that grow by one ratio; the interval before `start` is `first`."""
-    low, high = 1.0, 10.0
-    for _ in range(100):
-        ratio = (low + high) / 2
-        reached = start + first * sum(ratio**k for k in range(1, count + 1))
-        low, high = (ratio, high) if reached < end else (low, ratio)
-    inner = [start + first * sum(ratio**k for k in range(1, n + 1)) for n in range(1, count)]
-    return [round(float(p), 3) for p in inner] + [end]
+def plain_elements():
+    """Quadrilaterals of the square (0, SIZE) x (0, SIZE), counter-clockwise: a small square of equal elements, and
+    rings around it, each the last one enlarged, so that elements keep their shape however large they grow."""
+    side = np.linspace(0.0, INNER, ACROSS + 1)
+    quads = [[(x, y), (right, y), (right, top), (x, top)]
+             for y, top in zip(side, side[1:]) for x, right in zip(side, side[1:])]
+    rim = np.array([(INNER, y) for y in side] + [(x, INNER) for x in side[-2::-1]])
+    scales = np.geomspace(1.0, SIZE / INNER, RINGS + 1)
+    for low, high in zip(scales, scales[1:]):
+        quads += [[low * p, high * p, high * q, low * q] for p, q in zip(rim, rim[1:])]
+    return quads
 
 
 def make_body(bend):
     """Nodes (number to x, y) and elements of a body above the contact face; `bend` gives the place of the point
     (x, height). Numbers run along the contact first, then row by row away from it."""
-    even = [float(x) for x in np.arange(0.0, FINE_TO + FINE / 2, FINE)]
-    columns = even + growing(FINE_TO, FINE, SIZE, COLUMNS)
-    rows = [0.0, FINE] + growing(FINE, FINE, SIZE, ROWS - 1)
-    number, nodes, elements = {}, {}, []
-    for j in range(2 * len(rows) - 1):
-        for i in range(2 * len(columns) - 1):
-            if i % 2 and j % 2:
-                continue
-            number[i, j] = len(nodes) + 1
-            nodes[number[i, j]] = bend((columns[i // 2] + columns[(i + 1) // 2]) / 2,
-                                       (rows[j // 2] + rows[(j + 1) // 2]) / 2)
-    for j in range(0, 2 * len(rows) - 2, 2):
-        for i in range(0, 2 * len(columns) - 2, 2):
-            corners = [(i, j), (i + 2, j), (i + 2, j + 2), (i, j + 2)]
-            sides = [(i + 1, j), (i + 2, j + 1), (i + 1, j + 2), (i, j + 1)]
-            elements.append([number[p] for p in corners + sides])
-    return nodes, elements
+    points, elements = {}, []
+    for quad in plain_elements():
+        corners = [tuple(np.round(p, 6)) for p in quad]
+        sides = [tuple(np.round(np.add(corners[k], corners[(k + 1) % 4]) / 2, 7)) for k in range(4)]
+        elements.append(corners + sides)
+        points.update((p, bend(*p)) for p in corners)
+        for k in range(4):
+            ends = points[corners[k]], points[corners[(k + 1) % 4]]
+            points[sides[k]] = bend(*sides[k]) if sides[k][1] == 0.0 else tuple(np.mean(ends, axis=0))
+    number = {p: n for n, p in enumerate(sorted(points, key=lambda p: (p[1], p[0])), start=1)}
+    nodes = {number[p]: tuple(round(float(c), 10) for c in points[p]) for p in number}
+    return nodes, [[number[p] for p in element] for element in elements]
 
 
 def make_mesh():
@@ -65,7 +63,6 @@ def make_mesh():
     upper, elements = make_body(lambda x, y: (x, y + (1 - y / SIZE) * x**2 / (2 * RADIUS)))
     lower, _ = make_body(lambda x, y: (x, 0.0 - y))
     mirrored = [[e[k] + 1000 for k in (1, 0, 3, 2, 4, 7, 6, 5)] for e in elements]
-    upper = {n: (x, round(y, 9)) for n, (x, y) in upper.items()}
     return (upper, elements), ({n + 1000: p for n, p in lower.items()}, mirrored)
 
 
@@ -82,14 +79,15 @@ def mesh_cards(bodies):
     for (_, elements), name, first in zip(bodies, ("CYLINDER", "BLOCK"), (1, 1001)):
         cards += [f"*ELEMENT, TYPE=CPE8, ELSET={name}"]
         cards += [", ".join(map(str, [n] + e)) for n, e in enumerate(elements, start=first)]
-    last = len(bodies[0][1])
-    columns = last // ROWS
-    cards += ["*ELSET, ELSET=LOADED, GENERATE", f"{last - columns + 1}, {last}"]
+    (upper, elements), _ = bodies
+    faces = [n for n, e in enumerate(elements, start=1) if all(upper[e[k]][1] == SIZE for k in (1, 2))]
+    cards += ["*ELSET, ELSET=LOADED"] + number_lines(faces)
     for name, chosen in (("BOTTOM", [n for n, (x, y) in nodes.items() if y == -SIZE]),
                          ("AXIS", [n for n, (x, y) in nodes.items() if x == 0.0])):
         cards += [f"*NSET, NSET={name}"] + number_lines(chosen)
+    faces = [n for n, e in enumerate(elements) if all(bodies[1][0][e[k] + 1000][1] == 0.0 for k in (0, 1))]
     for name, first in (("CURVED", 1), ("FLAT", 1001)):
-        cards += [f"*SURFACE, NAME={name}, TYPE=ELEMENT"] + [f"{first + k}, S1" for k in range(columns)]
+        cards += [f"*SURFACE, NAME={name}, TYPE=ELEMENT"] + [f"{first + k}, S1" for k in faces]
     return cards
 
 
@@ -111,8 +109,8 @@ Hertz contact of a cylinder and a block, plane strain, without friction
 **
 ** The curved face is y = x^2/(2 R), midside nodes at mid-x and on the curve;
 ** each node stands opposite one of the block. The elements at the contact are
-** 0.25 = a/4 wide before they are refined. The checks hold as well without
-** *REFINE and with more of it.
+** 0.25 = a/4 wide before they are refined, and grow in rings around it that
+** keep their shape. The checks hold as well without refinement and with more.
 """
 
 MODEL = """\
@@ -135,7 +133,7 @@ AXIS, 1, 1, 0.
 *STATIC, DIRECT
 0.25, 1.
 *DLOAD
-LOADED, P3, 6.
+LOADED, P2, 6.
 *NODE FILE
 U
 *EL FILE

@@ -16,7 +16,8 @@
 !>
 !> The roles are found by an active set: solve, correct every pair that violates its condition,
 !> solve again. A set that comes back is left by correcting only the last offending pair (Murty's
-!> least-index rule), which cannot cycle on the P-matrix of a frictionless problem.
+!> least-index rule), which cannot cycle on the P-matrix of a frictionless problem. Where contact
+!> alone holds a body and the first guess leaves it loose, all pairs are taken for closed.
 module contact_system
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -32,10 +33,8 @@ module contact_system
    !> Contact state of all pairs.
    type :: contact_state_type
       integer, allocatable :: status(:)       !! (m) status_open, status_slip or status_stick
-      integer, allocatable :: direction(:) !! (m) sign of the friction force on the slave where it
-      !! slips
-      real(dp), allocatable :: reference(:) !! (m) d_t from which friction counts in this increment
-      !! [length]
+      integer, allocatable :: direction(:)    !! (m) sign of the friction force where it slips
+      real(dp), allocatable :: reference(:)   !! (m) d_t from which friction counts [length]
       real(dp), allocatable :: gap(:)         !! (m) gamma = h - d_n [length]
       real(dp), allocatable :: tangential(:)  !! (m) d_t [length]
       real(dp), allocatable :: force(:)       !! (m) -lambda_n, positive in compression [force]
@@ -98,6 +97,11 @@ contains
             one_at_a_time = one_at_a_time .or. all(visited(:, k) == visited(:, set))
          end do
          call solve_set(self, load, state, error)
+         if (allocated(error) .and. set == 1 .and. any(state%status == status_open)) then
+            state%status = status_slip
+            state%direction = 0
+            call solve_set(self, load, state, error)
+         end if
          if (allocated(error)) return
          call judge(self, state, next, excess)
          if (all(excess <= 0.0_dp)) return

@@ -70,11 +70,10 @@ contains
    pure function unique_sorted(numbers) result(members)
       integer, intent(in) :: numbers(:)        !! (n) numbers in any order
       integer, allocatable :: members(:)       !! ascending, each once
-      integer, allocatable :: sorted(:)
-      logical, allocatable :: first(:)
+      integer :: sorted(size(numbers))
+      logical :: first(size(numbers))
 
       sorted = numbers(sort_order(numbers))
-      allocate(first(size(sorted)))
       if (size(sorted) > 0) first(1) = .true.
       first(2:) = sorted(2:) /= sorted(:size(sorted) - 1)
       members = pack(sorted, first)

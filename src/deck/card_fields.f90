@@ -135,8 +135,8 @@ contains
 
    !> A text without the quotes around it.
    pure function without_quotes(string) result(bare)
-      character(*), intent(in) :: string     !! text, quoted or not
-      character(:), allocatable :: bare  !! what stands between the quotes, without blanks around it
+      character(*), intent(in) :: string   !! text, quoted or not
+      character(:), allocatable :: bare    !! what stands between the quotes
       integer :: n
 
       n = len(string)

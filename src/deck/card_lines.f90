@@ -155,8 +155,7 @@ contains
             self%width = max(self%width, width)
          else
             call report%error(card%parameters(i)%value_place, &
-               'WIDTH= needs a whole number of at least '// &
-               to_text(default_width))
+               'WIDTH= needs a whole number of at least '//to_text(default_width))
          end if
       end do
    end subroutine take_width

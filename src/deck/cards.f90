@@ -23,13 +23,13 @@ module cards
 
    !> One keyword card.
    type :: keyword_card_type
-      character(:), allocatable :: name                 !! as in the table; empty when unknown
-      character(:), allocatable :: meant   !! the keyword that an unknown one is close to, or empty
-      integer :: known = 0   !! index into known_keywords; 0 for an unknown one
-      type(place_type) :: place                         !! where it begins
-      type(parameter_type), allocatable :: parameters(:) !! those that are known
-      integer :: first_data = 1                         !! its data cards, indexes into cards%data
-      integer :: last_data = 0                          !! the last of them
+      character(:), allocatable :: name                    !! as in the table; empty when unknown
+      character(:), allocatable :: meant                   !! what an unknown one is close to
+      integer :: known = 0                                 !! index into known_keywords, or 0
+      type(place_type) :: place                            !! where it begins
+      type(parameter_type), allocatable :: parameters(:)   !! those that are known
+      integer :: first_data = 1                            !! its data cards: index into cards%data
+      integer :: last_data = 0                             !! the last of them
    end type keyword_card_type
 
    !> One data card, continuations included.
@@ -40,14 +40,14 @@ module cards
 
    !> All cards of a deck.
    type :: cards_type
-      character(:), allocatable :: path                        !! the deck as given
-      type(string_type), allocatable :: images(:)  !! all lines as read, those of included files too
-      type(keyword_card_type), allocatable :: keywords(:)      !! keyword cards
-      type(data_card_type), allocatable :: data(:)             !! data cards
-      type(place_type) :: last                                 !! last line of the deck
-      type(string_type), allocatable :: notes(:)   !! parameters that were read and are not needed
-      integer :: keyword_count = 0   !! keyword cards so far, while reading
-      integer :: data_count = 0                                !! data cards so far, while reading
+      character(:), allocatable :: path                      !! the deck as given
+      type(string_type), allocatable :: images(:)            !! lines, those of included files too
+      type(keyword_card_type), allocatable :: keywords(:)    !! keyword cards
+      type(data_card_type), allocatable :: data(:)           !! data cards
+      type(place_type) :: last                               !! last line of the deck
+      type(string_type), allocatable :: notes(:)             !! parameters that are not needed
+      integer :: keyword_count = 0                           !! keyword cards, while reading
+      integer :: data_count = 0                              !! data cards, while reading
    end type cards_type
 
 contains
@@ -69,9 +69,9 @@ contains
 
    !> Adds a data card to the last keyword card.
    subroutine add_data(cards, fields, end)
-      type(cards_type), intent(inout) :: cards                      !! the cards
-      type(field_type), allocatable, intent(inout) :: fields(:)     !! fields, handed over
-      type(place_type), intent(in) :: end   !! where a missing field would stand
+      type(cards_type), intent(inout) :: cards                    !! the cards
+      type(field_type), allocatable, intent(inout) :: fields(:)   !! fields, handed over
+      type(place_type), intent(in) :: end                         !! where a missing field would be
 
       if (.not. allocated(cards%data)) allocate(cards%data(1024))
       if (cards%data_count == size(cards%data)) then

@@ -3,6 +3,7 @@
 module deck_builder
    use bodies, only: find_bodies
    use cards, only: cards_type
+   use conductance_laws, only: law_none
    use controls, only: method_picard
    use deck_builder_contact, only: build_contacts
    use deck_builder_courses, only: build_amplitudes, build_temperatures
@@ -102,6 +103,7 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(model_type), intent(in) :: model
       character(:), allocatable :: method
+      integer :: i
 
       if (context%temperatures%count == 0) then
          call context%note('no *INITIAL CONDITIONS: the initial temperature is 0')
@@ -116,6 +118,14 @@ contains
       if (card_count(cards, 'THERMAL SCHEME') == 0) then
          call context%note('no *THERMAL SCHEME: IMPLICIT')
       end if
+      do i = 1, size(model%interactions)
+         associate (interaction => model%interactions(i))
+            if (interaction%law%open_kind /= law_none) cycle
+            if (interaction%law%closed_kind /= law_none) cycle
+            call context%note('surface interaction '//interaction%name// &
+               ' without *GAP LAW: no heat crosses')
+         end associate
+      end do
       if (size(model%contacts) == 0) return
       associate (fixed_point => model%steps(1)%fixed_point)
          method = 'ZAITSEV'

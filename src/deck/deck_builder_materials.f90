@@ -70,7 +70,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(material_type), intent(inout) :: material
 
-      if (card%last_data > card%first_data) then
+      if (card%last_data > card%first_data .and. card%name /= 'DENSITY') then
          call report%error(field_place(cards%data(card%first_data + 1), 1), varies)
       end if
       associate (data => cards%data(card%first_data))

@@ -2,7 +2,7 @@
 module deck_builder_steps
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text, &
       take_parameter
-   use card_values, only: check_extra, field_place, take_field
+   use card_values, only: check_extra, field_place, has_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use controls, only: fixed_point_type
    use deck_builder_controls, only: build_fixed_point, check_thermal_scheme
@@ -147,10 +147,7 @@ contains
       call take_field(data, 3, 'smallest increment', report, step%smallest_increment, valid)
       call take_field(data, 4, 'largest increment', report, step%largest_increment, valid)
       call check_extra(data, 4, 'first increment, period, smallest, largest increment', report)
-      if (size(data%fields) < 3) call context%note( &
-         'smallest increment not given: '//to_text(smallest_part)//' of the period')
-      if (size(data%fields) < 4) call context%note( &
-         'largest increment not given: the first')
+      call note_increments(data, context)
       times = [step%first_increment, step%period, step%smallest_increment, step%largest_increment]
       do i = 1, 4
          if (.not. valid .or. times(i) > 0.0_dp) cycle
@@ -168,6 +165,17 @@ contains
          call report%error(field_place(data, 4), 'the largest increment is shorter than the first')
       end if
    end subroutine build_increments
+
+   subroutine note_increments(data, context)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(inout) :: context
+
+      if (.not. has_field(data, 1)) call context%note('first increment not given: 1')
+      if (.not. has_field(data, 2)) call context%note('period not given: 1')
+      if (.not. has_field(data, 3)) call context%note('smallest increment not given: '// &
+         to_text(smallest_part)//' of the period')
+      if (.not. has_field(data, 4)) call context%note('largest increment not given: the first')
+   end subroutine note_increments
 
    !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0
    !> leaves its last increment.

@@ -170,9 +170,9 @@ contains
    function order_of(self) result(order)
       class(deck_report_type), intent(in) :: self
       integer, allocatable :: order(:)
-      integer, allocatable :: keys(:)
-      integer :: i
+      integer :: keys(self%count), i
 
+      allocate(order(self%count))
       keys = [(self%diagnostics(i)%place%column, i=1, self%count)]
       order = sort_order(keys)
       keys = [(self%diagnostics(order(i))%place%image, i=1, self%count)]

@@ -94,7 +94,7 @@ contains
       end do
    end subroutine read_lines
 
-   !> A whole file; its last line has an end of line even where the file has none.
+   !> A whole file, unless it is no text; its last line has an end even where the file has none.
    subroutine read_contents(path, contents, readable)
       character(*), intent(in) :: path
       character(:), allocatable, intent(out) :: contents
@@ -113,8 +113,8 @@ contains
          readable = status == 0
       end if
       close (unit)
-      if (.not. readable) return
-      if (length == 0) return
+      if (readable) readable = index(contents, achar(0)) == 0
+      if (.not. readable .or. length == 0) return
       if (contents(length:length) /= new_line('a')) contents = contents//new_line('a')
       if (index(contents, byte_order_mark) == 1) contents = contents(4:)
    end subroutine read_contents

@@ -17,10 +17,10 @@ contains
 
    !> Makes a keyword card of its fields, and reports what is unknown, refused or not built yet.
    subroutine make_keyword_card(fields, report, cards, card)
-      type(field_type), intent(in) :: fields(:)          !! fields, the first of them with the star
-      type(deck_report_type), intent(inout) :: report    !! receives errors
-      type(cards_type), intent(inout) :: cards   !! receives notes on parameters that are not needed
-      type(keyword_card_type), intent(out) :: card       !! the card, without data
+      type(field_type), intent(in) :: fields(:)         !! fields, the first with the star
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      type(cards_type), intent(inout) :: cards          !! receives notes on what is not needed
+      type(keyword_card_type), intent(out) :: card      !! the card, without data
       character(:), allocatable :: name
 
       name = without_star(fields(1)%text)

@@ -33,8 +33,8 @@ module verify_quantities
       quantity_type('status', of_pairs), quantity_type('conductance', of_pairs), &
       quantity_type('heat_flux', of_pairs), quantity_type('slave_temperature', of_pairs), &
       quantity_type('master_temperature', of_pairs), quantity_type('x', of_pairs), &
-      quantity_type('y', of_pairs), quantity_type('s', of_pairs), quantity_type('weight', &
-      of_pairs), &
+      quantity_type('y', of_pairs), quantity_type('s', of_pairs), &
+      quantity_type('weight', of_pairs), &
       quantity_type('slave_node', of_pairs), quantity_type('master_node', of_pairs), &
       quantity_type('U1', of_nodes), quantity_type('U2', of_nodes), quantity_type('NT', of_nodes), &
       quantity_type('S11', of_nodes), quantity_type('S22', of_nodes), &
@@ -68,8 +68,8 @@ contains
       case ('COUPLING_GAIN', 'COUPLING_GAIN_MAX')
          call report%error(field_place(data, 1), 'the quantity '//name//' is not built yet')
       case default
-         call report%error(field_place(data, 1), 'unknown quantity '//name//nearest_known(name, &
-            names))
+         call report%error(field_place(data, 1), &
+            'unknown quantity '//name//nearest_known(name, names))
       end select
    end subroutine read_quantity
 

@@ -30,6 +30,10 @@ module mumps_solver
    integer, parameter :: order_given = 1       !! ICNTL(7) and INFOG(7): the order of PERM_IN
    integer, parameter :: workspace_tries = 5   !! how often ICNTL(14) is raised
 
+   !> Message for a matrix that is not positive definite.
+   character(*), parameter :: unheld = &
+      'singular matrix: some body is not held by its supports and contacts'
+
    !> MUMPS's factors behind the common interface.
    type, extends(linear_solver_type) :: mumps_solver_type
       private
@@ -77,6 +81,10 @@ contains
       end do
       call check(self, 'factorisation', error)
       if (allocated(error)) return
+      if (self%mumps%infog(12) > 0 .or. self%mumps%infog(28) > 0) then
+         call set_error(error, status_deck, unheld)
+         return
+      end if
       self%full_flops = int(self%mumps%rinfog(3), long)
       self%factor_bytes = factor_entries(self%mumps%infog(9))*storage_size(1.0_dp)/8
       call self%on_tail%set_schur(reshape(self%mumps%schur(:tail*tail), [tail, tail]))
@@ -107,8 +115,8 @@ contains
       if (reported < 0) entries = -1000000_long*reported
    end function factor_entries
 
-   !> A silent instance for a symmetric positive definite matrix on one process, with the matrix in
-   !> place.
+   !> A silent instance on one process, with the matrix in place. The matrix is positive definite;
+   !> that it be not, MUMPS only tells when it takes it for a general symmetric one.
    subroutine start(self, lower)
       type(mumps_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
@@ -117,12 +125,13 @@ contains
       allocate (self%mumps)
       associate (id => self%mumps)
          id%comm = 0
-         id%sym = 1
+         id%sym = 2
          id%par = 1
          id%job = job_start
          call dmumps(id)
          id%icntl(1:3) = -1
          id%icntl(4) = 0
+         id%icntl(24) = 1
          id%n = lower%row_count
          id%nnz = size(lower%value, kind=long)
          allocate (id%irn(size(lower%value)), id%jcn(size(lower%value)), id%a(size(lower%value)))
@@ -178,8 +187,7 @@ contains
       case (0:)
          return
       case (-10, -40)
-         call set_error(error, status_deck, &
-            'singular matrix: some body is not held by its supports and contacts')
+         call set_error(error, status_deck, unheld)
       case default
          call set_error(error, status_internal, 'MUMPS failed in its '//phase// &
             ' with INFOG(1) = '//to_text(self%mumps%infog(1))// &

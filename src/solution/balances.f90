@@ -124,7 +124,8 @@ contains
          violation = max(violation, abs(gap), -normal_force)
          if (.not. friction_acts(k)) cycle
          if (state%status(k) == status_slip) then
-            violation = max(violation, abs(abs(shear_force) - cone), sign(slip, slip*shear_force))
+            violation = max(violation, abs(abs(shear_force) - cone))
+            violation = max(violation, min(slip*sign(1.0_dp, shear_force), abs(shear_force)))
          end if
          if (state%status(k) == status_stick) then
             violation = max(violation, abs(shear_force) - cone, abs(slip))

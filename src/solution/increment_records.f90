@@ -13,6 +13,10 @@ module increment_records
    private
    public :: make_record
 
+   !> Part of K u, of K T or of the gaps below which a force, a rate or a displacement is no scale
+   !> to measure by: where nothing is loaded only rounding is left of them.
+   real(dp), parameter :: noise = 1.0e-6_dp
+
 contains
 
    !> Completes the record of an increment with contact state, fields and balances, and settles the
@@ -128,19 +132,23 @@ contains
       type(solution_state_type), intent(in) :: next
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
-      real(dp) :: scale
+      real(dp) :: length, scale
 
+      length = max(maxval(abs(next%displacement)), tiny(1.0_dp))
+      if (size(operators%pairs%initial_gap) > 0) then
+        length = max(length, noise*maxval(abs(operators%pairs%initial_gap)))
+      end if
       internal = operators%mechanical%matrix%multiply(next%displacement) - &
          operators%thermal_load%multiply(next%temperature - model%initial_temperature)
       residual = force_residual(internal, next%force_load, operators%pairs, next%contact)
       associate (held => loads%displacement%active)
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
-            sum(next%contact%force), tiny(1.0_dp))
+            sum(next%contact%force), noise*maxval(abs(operators%mechanical%matrix%value))* &
+            length, tiny(1.0_dp))
          record%force_imbalance = imbalance(residual, held, model%mesh%node_body, scale)
          record%contact_violation = contact_violation(next%displacement, &
             internal - next%force_load, held, operators%pairs, next%contact, &
-            operators%contact%tangent > 0, &
-            max(maxval(abs(next%displacement)), tiny(1.0_dp)), scale)
+            operators%contact%tangent > 0, length, scale)
          record%fields%reaction = reshape(merge(residual, 0.0_dp, held), &
             shape(record%fields%displacement))
       end associate
@@ -168,7 +176,8 @@ contains
          record%heat_in = sum(net, mask=net > 0.0_dp)
          record%heat_out = -sum(net, mask=net < 0.0_dp)
          scale = max(record%heat_in, record%heat_out, abs(sum(pair_heat)), &
-            maxval(abs(residual), mask=held))
+            maxval(abs(residual), mask=held), noise*maxval(abs(operators%thermal%matrix%value))* &
+            maxval(abs(next%temperature)), tiny(1.0_dp))
          record%heat_imbalance = imbalance(residual, held, model%mesh%node_body, scale)
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
       end associate
