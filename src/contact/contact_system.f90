@@ -53,13 +53,11 @@ module contact_system
    !> The reduced system, and the factors for the active set of its last solution.
    type :: contact_system_type
       integer, allocatable :: normal(:)           !! (m) place of d_n on the tail
-      integer, allocatable :: tangent(:) !! (m) place of d_t on the tail, 0 without friction or
-      !! where held
+      integer, allocatable :: tangent(:) !! (m) place of d_t, 0 without friction or held
       real(dp), allocatable :: schur(:, :)        !! (tail, tail) S [force/length]
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
       real(dp), allocatable :: friction(:)        !! (m) mu [-]
-      type(closing_law_type), allocatable :: closing(:) !! (m) laws of the pairs that close in the
-      !! increment
+      type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing pairs
       integer, allocatable :: free(:)             !! places on the tail that are sought
       integer, allocatable :: partner(:) !! (tail) place of d_n whose force enters the row, or 0
       real(dp), allocatable :: share(:)           !! (tail) factor of that force
@@ -291,8 +289,7 @@ contains
    !> Free displacements that take up forces, with the factors of the last active set.
    pure subroutine solve_free(self, x)
       class(contact_system_type), intent(in) :: self  !! the reduced system
-      real(dp), intent(inout) :: x(:, :) !! (tail, columns) forces in; free rows hold displacements
-      !! out
+      real(dp), intent(inout) :: x(:, :) !! (tail, columns) forces; displacements in free rows
       real(dp), allocatable :: rows(:, :)
 
       if (size(self%free) == 0) return

@@ -14,8 +14,7 @@ module equation_map
    public :: equation_map_type, make_map
 
    integer, parameter :: most_terms = 3                 !! own value, two relative ones
-   real(dp), parameter :: aligned = 1.0_dp - 1.0e-9_dp !! cosine from which a frame counts as
-   !! aligned
+   real(dp), parameter :: aligned = 1.0_dp - 1.0e-9_dp !! cosine of an aligned frame
 
    !> Every degree of freedom as base value + sum of coefficient*unknown.
    type :: equation_map_type
@@ -25,8 +24,7 @@ module equation_map
       integer, allocatable :: term(:, :)             !! (3, dofs) its unknowns
       real(dp), allocatable :: coefficient(:, :)     !! (3, dofs) their coefficients
       integer, allocatable :: base(:) !! (dofs) degree whose prescribed value it is based on, or 0
-      integer, allocatable :: relative(:, :) !! (components, m) unknown of a relative value, 0 where
-      !! prescribed
+      integer, allocatable :: relative(:, :) !! (components, m) its unknowns, 0 if prescribed
    contains
       procedure :: expand
       procedure :: restrict

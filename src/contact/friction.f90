@@ -15,8 +15,7 @@ contains
    pure subroutine next_status(status, direction, gap, force, shear_force, slip, friction, &
       has_tangent, gap_tolerance, force_tolerance, excess)
       integer, intent(inout) :: status        !! status_open, status_slip or status_stick
-      integer, intent(inout) :: direction !! sign of the friction force on the slave where it slips,
-      !! 0 unknown
+      integer, intent(inout) :: direction !! sign of friction on the slave in slip, 0 unknown
       real(dp), intent(in) :: gap             !! gamma [length]
       real(dp), intent(in) :: force           !! normal force, positive in compression [force]
       real(dp), intent(in) :: shear_force     !! tangential force on the slave [force]
@@ -25,8 +24,7 @@ contains
       logical, intent(in) :: has_tangent      !! whether the pair can move along its tangent
       real(dp), intent(in) :: gap_tolerance   !! rounding of gap and slip [length]
       real(dp), intent(in) :: force_tolerance !! rounding of the forces [force]
-      real(dp), intent(out) :: excess !! relative violation of the present condition, 0 where it
-      !! holds
+      real(dp), intent(out) :: excess !! violation of the present condition, 0 for none
 
       excess = 0.0_dp
       select case (status)

@@ -18,8 +18,7 @@ contains
       real(dp), intent(in) :: load(:)            !! (nodes) Q [power]
       type(pair_row_type), intent(in) :: pairs   !! the pairs
       real(dp), intent(in) :: pair_heat(:)       !! (m) heat from slave to master [power]
-      real(dp) :: residual(size(conducted)) !! (nodes) zero where no temperature is prescribed
-      !! [power]
+      real(dp) :: residual(size(conducted)) !! (nodes) zero where not prescribed [power]
       integer :: k
 
       residual = conducted - load
@@ -32,13 +31,11 @@ contains
    !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces
    !> of the reduced system.
    pure function force_residual(internal, load, pairs, state) result(residual)
-      real(dp), intent(in) :: internal(:) !! (2 nodes) K u less the thermal load, bodies alone
-      !! [force]
+      real(dp), intent(in) :: internal(:) !! (2 nodes) K u less the thermal load [force]
       real(dp), intent(in) :: load(:)                !! (2 nodes) applied forces [force]
       type(pair_row_type), intent(in) :: pairs       !! the pairs
       type(contact_state_type), intent(in) :: state  !! contact forces
-      real(dp) :: residual(size(internal)) !! (2 nodes) zero where no displacement is prescribed
-      !! [force]
+      real(dp) :: residual(size(internal)) !! (2 nodes) zero where not prescribed [force]
       real(dp) :: on_slave(2)
       integer :: k, s, m
 

@@ -24,10 +24,8 @@ module increments
    private
    public :: simulation_type, run_seconds_type
 
-   real(dp), parameter :: remainder = 1.0e-6_dp !! part of an increment that is not worth one of its
-   !! own
-   real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation that a final contact
-   !! state may show
+   real(dp), parameter :: remainder = 1.0e-6_dp !! part of an increment too small for one
+   real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
 
    !> Where the time goes.
    type :: run_seconds_type
