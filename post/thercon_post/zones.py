@@ -17,6 +17,7 @@ PASSED_OVER = ("increment", "time", "s_edge_contact", "s_edge_stick")
 NAMES = {OPEN: ("I", "gap"), SLIP: ("II", "slip"), STICK: ("III", "stick")}
 LINES = {"edge_contact": "solid", "edge_stick": (0, (5, 2))}
 LABEL_GRID = (60, 48)  # where region names may stand: loads x places
+LABEL_ROOM = 0.08  # room that a name needs around its middle, in parts of the axes
 
 
 def draw(result, options):
@@ -157,16 +158,21 @@ class Picture:
                 away = mine[:, None, :] - points[flat != state][None, :, :]
                 room = np.minimum(room, np.sqrt(np.min(np.sum(away**2, axis=2), axis=1)))
             at = mine[np.argmax(room)]
-            axes.text(
-                left + at[0] * (right - left),
-                low + at[1] * (high - low),
+            # A region too narrow for its name has it beside itself, so that no curve is covered.
+            beside = np.array([-0.09, 0.19]) if room.max() < LABEL_ROOM else np.zeros(2)
+            axes.annotate(
                 f"{numeral}\n{word}",
+                xy=at,
+                xytext=at + beside,
+                xycoords="axes fraction",
+                textcoords="axes fraction",
                 ha="center",
                 va="center",
                 linespacing=0.95,
                 zorder=5,
                 fontsize=9,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 2.0},
+                arrowprops={"arrowstyle": "-", "lw": 0.6} if beside.any() else None,
             )
 
     def states_at(self, loads, places):

@@ -1,0 +1,78 @@
+"""Runs of the program on decks and on changed copies of them, for the tests here."""
+
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+PROGRAM = os.environ.get("THERCON", "thercon")
+DECKS = Path(__file__).resolve().parent
+INPUT = DECKS.parents[1] / "input"
+CYLINDER = INPUT / "cylinder" / "cylinder.inp"
+COUPLED = INPUT / "cylinder" / "cylinder-coupled.inp"
+HERTZ = INPUT / "hertz" / "hertz.inp"
+
+
+def run(*arguments, folder=None):
+    """Run the program with these arguments, in a folder; return the finished process."""
+    command = [PROGRAM, *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+
+
+def solve(deck, *arguments, status=0):
+    """Solve a deck, results beside it, with the exit status given; return the result file."""
+    process = run("run", "--quiet", deck, "--out", deck.parent, *arguments)
+    assert process.returncode == status, process.stderr
+    return deck.with_suffix(".vtkhdf")
+
+
+def copy_deck(source, target, cards=(), changes=()):
+    """Write a copy of a deck with more cards before its first *STEP and some texts, each of which
+    stands in it, replaced; return its path."""
+    text = source.read_text()
+    for old, new in dict(changes).items():
+        assert old in text, old
+        text = text.replace(old, new)
+    more = "".join(card + "\n" for card in cards)
+    target.write_text(re.sub(r"^\*STEP", more + "*STEP", text, count=1, flags=re.M | re.I))
+    return target
+
+
+def data_cards(deck, keyword):
+    """Return the fields of the data cards of every card with a keyword, in one list."""
+    rows, inside = [], False
+    for line in deck.read_text().splitlines():
+        if line.startswith("**"):
+            continue
+        if line.startswith("*"):
+            inside = line.split(",")[0].strip().upper() == keyword
+        elif inside:
+            rows.append([field.strip() for field in line.split(",")])
+    return rows
+
+
+def datasets(result, *groups):
+    """Return all numeric datasets of these groups of a result file by their names."""
+    found = {}
+    with h5py.File(result) as file:
+
+        def keep(name, item):
+            if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu":
+                found[name] = item[()]
+
+        for group in groups:
+            file[group].visititems(lambda name, item, group=group: keep(f"{group}/{name}", item))
+    return found
+
+
+def assert_alike(one, other, tolerance):
+    """Assert that datasets of equal names agree to a fraction of the largest value of each."""
+    assert one.keys() == other.keys()
+    for name, values in one.items():
+        scale = np.nanmax(np.abs(values), initial=0.0)
+        np.testing.assert_allclose(
+            other[name], values, rtol=0.0, atol=tolerance * scale, err_msg=name
+        )
