@@ -116,7 +116,9 @@ build_preset() {
       quietly cmake --preset "$1" || fail "build/$1 could not be configured"
    fi
    say "building build/$1"
-   cmake --build --preset "$1"
+   local progress=()
+   [[ -t 1 ]] || progress=(-- --quiet)
+   cmake --build --preset "$1" "${progress[@]}"
 }
 
 run_build() {
@@ -193,7 +195,7 @@ run_lint() {
    cd "$root"
    "$venv/bin/fortitude" check --progress-bar off "$@" src tests || status=1
    check_indentation "$@" || status=1
-   "$venv/bin/shellcheck" setup.sh .ci/run || status=1
+   "$venv/bin/shellcheck" setup.sh .ci/run tests/*/*.sh || status=1
    ((status == 0)) || printf 'The sources do not pass; ./setup.sh lint --fix mends some of it.\n'
    return "$status"
 }

@@ -7,10 +7,11 @@
 !>
 !>    slip = d_t - d_t,i - f (d_t* - d_t,i).
 !>
-!> With C the compliance of the pair while all others keep their conditions (those that close with
-!> it, their places), gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that slip = (1 - f) (d_t -
-!> d_t,i) + f C_t.lambda. The contact system is solved with C and f frozen; both are then computed
-!> anew, until they stay.
+!> With C the compliance of the pair while all other closed pairs hold their places,
+!> gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that slip = (1 - f) (d_t - d_t,i) + f C_t.lambda.
+!> The contact system is solved with C and f frozen; both are then computed anew, until they stay.
+!> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
+!> to slip, and each value could call for the other condition: then there is no solution.
 module closing_instant
    use contact_system, only: closing_law_type, contact_state_type, contact_system_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -75,7 +76,7 @@ contains
       held%closing = closing_law_type()
       call held%forget_factors()
       held_state = state
-      where (closes) held_state%status = status_stick
+      where (state%status /= status_open) held_state%status = status_stick
       call held%factor_set(held_state, error)
       if (allocated(error)) return
       do k = 1, size(closes)

@@ -6,6 +6,10 @@ module dense
    private
    public :: lu_type
 
+   !> Pivot, relative to its column, below which it is rounding: the Schur complements that are factored
+   !> here carry some digits of rounding themselves.
+   real(dp), parameter :: lost = 1.0e-11_dp
+
    !> LU factors of a small general matrix.
    type :: lu_type
       real(dp), allocatable :: factors(:, :)   !! (n, n) as dgetrf leaves them
@@ -31,7 +35,7 @@ contains
       call dgetrf(n, n, self%factors, max(n, 1), self%pivots, info)
       singular = info /= 0
       do i = 1, n
-         if (abs(self%factors(i, i)) <= 16*n*epsilon(1.0_dp)*maxval(abs(matrix(:, i)))) then
+         if (abs(self%factors(i, i)) <= lost*maxval(abs(matrix(:, i)))) then
             singular = .true.
          end if
       end do

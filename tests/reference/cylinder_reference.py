@@ -238,11 +238,11 @@ class Contact:
         """Pairs that close in the increment: instant (fraction of it) and own tangential flexibility under (p, t).
 
         Relieved of its own tractions alone, a pair would end at the gap g* and at l*, less by its own flexibility times
-        (p, t); the others keep their conditions, those that close with it their places. It closes at the fraction
+        (p, t); all other closed pairs hold their places. It closes at the fraction
         g_i/(g_i - g*), at the place that lies there between l_i and l*."""
         fresh = [k for k in np.flatnonzero((status != OPEN) & (before.status == OPEN)) if k > 0]
         laws, held = {}, status.copy()
-        held[fresh] = STICK
+        held[status != OPEN] = STICK
         all_rows = self.conditions(held, {})[0]
         for k in fresh:
             pair, rows = [k, self.count + k], all_rows.copy()
