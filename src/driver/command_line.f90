@@ -128,7 +128,7 @@ contains
       case ('--out')
          command%folder = value
          if (len(value) > 1 .and. index(value, '/', back=.true.) == len(value)) then
-           command%folder = value(:len(value) - 1)
+            command%folder = value(:len(value) - 1)
          end if
       case ('--set')
          call append(command%settings, value)

@@ -4,6 +4,7 @@
 module linear_solver
    use errors, only: error_type
    use kinds, only: dp, long
+   use skyline, only: skyline_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -16,15 +17,16 @@ module linear_solver
       integer :: tail = 0                !! tail unknowns, the last ones
       integer(long) :: full_flops = 0    !! operations of a factorisation of the leading block
       integer(long) :: factor_bytes = 0  !! memory of the factors [byte]
+      type(skyline_type) :: skyline      !! what Crout factors: the whole matrix, or its tail alone
    contains
       procedure(factor_interface), deferred :: factor
-      procedure(schur_interface), deferred :: schur_complement
       procedure(condense_interface), deferred :: condense
       procedure(recover_interface), deferred :: recover
-      procedure(refactor_interface), deferred :: refactor_tail
-      procedure(solve_interface), deferred :: solve_tail
-      procedure(flops_interface), deferred :: tail_flops
       procedure(release_interface), deferred :: release
+      procedure, non_overridable :: schur_complement
+      procedure, non_overridable :: refactor_tail
+      procedure, non_overridable :: solve_tail
+      procedure, non_overridable :: tail_flops
    end type linear_solver_type
 
    abstract interface
@@ -39,13 +41,6 @@ module linear_solver
          integer, intent(in) :: tail                        !! number of tail unknowns
          type(error_type), allocatable, intent(out) :: error !! failure
       end subroutine factor_interface
-
-      !> The Schur complement of the leading block on the tail.
-      function schur_interface(self) result(schur)
-         import :: linear_solver_type, dp
-         class(linear_solver_type), intent(in) :: self      !! the solver
-         real(dp) :: schur(self%tail, self%tail)            !! full symmetric
-      end function schur_interface
 
       !> Right-hand sides condensed on the tail: f_tail - K_tail,lead K_lead^-1 f_lead.
       subroutine condense_interface(self, rhs, condensed)
@@ -65,34 +60,47 @@ module linear_solver
          real(dp), intent(out) :: solution(:, :)            !! (order, columns)
       end subroutine recover_interface
 
-      !> Factors Schur complement + diagonal on the tail, from the first changed column on.
-      subroutine refactor_interface(self, diagonal, first_changed)
-         import :: linear_solver_type, dp
-         class(linear_solver_type), intent(inout) :: self   !! the solver
-         real(dp), intent(in) :: diagonal(:)                !! (tail) added to the diagonal
-         integer, intent(in) :: first_changed               !! first tail column that changed
-      end subroutine refactor_interface
-
-      !> Solves on the tail with the factors of refactor_tail.
-      subroutine solve_interface(self, x)
-         import :: linear_solver_type, dp
-         class(linear_solver_type), intent(in) :: self      !! the solver
-         real(dp), intent(inout) :: x(:) !! (tail) condensed right-hand side, then solution
-      end subroutine solve_interface
-
-      !> Operations of refactor_tail.
-      function flops_interface(self, first_changed) result(flops)
-         import :: linear_solver_type, long
-         class(linear_solver_type), intent(in) :: self      !! the solver
-         integer, intent(in) :: first_changed               !! first tail column that changed
-         integer(long) :: flops                             !! floating-point operations
-      end function flops_interface
-
       !> Frees what the solver holds outside Fortran.
       subroutine release_interface(self)
          import :: linear_solver_type
          class(linear_solver_type), intent(inout) :: self   !! the solver
       end subroutine release_interface
    end interface
+
+contains
+
+   !> The Schur complement of the leading block on the tail.
+   pure function schur_complement(self) result(schur)
+      class(linear_solver_type), intent(in) :: self      !! the solver
+      real(dp) :: schur(self%tail, self%tail)            !! full symmetric
+
+      schur = self%skyline%full_schur()
+   end function schur_complement
+
+   !> Factors Schur complement + diagonal on the tail, from the first changed column on.
+   pure subroutine refactor_tail(self, diagonal, first_changed)
+      class(linear_solver_type), intent(inout) :: self   !! the solver
+      real(dp), intent(in) :: diagonal(:)                !! (tail) added to the diagonal
+      integer, intent(in) :: first_changed               !! first tail column that changed
+
+      call self%skyline%refactor_tail(diagonal, first_changed)
+   end subroutine refactor_tail
+
+   !> Solves on the tail with the factors of refactor_tail.
+   pure subroutine solve_tail(self, x)
+      class(linear_solver_type), intent(in) :: self      !! the solver
+      real(dp), intent(inout) :: x(:)                    !! (tail) right-hand side, then solution
+
+      call self%skyline%solve_tail(x)
+   end subroutine solve_tail
+
+   !> Operations of refactor_tail.
+   pure function tail_flops(self, first_changed) result(flops)
+      class(linear_solver_type), intent(in) :: self      !! the solver
+      integer, intent(in) :: first_changed               !! first tail column that changed
+      integer(long) :: flops                             !! floating-point operations
+
+      flops = self%skyline%tail_flops(first_changed)
+   end function tail_flops
 
 end module linear_solver

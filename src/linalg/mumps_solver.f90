@@ -9,7 +9,6 @@ module mumps_solver
    use linear_solver, only: linear_solver_type
    use metis, only: nested_dissection
    use ordering, only: adjacency
-   use skyline, only: skyline_type
    use sparse_matrix, only: sparse_matrix_type
    use text, only: to_text
    implicit none
@@ -38,15 +37,10 @@ module mumps_solver
    type, extends(linear_solver_type) :: mumps_solver_type
       private
       type(dmumps_struc), allocatable :: mumps   !! MUMPS's own data
-      type(skyline_type) :: on_tail              !! the Schur complement and its factors
    contains
       procedure :: factor
-      procedure :: schur_complement
       procedure :: condense
       procedure :: recover
-      procedure :: refactor_tail
-      procedure :: solve_tail
-      procedure :: tail_flops
       procedure :: release
    end type mumps_solver_type
 
@@ -87,7 +81,7 @@ contains
       end if
       self%full_flops = int(self%mumps%rinfog(3), long)
       self%factor_bytes = factor_entries(self%mumps%infog(9))*storage_size(1.0_dp)/8
-      call self%on_tail%set_schur(reshape(self%mumps%schur(:tail*tail), [tail, tail]))
+      call self%skyline%set_schur(reshape(self%mumps%schur(:tail*tail), [tail, tail]))
    end subroutine factor
 
    !> Version of MUMPS.
@@ -195,13 +189,6 @@ contains
       end select
    end subroutine check
 
-   function schur_complement(self) result(schur)
-      class(mumps_solver_type), intent(in) :: self
-      real(dp) :: schur(self%tail, self%tail)
-
-      schur = self%on_tail%full_schur()
-   end function schur_complement
-
    subroutine condense(self, rhs, condensed)
       class(mumps_solver_type), intent(inout) :: self
       real(dp), intent(in) :: rhs(:, :)
@@ -251,29 +238,6 @@ contains
          id%lredrhs = self%tail
       end associate
    end subroutine load_rhs
-
-   subroutine refactor_tail(self, diagonal, first_changed)
-      class(mumps_solver_type), intent(inout) :: self
-      real(dp), intent(in) :: diagonal(:)
-      integer, intent(in) :: first_changed
-
-      call self%on_tail%refactor_tail(diagonal, first_changed)
-   end subroutine refactor_tail
-
-   subroutine solve_tail(self, x)
-      class(mumps_solver_type), intent(in) :: self
-      real(dp), intent(inout) :: x(:)
-
-      call self%on_tail%solve_tail(x)
-   end subroutine solve_tail
-
-   function tail_flops(self, first_changed) result(flops)
-      class(mumps_solver_type), intent(in) :: self
-      integer, intent(in) :: first_changed
-      integer(long) :: flops
-
-      flops = self%on_tail%tail_flops(first_changed)
-   end function tail_flops
 
    !> MUMPS keeps memory of its own, and finalisers are not to be relied on.
    subroutine release(self)

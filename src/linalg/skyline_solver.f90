@@ -4,7 +4,6 @@ module skyline_solver
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
    use ordering, only: adjacency, permuted_lower, profile_order
-   use skyline, only: skyline_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -13,16 +12,11 @@ module skyline_solver
    !> Skyline factors behind the common interface.
    type, extends(linear_solver_type) :: skyline_solver_type
       private
-      type(skyline_type) :: matrix          !! the skyline, in profile order
       integer, allocatable :: place(:)      !! (order) new place of each unknown
    contains
       procedure :: factor
-      procedure :: schur_complement
       procedure :: condense
       procedure :: recover
-      procedure :: refactor_tail
-      procedure :: solve_tail
-      procedure :: tail_flops
       procedure :: release
    end type skyline_solver_type
 
@@ -46,20 +40,13 @@ contains
          self%place(order(i)) = i
       end do
       self%place(leading + 1:) = [(i, i=leading + 1, self%order)]
-      call self%matrix%set_matrix(permuted_lower(lower, self%place), tail)
-      call self%matrix%factor_leading(bad_column)
-      self%full_flops = self%matrix%leading_flops
-      self%factor_bytes = storage_size(1.0_dp)/8*size(self%matrix%value, kind=long)
+      call self%skyline%set_matrix(permuted_lower(lower, self%place), tail)
+      call self%skyline%factor_leading(bad_column)
+      self%full_flops = self%skyline%leading_flops
+      self%factor_bytes = storage_size(1.0_dp)/8*size(self%skyline%value, kind=long)
       if (bad_column > 0) call set_error(error, status_deck, &
          'singular matrix: some body is not held by its supports and contacts')
    end subroutine factor
-
-   function schur_complement(self) result(schur)
-      class(skyline_solver_type), intent(in) :: self
-      real(dp) :: schur(self%tail, self%tail)
-
-      schur = self%matrix%full_schur()
-   end function schur_complement
 
    subroutine condense(self, rhs, condensed)
       class(skyline_solver_type), intent(inout) :: self
@@ -69,7 +56,7 @@ contains
 
       allocate (x, mold=rhs)
       x(self%place, :) = rhs
-      call self%matrix%condense(x)
+      call self%skyline%condense(x)
       condensed = x(self%order - self%tail + 1:, :)
    end subroutine condense
 
@@ -82,34 +69,11 @@ contains
 
       allocate (x, mold=rhs)
       x(self%place, :) = rhs
-      call self%matrix%condense(x)
+      call self%skyline%condense(x)
       x(self%order - self%tail + 1:, :) = on_tail
-      call self%matrix%recover(x)
+      call self%skyline%recover(x)
       solution = x(self%place, :)
    end subroutine recover
-
-   subroutine refactor_tail(self, diagonal, first_changed)
-      class(skyline_solver_type), intent(inout) :: self
-      real(dp), intent(in) :: diagonal(:)
-      integer, intent(in) :: first_changed
-
-      call self%matrix%refactor_tail(diagonal, first_changed)
-   end subroutine refactor_tail
-
-   subroutine solve_tail(self, x)
-      class(skyline_solver_type), intent(in) :: self
-      real(dp), intent(inout) :: x(:)
-
-      call self%matrix%solve_tail(x)
-   end subroutine solve_tail
-
-   function tail_flops(self, first_changed) result(flops)
-      class(skyline_solver_type), intent(in) :: self
-      integer, intent(in) :: first_changed
-      integer(long) :: flops
-
-      flops = self%matrix%tail_flops(first_changed)
-   end function tail_flops
 
    subroutine release(self)
       class(skyline_solver_type), intent(inout) :: self

@@ -52,7 +52,7 @@ contains
       slope = 0.0_dp
       if (closed) then
          if (law%closed_kind == law_power .and. pressure > 0.0_dp) then
-           slope = law%power_c1*law%power_n*pressure**(law%power_n - 1.0_dp)
+            slope = law%power_c1*law%power_n*pressure**(law%power_n - 1.0_dp)
          end if
       else if (law%open_kind == law_gas) then
          slope = -law%gas_a/(law%gas_b + max(gap, 0.0_dp))**2

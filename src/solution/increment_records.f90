@@ -136,7 +136,7 @@ contains
 
       length = max(maxval(abs(next%displacement)), tiny(1.0_dp))
       if (size(operators%pairs%initial_gap) > 0) then
-        length = max(length, noise*maxval(abs(operators%pairs%initial_gap)))
+         length = max(length, noise*maxval(abs(operators%pairs%initial_gap)))
       end if
       internal = operators%mechanical%matrix%multiply(next%displacement) - &
          operators%thermal_load%multiply(next%temperature - model%initial_temperature)
