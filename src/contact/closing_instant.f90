@@ -8,10 +8,13 @@
 !>    slip = d_t - d_t,i - f (d_t* - d_t,i).
 !>
 !> With C the compliance of the pair while all other closed pairs hold their places,
-!> gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that slip = (1 - f) (d_t - d_t,i) + f C_t.lambda.
-!> The contact system is solved with C and f frozen; both are then computed anew, until they stay.
-!> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
-!> to slip, and each value could call for the other condition: then there is no solution.
+!> gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that
+!>
+!>    slip = (1 - f) (d_t - d_t,i) + f C_t.lambda.
+!>
+!> The contact system is solved with C and f frozen; both are then computed anew, until they stay. Were
+!> the others to keep their conditions instead, C would jump when a neighbour turns from stick to
+!> slip, and each value could call for the other condition: then there is no solution.
 module closing_instant
    use contact_system, only: closing_law_type, contact_state_type, contact_system_type
    use errors, only: error_type, set_error, status_no_convergence

@@ -6,8 +6,8 @@ module dense
    private
    public :: lu_type
 
-   !> Pivot, relative to its column, below which it is rounding: the Schur complements that are factored
-   !> here carry some digits of rounding themselves.
+   !> Pivot, relative to its column, below which it is rounding: the Schur complements that are
+   !> factored here carry some digits of rounding themselves.
    real(dp), parameter :: lost = 1.0e-11_dp
 
    !> LU factors of a small general matrix.

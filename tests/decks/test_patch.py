@@ -73,8 +73,9 @@ def test_heat_crosses_two_blocks_and_a_constant_conductance(tmp_path):
     np.testing.assert_allclose(body_flux[:, 0], 0.0, atol=1e-10 * flux)
 
 
-@pytest.mark.parametrize("levels", [0, 2])
-def test_uniform_pressure_passes_every_pair(tmp_path, levels):
+@pytest.mark.parametrize("solver", ["SKYLINE", "MUMPS"])
+@pytest.mark.parametrize("levels", [0, 1, 2])
+def test_uniform_pressure_passes_every_pair(tmp_path, levels, solver):
     """Corner and midside pairs alike; the upper block is held by the contact alone."""
     pressure = 12.5
     deck = write(
@@ -86,6 +87,7 @@ def test_uniform_pressure_passes_every_pair(tmp_path, levels):
         FACES,
         f"""
         *REFINE, LEVELS={levels}
+        *SOLVER, TYPE={solver}
         *STEP
         *STATIC
         0.5, 1.

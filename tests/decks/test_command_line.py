@@ -1,0 +1,172 @@
+"""What the command line promises: batches, folders, widths, included files, exit statuses."""
+
+import os
+
+import h5py
+import pytest
+from blocks import block, solid, write
+from deck_runs import DECKS, run
+
+GOOD = [
+    *block("BLOCK", [0.0, 1.0], [0.0, 1.0]),
+    *solid("BLOCK", 1000.0, 0.25),
+    *["*BOUNDARY", "BLOCK.BOTTOM, 2, 2, 0.", "BLOCK.LEFT, 1, 1, 0."],
+    *["*STEP", "*STATIC", "0.5, 1.", "*DLOAD", "1, P3, 1.", "*END STEP"],
+]
+SUFFIXES = ".vtkhdf", ".lst", ".sta", ".cvg"
+WRONG_CHECK = ['*VERIFY, KIND=ANALYTIC, SOURCE="wrong on purpose"', "time, , LAST, 2., 1.E-6"]
+
+
+@pytest.fixture
+def good(tmp_path):
+    """Return a deck that solves, in a folder of its own."""
+    (tmp_path / "decks").mkdir()
+    return write(tmp_path / "decks" / "good.inp", GOOD)
+
+
+@pytest.fixture
+def bad(tmp_path):
+    """Return a deck with a mistake."""
+    return write(tmp_path / "bad.inp", GOOD, ["*NONSENSE"])
+
+
+def names(folder):
+    """Return the names of the files in a folder."""
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_results_go_to_the_current_folder(good, tmp_path):
+    here = tmp_path / "here"
+    here.mkdir()
+    assert run("run", good, folder=here).returncode == 0
+    assert names(here) == sorted("good" + suffix for suffix in SUFFIXES)
+    assert names(good.parent) == ["good.inp"]
+
+
+def test_out_names_the_folder_of_the_results_and_makes_it(good, tmp_path):
+    out = tmp_path / "new" / "results"
+    process = run("run", os.path.relpath(good, tmp_path), "--out", out, folder=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert names(out) == sorted("good" + suffix for suffix in SUFFIXES)
+    assert names(good.parent) == ["good.inp"]
+
+
+def test_quiet_silences_the_summary_but_no_error(good, bad, tmp_path):
+    loud = run("run", good, "--out", tmp_path)
+    assert "good.inp" in loud.stdout + loud.stderr
+    quiet = run("run", "--quiet", good, "--out", tmp_path)
+    assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
+    refused = run("run", "--quiet", bad, "--out", tmp_path)
+    assert refused.returncode == 1
+    assert f"{bad}:{len(bad.read_text().splitlines())}:1: error: " in refused.stderr
+
+
+def test_a_bad_deck_does_not_stop_a_batch(good, bad, tmp_path):
+    other = write(tmp_path / "other.inp", GOOD)
+    process = run("run", good, bad, other, "--out", tmp_path)
+    assert process.returncode == 1
+    for name in ("good", "other"):
+        with h5py.File(tmp_path / f"{name}.vtkhdf") as file:
+            assert len(file["history/time"]) == 2
+    assert not (tmp_path / "bad.vtkhdf").exists()
+    said = process.stdout + process.stderr
+    assert all(f"{name}.inp" in said for name in ("good", "bad", "other"))
+
+
+def test_a_batch_returns_its_largest_status(good, bad, tmp_path):
+    failing = write(tmp_path / "failing.inp", GOOD, WRONG_CHECK)
+    for decks in ((failing, bad, good), (good, bad, failing)):
+        assert run("run", "--quiet", *decks, "--out", tmp_path).returncode == 4
+    assert run("run", "--quiet", failing, "--out", tmp_path).returncode == 4
+    assert run("run", "--quiet", bad, good, "--out", tmp_path).returncode == 1
+
+
+def test_equal_base_names_are_an_error_before_anything_runs(good, tmp_path):
+    twin = write(tmp_path / "good.inp", GOOD)
+    out = tmp_path / "out"
+    process = run("run", good, twin, "--out", out)
+    assert process.returncode == 1
+    assert "good" in process.stderr
+    assert not out.exists() or names(out) == []
+
+
+def test_width_widens_the_card(tmp_path):
+    deck = write(tmp_path / "wide.inp", GOOD, ["*NSET, NSET=WIDE", "1" + ", 1" * 30])
+    lines = deck.read_text().splitlines()
+    lines = [*lines[-2:], ""]
+    deck = write(tmp_path / "wide.inp", GOOD[: GOOD.index("*STEP")], lines,
+                 GOOD[GOOD.index("*STEP"):])
+    narrow = run("run", "--quiet", deck, "--out", tmp_path)
+    assert narrow.returncode == 1
+    assert ":81: error: " in narrow.stderr
+    wide = run("run", "--quiet", deck, "--out", tmp_path, "--width", 100)
+    assert (wide.returncode, wide.stderr) == (0, "")
+
+
+def test_included_cards_count_as_the_decks_own(good, tmp_path):
+    start = GOOD.index("*STEP")
+    write(tmp_path / "model.inc", GOOD[:start])
+    deck = write(tmp_path / "whole.inp", ["*INCLUDE, INPUT=model.inc"], GOOD[start:])
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    for path in (deck, good):
+        process = run("run", "--quiet", path, "--out", tmp_path, folder=elsewhere)
+        assert process.returncode == 0, process.stderr
+    with h5py.File(tmp_path / "whole.vtkhdf") as one, h5py.File(tmp_path / "good.vtkhdf") as other:
+        field = "VTKHDF/PointData/displacement"
+        assert one[field][()].tobytes() == other[field][()].tobytes()
+
+
+def test_check_reads_and_solves_nothing(good, bad, tmp_path):
+    process = run("check", good, folder=tmp_path)
+    assert process.returncode == 0
+    assert "sound" in process.stdout
+    assert run("check", bad, folder=tmp_path).returncode == 1
+    assert run("check", good, bad, folder=tmp_path).returncode == 1
+    assert names(tmp_path) == ["bad.inp", "decks"]
+
+
+def test_bodies_that_nothing_holds_are_no_solution(tmp_path):
+    loose = [card for card in GOOD if not card.startswith("BLOCK.BOTTOM")]
+    process = run("run", "--quiet", write(tmp_path / "loose.inp", loose), "--out", tmp_path)
+    assert process.returncode in (1, 2)
+    assert "loose.inp" in process.stderr
+    assert not (tmp_path / "loose.vtkhdf").exists()
+
+
+def test_a_folder_that_cannot_be_made_is_status_3(good, tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    process = run("run", "--quiet", good, "--out", tmp_path / "file")
+    assert process.returncode == 3
+    assert "error: " in process.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments", [["run"], ["solve", "a.inp"], ["run", "a.inp", "--outt", "b"], ["run", "a.inp", "--out"]]
+)
+def test_a_wrong_command_is_status_1(arguments, tmp_path):
+    process = run(*arguments, folder=tmp_path)
+    assert process.returncode == 1
+    assert "error: " in process.stderr
+    assert names(tmp_path) == []
+
+
+def test_a_deck_that_does_not_exist_is_named(tmp_path):
+    process = run("run", "nowhere.inp", folder=tmp_path)
+    assert process.returncode == 1
+    assert "nowhere.inp" in process.stderr
+
+
+def test_help_and_version(tmp_path):
+    usage = run("--help", folder=tmp_path)
+    assert usage.returncode == 0
+    assert "thercon run DECK" in usage.stdout
+    version = run("--version", folder=tmp_path)
+    assert version.returncode == 0
+    assert all(name in version.stdout for name in ("thercon", "MUMPS", "METIS", "HDF5", "LAPACK"))
+
+
+def test_decks_of_the_refused_tests_are_refused():
+    decks = sorted((DECKS / "refused").glob("unknown_*.inp"))
+    assert decks
+    assert run("check", *decks).returncode == 1
