@@ -158,7 +158,8 @@ pressure, FACE@1.25, LAST, 0., 1.E-12, ABS
 *VERIFY, KIND=ANALYTIC, SOURCE="balance with the load on top"
 normal_force, , 0.25, {quarter_force:g}, 2.E-5
 normal_force, , LAST, {half_force:g}, 2.E-5
-force_imbalance, , LAST, 0., 1.E-10, ABS
+** Under 1e-11 here; it is rounding, which grows as the mesh is refined.
+force_imbalance, , LAST, 0., 1.E-8, ABS
 *VERIFY, KIND=ANALYTIC, SOURCE="supports; no friction"
 U1, AXIS, LAST, 0., 1.E-15, ABS
 U2, BOTTOM, LAST, 0., 1.E-15, ABS

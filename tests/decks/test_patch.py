@@ -121,7 +121,8 @@ def side_forces(name, side, shear):
     """Return the data of *CLOAD for the shear on a vertical side: 1 : 4 : 1 on three-node sides."""
     ys, first = (UPPER, 1) if name == "UPPER" else (LOWER, 101)
     cards = block(name, XS, ys, first)
-    rows = [card.split(", ") for card in cards[1 : cards.index(f"*ELEMENT, TYPE=CPE8, ELSET={name}")]]
+    nodes = cards[1 : cards.index(f"*ELEMENT, TYPE=CPE8, ELSET={name}")]
+    rows = [card.split(", ") for card in nodes]
     edge, sign = (XS[-1], 1.0) if side == "RIGHT" else (XS[0], -1.0)
     on_side = sorted((float(y), n) for n, x, y in rows if float(x) == edge)
     forces = {n: 0.0 for _, n in on_side}
@@ -157,7 +158,8 @@ def shear_deck(path, shear, slip, friction=FRICTION):
         LOWER.BOTTOM, 1, 2, 0.
         *CLOAD
         """,
-        *(side_forces(name, side, shear) for name in ("UPPER", "LOWER") for side in ("LEFT", "RIGHT")),
+        *(side_forces(name, "LEFT", shear) for name in ("UPPER", "LOWER")),
+        *(side_forces(name, "RIGHT", shear) for name in ("UPPER", "LOWER")),
         "*END STEP",
     )
 
