@@ -62,6 +62,8 @@ def draw_row(result, row, options):
         title = result.units.label(*TITLES[quantity])
         style.panel_title(axes, title, letter if len(fields) > 1 else "")
     share_labels(panels)
+    load = float(result.history["load"][row])
+    figure.supxlabel(result.units.load_value(result.load_label, load), fontsize=8.5)
     return style.write(
         figure,
         table(result, moved, displacement, fields),

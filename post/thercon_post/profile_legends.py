@@ -27,7 +27,9 @@ def add(picture, panels, kinds, overlays):
         if axes is panels[-1] and several:
             handles += edge_handles(picture)
         if handles:
-            axes.legend(handles=handles, loc="best", frameon=True, edgecolor="none")
+            legend = axes.legend(handles=handles, loc="best", frameon=True, edgecolor="none")
+            if axes is panels[0] and not several:
+                legend.set_title(load_texts(picture)[0])
         if len(kinds) > 1:
             place = {"xytext": (-30, 4), "textcoords": "offset points"}
             axes.annotate(f"({letter})", (0, 1), xycoords="axes fraction", **place)
@@ -56,14 +58,17 @@ def quantity_handles(picture, quantities):
 
 def load_handles(picture):
     """Return the legend's entries for the loads."""
+    return [
+        Line2D([], [], color=colour, marker=style.marker(number), label=text)
+        for number, (colour, text) in enumerate(zip(picture.colours, load_texts(picture)))
+    ]
+
+
+def load_texts(picture):
+    """Return the loads of a picture with their unit."""
     result = picture.result
     unit = result.units.load_unit(result.load_label)
-    return [
-        Line2D([], [], color=colour, marker=style.marker(number), label=f"{load:g} {unit}".strip())
-        for number, (colour, load) in enumerate(
-            zip(picture.colours, result.history["load"][picture.rows])
-        )
-    ]
+    return [f"{load:g} {unit}".strip() for load in result.history["load"][picture.rows]]
 
 
 def edge_handles(picture):

@@ -23,6 +23,10 @@ class Units:
         """Return the label of the load axis, with the unit of what it names."""
         return self.label(label[:1].upper() + label[1:], load_quantity(label))
 
+    def load_value(self, label, value):
+        """Return one load in words, such as "temperature of TOP 540 C"."""
+        return f"{label} {value:g} {self.load_unit(label)}".strip()
+
     def load_unit(self, label):
         """Return the unit of the load axis, or an empty text."""
         return self.names.get(load_quantity(label), "")
