@@ -13,7 +13,7 @@ import numpy as np
 RADIUS, WIDTH, HEIGHT, LIFT = 100.0, 30.0, 60.0, 0.5
 
 # Corner abscissae of the seven rows between the strips and the heights of these rows, from the contact outwards.
-CONTACT = [0.0, 0.8, 1.7, 2.6, 3.6, 4.7, 5.9, 7.2, 9.0, 14.0, WIDTH]
+CONTACT = [0.0, 0.8, 1.7, 2.6, 3.6, 4.8, 6.0, 7.4, 9.0, 14.0, WIDTH]
 LAYER = [0.0, 1.1, 2.2, 3.4, 4.6, 5.9, 7.3, 8.9, 11.2, 16.0, WIDTH]
 COARSE = [0.0, 4.0, 9.0, 17.0, WIDTH]
 ROWS = [CONTACT, CONTACT, LAYER, COARSE, COARSE, COARSE, [0.0, 15.0, WIDTH]]
