@@ -12,9 +12,9 @@
 !>
 !>    slip = (1 - f) (d_t - d_t,i) + f C_t.lambda.
 !>
-!> The contact system is solved with C and f frozen; both are then computed anew, until they stay. Were
-!> the others to keep their conditions instead, C would jump when a neighbour turns from stick to
-!> slip, and each value could call for the other condition: then there is no solution.
+!> The contact system is solved with C and f frozen; both are then computed anew, until they stay.
+!> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
+!> to slip, and each value could call for the other condition: then there is no solution.
 module closing_instant
    use contact_system, only: closing_law_type, contact_state_type, contact_system_type
    use errors, only: error_type, set_error, status_no_convergence
