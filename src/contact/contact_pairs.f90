@@ -62,6 +62,13 @@ contains
          call set_directions(turned, pairs)
          pairs%initial_gap = sum((x(:, master) - x(:, slave))*pairs%normal, dim=1)
       end associate
+      if (any(pairs%weight <= 0.0_dp)) then
+         call set_error(error, status_deck, 'contact pair '//pairs%name// &
+            ': no length of the face belongs to slave node '// &
+            to_text(mesh%node_number(slave(minloc(pairs%weight, dim=1))))// &
+            '; its midside nodes are too far from the middle')
+         return
+      end if
       call check_opposite(mesh, pairs, error)
    end subroutine make_pairs
 

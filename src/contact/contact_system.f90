@@ -96,7 +96,7 @@ contains
          end do
          call solve_set(self, load, state, error)
          if (allocated(error) .and. set == 1 .and. any(state%status == status_open)) then
-            state%status = status_slip
+            state%status = merge(status_stick, status_slip, self%tangent > 0)
             state%direction = 0
             call solve_set(self, load, state, error)
          end if

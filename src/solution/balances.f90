@@ -50,15 +50,15 @@ contains
    end function force_residual
 
    !> Largest imbalance, relative: of any single unsupported row, and per body and direction of the
-   !> supports' sum against loads and contacts, which is the sum over the unsupported rows because K
-   !> has no resultant.
-   pure function imbalance(residual, supported, node_body, scale) result(relative)
+   !> supports' reactions against all that is applied to the body, by loads and through its contacts.
+   pure function imbalance(internal, residual, supported, node_body, scale) result(relative)
+      real(dp), intent(in) :: internal(:)      !! (components*nodes) of the bodies alone, K T or K u
       real(dp), intent(in) :: residual(:)      !! (components*nodes) as from the functions above
       logical, intent(in) :: supported(:)      !! (components*nodes) prescribed rows
       integer, intent(in) :: node_body(:)      !! (nodes) body of each node, 0 for none
       real(dp), intent(in) :: scale            !! largest rate or force of the increment
       real(dp) :: relative                     !! relative imbalance
-      real(dp) :: total(0:maxval(node_body), size(residual)/size(node_body))
+      real(dp) :: total(0:maxval(node_body), size(residual)/size(node_body)), applied, reaction
       integer :: c, components, i, node
 
       components = size(total, 2)
@@ -67,9 +67,10 @@ contains
       do node = 1, size(node_body)
          do c = 1, components
             i = components*(node - 1) + c
-            if (supported(i)) cycle
-            relative = max(relative, abs(residual(i)))
-            total(node_body(node), c) = total(node_body(node), c) + residual(i)
+            applied = internal(i) - residual(i)
+            reaction = merge(residual(i), 0.0_dp, supported(i))
+            total(node_body(node), c) = total(node_body(node), c) + applied + reaction
+            if (.not. supported(i)) relative = max(relative, abs(residual(i)))
          end do
       end do
       relative = max(relative, maxval(abs(total)))

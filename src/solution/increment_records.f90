@@ -6,7 +6,7 @@ module increment_records
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
-   use records, only: contact_record_type, increment_record_type, status_open, status_slip
+   use records, only: contact_record_type, increment_record_type, status_open
    use solution_state, only: solution_state_type
    use zone_edges, only: contact_edges, stick_edges
    implicit none
@@ -145,7 +145,7 @@ contains
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*maxval(abs(operators%mechanical%matrix%value))* &
             length, tiny(1.0_dp))
-         record%force_imbalance = imbalance(residual, held, model%mesh%node_body, scale)
+         record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, scale)
          record%contact_violation = contact_violation(next%displacement, &
             internal - next%force_load, held, operators%pairs, next%contact, &
             operators%contact%tangent > 0, length, scale)
@@ -161,13 +161,13 @@ contains
       type(loads_type), intent(in) :: loads
       type(solution_state_type), intent(in) :: next
       type(increment_record_type), intent(inout) :: record
-      real(dp), allocatable :: residual(:), pair_heat(:)
+      real(dp), allocatable :: conducted(:), residual(:), pair_heat(:)
       real(dp) :: net(0:maxval(loads%temperature%card)), scale
       integer :: i
 
       pair_heat = operators%pairs%weight*next%omega*next%jump
-      residual = heat_residual(operators%thermal%matrix%multiply(next%temperature), &
-         next%heat_load, operators%pairs, pair_heat)
+      conducted = operators%thermal%matrix%multiply(next%temperature)
+      residual = heat_residual(conducted, next%heat_load, operators%pairs, pair_heat)
       net = 0.0_dp
       associate (held => loads%temperature%active, card => loads%temperature%card)
          do i = 1, size(residual)
@@ -178,7 +178,7 @@ contains
          scale = max(record%heat_in, record%heat_out, abs(sum(pair_heat)), &
             maxval(abs(residual), mask=held), noise*maxval(abs(operators%thermal%matrix%value))* &
             maxval(abs(next%temperature)), tiny(1.0_dp))
-         record%heat_imbalance = imbalance(residual, held, model%mesh%node_body, scale)
+         record%heat_imbalance = imbalance(conducted, residual, held, model%mesh%node_body, scale)
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
       end associate
    end subroutine balance_heat

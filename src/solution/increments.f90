@@ -1,6 +1,6 @@
 !> Load stepping: one call of advance solves one increment.
 module increments
-   use contact_operator, only: condensed_load, contact_operator_pass, increment_data_type, &
+   use contact_operator, only: contact_operator_pass, increment_data_type, &
       law_conductance, residual_floor
    use contact_system, only: closing_law_type, contact_state_type
    use clock, only: wall_seconds
@@ -230,6 +230,9 @@ contains
       else
          call solve_increment(self%operators%contact, data%previous, data%welded_load, &
             next%contact, error)
+         if (allocated(error)) return
+         next%omega = law_conductance(self%operators, next%contact)
+         next%omega_before = next%omega
       end if
       self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
       if (allocated(error)) return

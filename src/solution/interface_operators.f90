@@ -16,6 +16,7 @@ module interface_operators
    private
    public :: interface_operators_type, pair_row_type
 
+   real(dp), parameter :: nearly_aligned = 0.99_dp !! cosine of a normal that counts as along an axis
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
 
    !> The pairs of all interfaces in one row.
@@ -114,6 +115,7 @@ contains
       logical :: on_tail(2, size(self%pairs%slave))
       integer :: k
 
+      call align_frames(self%pairs, held)
       associate (pairs => self%pairs, used => model%mesh%node_body > 0)
          frame(:, 1, :) = pairs%normal
          frame(:, 2, :) = pairs%tangent
@@ -138,6 +140,27 @@ contains
       end associate
       call form_jump_load(self)
    end subroutine reduce
+
+   !> A pair that is held along one axis on both nodes, as on an axis of symmetry, moves along the
+   !> other one. Its normal, which a curved side gives only nearly so, is then taken along the axes.
+   pure subroutine align_frames(pairs, held)
+      type(pair_row_type), intent(inout) :: pairs
+      logical, intent(in) :: held(:)
+      logical :: both(2)
+      integer :: along, k
+
+      do k = 1, size(pairs%slave)
+         both = held(2*pairs%slave(k) - 1:2*pairs%slave(k)) .and. &
+            held(2*pairs%master(k) - 1:2*pairs%master(k))
+         if (both(1) .eqv. both(2)) cycle
+         along = merge(2, 1, both(1))
+         if (abs(pairs%normal(along, k)) < nearly_aligned) cycle
+         pairs%normal(3 - along, k) = 0.0_dp
+         pairs%normal(along, k) = sign(1.0_dp, pairs%normal(along, k))
+         pairs%tangent(along, k) = 0.0_dp
+         pairs%tangent(3 - along, k) = sign(1.0_dp, pairs%tangent(3 - along, k))
+      end do
+   end subroutine align_frames
 
    !> The contact system from the mechanical Schur complement.
    subroutine set_contact(self)
