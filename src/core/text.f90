@@ -6,6 +6,7 @@ module text
    private
    public :: string_type
    public :: to_text, to_upper, without_blanks, read_integer, read_real, append
+   public :: integer_fault, real_fault
    public :: nearest_name, nearest_known, edit_distance
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
@@ -18,6 +19,7 @@ module text
    !> A number as text without blanks around it.
    interface to_text
       module procedure integer_to_text
+      module procedure long_to_text
       module procedure real_to_text
    end interface to_text
 
@@ -32,6 +34,16 @@ contains
       write (buffer, '(i0)') number
       string = trim(buffer)
    end function integer_to_text
+
+   !> A long integer without blanks.
+   pure function long_to_text(number) result(string)
+      integer(long), intent(in) :: number    !! the number
+      character(:), allocatable :: string    !! its decimal digits
+      character(20) :: buffer
+
+      write (buffer, '(i0)') number
+      string = trim(buffer)
+   end function long_to_text
 
    !> A real with six significant digits, plain where that is short, else with an exponent.
    pure function real_to_text(number) result(string)
@@ -129,6 +141,24 @@ contains
       if (valid) valid = ieee_is_finite(number)
       if (.not. valid) number = 0.0_dp
    end subroutine read_real
+
+   !> The part of a message that says why a text is not read as a whole number.
+   pure function integer_fault(string) result(fault)
+      character(*), intent(in) :: string      !! text that read_integer does not take
+      character(:), allocatable :: fault      !! such as "is not a whole number"
+
+      fault = 'is not a whole number'
+      if (is_whole(string)) fault = 'is out of range'
+   end function integer_fault
+
+   !> The part of a message that says why a text is not read as a real.
+   pure function real_fault(string) result(fault)
+      character(*), intent(in) :: string      !! text that read_real does not take
+      character(:), allocatable :: fault      !! such as "is not a number"
+
+      fault = 'is not a number'
+      if (has_form_of_real(string)) fault = 'is out of range'
+   end function real_fault
 
    !> Whether a text is written as a real; list-directed input alone would also take "1*2", "5/3" or
    !> "1-5".

@@ -203,7 +203,7 @@ contains
       do i = 1, size(fields)
          call self%parameters%substitute(fields(i), report)
          if (self%keyword == 'PARAMETER') then
-            call self%parameters%define(fields(i), report)
+            call self%parameters%define(fields(i), cards%notes, report)
          else if (index(fields(i)%text, '"') > 0) then
             fields(i)%text = without_quotes(fields(i)%text)
          end if

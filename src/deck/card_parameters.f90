@@ -5,8 +5,8 @@ module card_parameters
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp
-   use text, only: append, nearest_known, read_integer, read_real, string_type, to_upper, &
-      without_blanks
+   use text, only: append, integer_fault, nearest_known, read_integer, read_real, real_fault, &
+      string_type, to_upper, without_blanks
    implicit none
    private
    public :: has_parameter, parameter_text, parameter_place, need_parameter, take_parameter, choose
@@ -82,8 +82,8 @@ contains
       if (valid) then
          value = number
       else
-         call report%error(parameter_place(card, name), ''''//parameter_text(card, name)//''''// &
-            ' is not a whole number, as '//name//'= needs')
+         call report%error(parameter_place(card, name), ''''//parameter_text(card, name)//''' '// &
+            integer_fault(parameter_text(card, name))//'; expected: value of '//name//'=')
       end if
    end subroutine take_integer_parameter
 
@@ -100,8 +100,8 @@ contains
       if (valid) then
          value = number
       else
-         call report%error(parameter_place(card, name), ''''//parameter_text(card, name)//''''// &
-            ' is not a number, as '//name//'= needs')
+         call report%error(parameter_place(card, name), ''''//parameter_text(card, name)//''' '// &
+            real_fault(parameter_text(card, name))//'; expected: value of '//name//'=')
       end if
    end subroutine take_real_parameter
 

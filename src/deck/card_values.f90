@@ -5,7 +5,7 @@ module card_values
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp
-   use text, only: read_integer, read_real
+   use text, only: integer_fault, read_integer, read_real, real_fault
    implicit none
    private
    public :: has_field, field_text, field_place, need_field, take_field, check_extra
@@ -127,8 +127,8 @@ contains
       if (is_number) then
          value = number
       else
-         call report%error(field_place(data, i), ''''//data%fields(i)%text//''''// &
-            ' is not a whole number; expected: '//what)
+         call report%error(field_place(data, i), ''''//data%fields(i)%text//''' '// &
+            integer_fault(data%fields(i)%text)//'; expected: '//what)
          valid = .false.
       end if
    end subroutine take_integer_field
@@ -148,8 +148,8 @@ contains
       if (is_number) then
          value = number
       else
-         call report%error(field_place(data, i), ''''//data%fields(i)%text//''''// &
-            ' is not a number; expected: '//what)
+         call report%error(field_place(data, i), ''''//data%fields(i)%text//''' '// &
+            real_fault(data%fields(i)%text)//'; expected: '//what)
          valid = .false.
       end if
    end subroutine take_real_field

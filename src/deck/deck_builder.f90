@@ -38,7 +38,7 @@ contains
       type(model_type), intent(out) :: model              !! the model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
       type(deck_context_type) :: context
-      integer :: i, deck_nodes
+      integer :: i, deck_nodes, errors
 
       if (size(cards%keywords) == 0) return
       if (allocated(cards%notes)) then
@@ -50,8 +50,10 @@ contains
       call build_options(cards, context, model, report)
       call build_nodes(cards, context, model%mesh, report)
       call build_elements(cards, context, model%mesh, report)
+      errors = report%error_count()
       call build_sets('node', cards, context%node_index, report, model%mesh%node_sets)
       call build_sets('element', cards, context%element_index, report, model%mesh%element_sets)
+      context%sets_sound = report%error_count() == errors
       call build_surfaces(cards, context, model%mesh, report)
       call build_materials(cards, context, model, report)
       call build_sections(cards, context, model, report)

@@ -44,6 +44,7 @@ contains
       model%load_node = model%mesh%node_sets(set)%members(1)
       model%load_dof = dof
       model%load_label = dof_name(dof)//' of '//name
+      if (.not. (context%boundaries_sound .and. context%sets_sound)) return
       if (.not. is_prescribed(context, model)) call report%error(context%load_place, &
          'LOAD= follows a value that no *BOUNDARY prescribes')
    end subroutine build_load_axis

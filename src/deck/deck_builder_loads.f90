@@ -28,8 +28,9 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(request_type) :: request
       character(:), allocatable :: operation
-      integer :: j
+      integer :: j, errors
 
+      errors = report%error_count()
       request%step = step
       operation = 'MOD'
       call choose(card, 'OP', 'MOD', 'NEW', report, operation)
@@ -47,6 +48,9 @@ contains
             return
          end select
       end do
+      if (card%name == 'BOUNDARY' .and. report%error_count() > errors) then
+         context%boundaries_sound = .false.
+      end if
    end subroutine build_load_card
 
    subroutine read_amplitude(card, model, report, amplitude)

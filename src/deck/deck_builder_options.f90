@@ -12,7 +12,7 @@ module deck_builder_options
    private
    public :: build_options
 
-   integer, parameter :: most_levels = 12   !! *REFINE: 4**12 elements of each one
+   integer, parameter :: most_levels = 11   !! *REFINE: one element more often divided is too many
 
 contains
 
@@ -111,6 +111,11 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
 
+      if (context%levels_place%image > 0) then
+         call report%error(card%place, 'a second *REFINE')
+         return
+      end if
+      context%levels_place = parameter_place(card, 'LEVELS')
       if (.not. has_parameter(card, 'LEVELS')) call report%error(card%place, &
          '*REFINE needs LEVELS=')
       call take_parameter(card, 'LEVELS', report, context%levels)

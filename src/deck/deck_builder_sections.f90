@@ -6,7 +6,7 @@ module deck_builder_sections
    use deck_builder_materials, only: find_material
    use deck_context, only: deck_context_type, find_set, set_names
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count
+   use deck_structure, only: card_count, is_misspelt
    use kinds, only: dp
    use materials, only: section_type
    use mesh, only: mesh_type
@@ -21,18 +21,21 @@ contains
    !> Takes all sections, and gives the elements theirs.
    subroutine build_sections(cards, context, model, report)
       type(cards_type), intent(in) :: cards                !! the cards
-      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_context_type), intent(inout) :: context    !! receives notes, whether all is sound
       type(model_type), intent(inout) :: model             !! receives the sections
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer :: k, n
+      integer :: k, n, errors
 
       allocate(model%sections(card_count(cards, 'SOLID SECTION')))
+      context%sections_sound = .not. is_misspelt(cards, 'SOLID SECTION')
       n = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= 'SOLID SECTION') cycle
          n = n + 1
          call build_section(cards, cards%keywords(k), context, model, report, model%sections(n))
+         errors = report%error_count()
          call give_section(cards%keywords(k), n, model%mesh, report)
+         if (report%error_count() > errors) context%sections_sound = .false.
       end do
    end subroutine build_sections
 

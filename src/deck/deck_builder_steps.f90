@@ -9,7 +9,7 @@ module deck_builder_steps
    use deck_builder_loads, only: build_load_card
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count
+   use deck_structure, only: card_count, is_misspelt
    use keywords, only: refusal
    use kinds, only: dp
    use model, only: model_type
@@ -39,6 +39,7 @@ contains
       n = 0
       analyses = 0
       files = 0
+      context%boundaries_sound = .not. is_misspelt(cards, 'BOUNDARY')
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             select case (card%name)

@@ -3,7 +3,7 @@
 module deck_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use kinds, only: dp
+   use kinds, only: dp, long
    use mesh, only: face_nodes, mesh_type
    use model, only: model_type
    use quadrature, only: square_points
@@ -14,6 +14,10 @@ module deck_checks
    private
    public :: check_model
 
+   !> Entries of the 16 x 16 matrix of an element: all those of a mesh are numbered in default
+   !> integers.
+   integer, parameter :: entries_per_element = 256
+
 contains
 
    !> Checks the model before it is refined.
@@ -22,6 +26,7 @@ contains
       type(model_type), intent(in) :: model                !! the model
       type(deck_report_type), intent(inout) :: report      !! receives errors
 
+      call check_size(context, model%mesh, report)
       call check_sections(context, model, report)
       call check_materials(context, model, report)
       call check_jacobians(context, model%mesh, report)
@@ -29,6 +34,28 @@ contains
       call check_forces(context, model%mesh, report)
       call check_temperatures(context, model, report)
    end subroutine check_model
+
+   !> The refined mesh, its matrices and the new numbers of its nodes fit into default integers.
+   subroutine check_size(context, mesh, report)
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer, parameter :: most_elements = (huge(1) - 1)/entries_per_element
+      integer(long) :: elements, largest
+
+      elements = size(mesh%element_number)*4_long**context%levels
+      if (elements > most_elements) then
+         call report%error(context%levels_place, 'the mesh would have '//to_text(elements)// &
+            ' elements, more than the '//to_text(most_elements)//' that can be numbered')
+         return
+      end if
+      if (context%levels == 0 .or. elements == 0 .or. size(mesh%node_number) == 0) return
+      ! An element brings at most its eight nodes.
+      largest = max(maxval(mesh%node_number), maxval(mesh%element_number)) + 8*elements
+      if (largest > huge(1)) call report%error(context%levels_place, &
+         'the numbers of new nodes and elements, behind the largest of the deck, would exceed '// &
+         to_text(huge(1)))
+   end subroutine check_size
 
    !> Every element has a section.
    subroutine check_sections(context, model, report)
@@ -39,6 +66,7 @@ contains
 
       without = count(model%mesh%element_section == 0)
       if (size(model%sections) == 0 .or. without == 0) return
+      if (.not. (context%sections_sound .and. context%sets_sound)) return
       do e = 1, size(model%mesh%element_section)
          if (model%mesh%element_section(e) == 0) exit
       end do

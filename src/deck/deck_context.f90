@@ -8,7 +8,7 @@ module deck_context
    use load_requests, only: request_list_type
    use mesh, only: set_type
    use sorting, only: number_index_type
-   use text, only: nearest_known, read_integer, string_type, to_text, to_upper
+   use text, only: nearest_known, read_integer, string_type, to_upper
    implicit none
    private
    public :: deck_context_type, find_set, set_names, read_target
@@ -28,12 +28,16 @@ module deck_context
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step stands
       integer :: plane = plane_by_element                 !! PLANE=
       integer :: levels = 0                               !! *REFINE, LEVELS=
+      type(place_type) :: levels_place                    !! where it stands
       character(:), allocatable :: load_set   !! LOAD=: node set; unallocated when not given
       type(place_type) :: load_place                      !! where it stands
       type(request_list_type) :: boundaries               !! *BOUNDARY
       type(request_list_type) :: forces                   !! *CLOAD
       type(request_list_type) :: pressures                !! *DLOAD
       type(request_list_type) :: temperatures             !! *INITIAL CONDITIONS
+      logical :: sets_sound = .true.         !! whether all *NSET and *ELSET could be taken
+      logical :: sections_sound = .true.     !! whether all elements of *SOLID SECTION are known
+      logical :: boundaries_sound = .true.   !! whether all *BOUNDARY could be taken
       type(string_type), allocatable :: notes(:)          !! lines for the listing
    contains
       procedure :: note
@@ -97,12 +101,12 @@ contains
       end if
       if (item > 0 .or. set > 0) return
       valid = .false.
-      if (.not. is_number) then
+      if (.not. (is_number .or. verify(name, '0123456789') == 0)) then
          call report%error(field_place(data, position), 'unknown '//noun//' set '// &
             to_upper(name)// &
             nearest_known(name, set_names(sets)))
       else if (.not. numbers%is_empty()) then
-         call report%error(field_place(data, position), 'there is no '//noun//' '//to_text(number))
+         call report%error(field_place(data, position), 'there is no '//noun//' '//name)
       end if
    end subroutine read_target
 

@@ -2,7 +2,7 @@
 !> overrides them.
 module deck_parameters
    use card_fields, only: first_text, without_quotes
-   use cards, only: field_type
+   use cards, only: add_note, field_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use text, only: append, nearest_known, string_type, to_upper
@@ -40,15 +40,20 @@ contains
             call report%error(place_type(), '--set '//settings(i)%value//' is not NAME=VALUE')
             cycle
          end if
+         if (len_trim(settings(i)%value(equals + 1:)) == 0) then
+            call report%error(place_type(), '--set '//settings(i)%value//' has no value')
+            cycle
+         end if
          call append(self%setting_names, to_upper(trim(settings(i)%value(:equals - 1))))
          call append(self%setting_values, settings(i)%value(equals + 1:))
       end do
    end subroutine take_settings
 
-   !> Takes one field `name = value` of a *PARAMETER card.
-   subroutine define(self, field, report)
+   !> Takes one field `name = value` of a *PARAMETER card; a value that --set replaces is noted.
+   subroutine define(self, field, notes, report)
       class(deck_parameters_type), intent(inout) :: self   !! the parameters
       type(field_type), intent(in) :: field                !! the field
+      type(string_type), allocatable, intent(inout) :: notes(:)   !! lines for the listing
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, value
       integer :: equals, setting
@@ -66,7 +71,11 @@ contains
          return
       end if
       setting = position(self%setting_names, name)
-      if (setting > 0) value = self%setting_values(setting)%value
+      if (setting > 0) then
+         call add_note(notes, 'parameter '//trim(field%text(:equals - 1))//' = '// &
+            self%setting_values(setting)%value//' by --set, in place of '//value)
+         value = self%setting_values(setting)%value
+      end if
       call append(self%names, name)
       call append(self%values, value)
    end subroutine define

@@ -22,19 +22,19 @@ contains
       type(cards_type), intent(out) :: cards            !! its cards
       type(deck_report_type), intent(out) :: report     !! what is wrong with it
       type(card_lines_type) :: open_lines
+      character(:), allocatable :: fault
       integer :: i
-      logical :: readable
 
       cards%path = path
       report%path = path
       open_lines%width = max(default_width, width)
       allocate(report%source%paths(0))
       call open_lines%parameters%take_settings(settings, report)
-      call read_file(path, path, 1, open_lines, cards, report, readable)
+      call read_file(path, path, 1, open_lines, cards, report, fault)
       call open_lines%finish(cards, report)
       call trim_cards(cards)
-      if (.not. readable) then
-         call report%error(place_type(), 'the deck cannot be read')
+      if (len(fault) > 0) then
+         call report%error(place_type(), 'the deck cannot be read: '//fault)
       else if (size(cards%keywords) == 0 .and. .not. report%has_errors()) then
          call report%error(place_type(), 'the deck is empty')
       else
@@ -51,22 +51,21 @@ contains
    end subroutine read_deck
 
    !> Reads one file, and the files that it includes where it includes them.
-   recursive subroutine read_file(path, found, depth, open_lines, cards, report, readable)
+   recursive subroutine read_file(path, found, depth, open_lines, cards, report, fault)
       character(*), intent(in) :: path                       !! file as given, for messages
       character(*), intent(in) :: found                      !! file as seen from the current folder
       integer, intent(in) :: depth                           !! files open, this one counted
       type(card_lines_type), intent(inout) :: open_lines     !! what is open
       type(cards_type), intent(inout) :: cards               !! receives the cards
       type(deck_report_type), intent(inout) :: report        !! receives errors
-      logical, intent(out) :: readable                       !! whether the file could be read
+      character(:), allocatable, intent(out) :: fault        !! why it is not read; else empty
       type(string_type), allocatable :: lines(:)
-      character(:), allocatable :: included
+      character(:), allocatable :: included, include_fault
       type(place_type) :: place
-      logical :: include_readable
       integer :: i, file
 
-      call read_lines(found, lines, readable)
-      if (.not. readable) return
+      call read_lines(found, lines, fault)
+      if (len(fault) > 0) return
       call append(report%source%paths, path)
       file = size(report%source%paths)
       do i = 1, size(lines)
@@ -81,8 +80,9 @@ contains
             cycle
          end if
          call read_file(included, beside(found, included), depth + 1, open_lines, cards, report, &
-            include_readable)
-         if (.not. include_readable) call report%error(place, included//' cannot be read')
+            include_fault)
+         if (len(include_fault) > 0) call report%error(place, included//' cannot be read: '// &
+            include_fault)
       end do
    end subroutine read_file
 

@@ -1,7 +1,7 @@
 !> The lines of a deck as they stand in its files: the deck itself and, where they are included, the
 !> others.
 module deck_source
-   use text, only: string_type
+   use text, only: string_type, to_text
    implicit none
    private
    public :: deck_source_type, place_type, read_lines
@@ -67,16 +67,16 @@ contains
    end subroutine grow
 
    !> The lines of a text file, with ends of line in the manner of Unix or Windows.
-   subroutine read_lines(path, lines, readable)
+   subroutine read_lines(path, lines, fault)
       character(*), intent(in) :: path                          !! file
       type(string_type), allocatable, intent(out) :: lines(:)   !! its lines
-      logical, intent(out) :: readable                          !! whether the file could be read
+      character(:), allocatable, intent(out) :: fault           !! why it is not read; else empty
       character(:), allocatable :: contents
       integer :: i, n, first, last
 
       allocate(lines(0))
-      call read_contents(path, contents, readable)
-      if (.not. readable) return
+      call read_contents(path, contents, fault)
+      if (len(fault) > 0) return
       n = 0
       do i = 1, len(contents)
          if (contents(i:i) == new_line('a')) n = n + 1
@@ -95,28 +95,68 @@ contains
    end subroutine read_lines
 
    !> A whole file, unless it is no text; its last line has an end even where the file has none.
-   subroutine read_contents(path, contents, readable)
+   subroutine read_contents(path, contents, fault)
       character(*), intent(in) :: path
       character(:), allocatable, intent(out) :: contents
-      logical, intent(out) :: readable
+      character(:), allocatable, intent(out) :: fault
       character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
       integer :: unit, length, status
 
-      readable = .false.
+      fault = path_fault(path)
+      if (len(fault) > 0) return
+      fault = 'it cannot be opened'
       open (newunit=unit, file=path, access='stream', form='unformatted', action='read', &
          status='old', iostat=status)
       if (status /= 0) return
       inquire (unit=unit, size=length)
+      fault = 'it is not a file of text'
       if (length >= 0) then
          allocate(character(length) :: contents)
          read (unit, iostat=status) contents
-         readable = status == 0
+         if (status == 0) fault = text_fault(contents)
       end if
       close (unit)
-      if (readable) readable = index(contents, achar(0)) == 0
-      if (.not. readable .or. length == 0) return
+      if (len(fault) > 0 .or. length == 0) return
       if (contents(length:length) /= new_line('a')) contents = contents//new_line('a')
       if (index(contents, byte_order_mark) == 1) contents = contents(4:)
    end subroutine read_contents
+
+   !> Why there is no file to open at a path; empty where there is one.
+   function path_fault(path) result(fault)
+      character(*), intent(in) :: path
+      character(:), allocatable :: fault
+      logical :: there
+
+      fault = ''
+      inquire (file=path, exist=there)
+      if (.not. there) then
+         fault = 'there is no such file'
+         return
+      end if
+      inquire (file=path//'/.', exist=there)
+      if (there) fault = 'it is a folder'
+   end function path_fault
+
+   !> Why the contents of a file are no text: a control character; empty where they are text.
+   pure function text_fault(contents) result(fault)
+      character(*), intent(in) :: contents
+      character(:), allocatable :: fault
+      integer :: i, line
+
+      fault = ''
+      line = 1
+      do i = 1, len(contents)
+         select case (iachar(contents(i:i)))
+         case (10)
+            line = line + 1
+         case (0:8, 11:12, 14:31)
+            fault = 'it is not text: control character '//to_text(iachar(contents(i:i)))// &
+               ' in line '//to_text(line)
+            return
+         case default
+            cycle
+         end select
+      end do
+   end function text_fault
 
 end module deck_source

@@ -8,7 +8,7 @@ module deck_structure
    use text, only: to_text
    implicit none
    private
-   public :: check_structure, card_count
+   public :: check_structure, card_count, is_misspelt
 
 contains
 
@@ -23,6 +23,18 @@ contains
          if (cards%keywords(k)%name == name) card_count = card_count + 1
       end do
    end function card_count
+
+   !> Whether a keyword that is likely a slip of the pen stands for a name.
+   pure logical function is_misspelt(cards, name)
+      type(cards_type), intent(in) :: cards   !! the cards
+      character(*), intent(in) :: name        !! name as in the table of keywords
+      integer :: k
+
+      is_misspelt = .false.
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%meant == name) is_misspelt = .true.
+      end do
+   end function is_misspelt
 
    !> Checks the order of the cards, the number of data cards, and what must not be missing.
    subroutine check_structure(cards, report)
@@ -117,12 +129,8 @@ contains
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name
       type(deck_report_type), intent(inout) :: report
-      integer :: k
 
-      if (card_count(cards, name) > 0) return
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%meant == name) return
-      end do
+      if (card_count(cards, name) > 0 .or. is_misspelt(cards, name)) return
       if (size(cards%keywords) > 0) call report%error(cards%last, 'the deck has no *'//name)
    end subroutine need_card
 

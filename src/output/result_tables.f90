@@ -16,7 +16,8 @@ module result_tables
 
    !> Group `/history`: one row an increment.
    type :: history_results_type
-      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of history_names
+      character(name_length), allocatable :: names(:)      !! datasets that grow
+      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of names
    contains
       procedure :: start => start_history
       procedure :: append => append_history
@@ -47,16 +48,17 @@ module result_tables
 contains
 
    !> Prepares the datasets.
-   subroutine start_history(self, expected)
+   subroutine start_history(self, has_heat, expected)
       class(history_results_type), intent(inout) :: self  !! the group
+      logical, intent(in) :: has_heat                     !! whether a step solves heat
       integer, intent(in) :: expected                     !! increments that are expected
       integer :: i, storage
 
-      allocate(self%sets(size(history_names)))
-      do i = 1, size(history_names)
-         storage = merge(as_integer, as_real, history_names(i) == 'iterations')
-         self%sets(i) = growing_dataset('/history/'//trim(history_names(i)), storage, 0, 1, &
-            expected)
+      self%names = pack(history_names, has_heat .or. index(history_names, 'heat_') /= 1)
+      allocate(self%sets(size(self%names)))
+      do i = 1, size(self%names)
+         storage = merge(as_integer, as_real, self%names(i) == 'iterations')
+         self%sets(i) = growing_dataset('/history/'//trim(self%names(i)), storage, 0, 1, expected)
       end do
    end subroutine start_history
 
@@ -67,7 +69,7 @@ contains
       integer :: i
 
       do i = 1, size(self%sets)
-         call self%sets(i)%append([history_value(history_names(i), record)])
+         call self%sets(i)%append([history_value(self%names(i), record)])
       end do
    end subroutine append_history
 

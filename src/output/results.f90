@@ -76,7 +76,7 @@ contains
       expected = expected_increments(model)
       call self%fields%start(pairs, point_node, has_heat .or. any(model%materials%has_expansion), &
          has_heat, expected)
-      call self%history%start(expected)
+      call self%history%start(has_heat, expected)
       call self%convergence%start(8*expected)
       allocate(self%contacts(size(pairs)))
       do i = 1, size(pairs)

@@ -1,6 +1,8 @@
 !> The record of an accepted increment, made from its state.
 module increment_records
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use balances, only: contact_violation, force_residual, heat_residual, imbalance
+   use contact_system, only: contact_system_type
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
@@ -39,12 +41,19 @@ contains
       end do
       call set_fields(model, points, with_heat, next, record)
       call balance_forces(operators, model, loads, next, record)
-      if (with_heat) call balance_heat(operators, model, loads, next, record)
+      if (with_heat) then
+         call balance_heat(operators, model, loads, next, record)
+      else
+         record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
+         record%heat_out = record%heat_in
+         record%heat_imbalance = record%heat_in
+         record%contacts%heat_rate = record%heat_in
+      end if
    end subroutine make_record
 
    !> Slip counts from the instant of closing. Tangential positions that the contact system does not
    !> carry, of frictionless pairs, are taken from the recovered displacements, and such a pair
-   !> closes on the straight line between its ends.
+   !> closes where it is at that instant on the straight line between its ends.
    pure subroutine settle_slip(operators, previous, next)
       type(interface_operators_type), intent(in) :: operators
       type(solution_state_type), intent(in) :: previous
@@ -59,10 +68,10 @@ contains
                m = 2*pairs%master(k)
                relative = next%displacement(s - 1:s) - next%displacement(m - 1:m)
                contact%tangential(k) = dot_product(relative, pairs%tangent(:, k))
-               contact%reference(k) = contact%tangential(k)
-               if (previous%contact%status(k) == status_open) then
-                  contact%reference(k) = previous%contact%tangential(k)
-               end if
+               contact%reference(k) = previous%contact%tangential(k) + &
+                  closing_fraction(operators%contact, previous%contact%gap(k), &
+                  contact%force(k), operators%contact%normal(k))* &
+                  (contact%tangential(k) - previous%contact%tangential(k))
             end if
             if (contact%status(k) == status_open) then
                next%closing(k) = contact%tangential(k)
@@ -72,6 +81,24 @@ contains
          end do
       end associate
    end subroutine settle_slip
+
+   !> Instant at which a pair without a tangential unknown closed, as a fraction of the increment:
+   !> relieved of its force alone it would overlap by force/stiffness.
+   pure function closing_fraction(system, gap, force, place) result(fraction)
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: gap, force
+      integer, intent(in) :: place
+      real(dp) :: fraction
+      real(dp) :: response(size(system%schur, 1), 1), stiffness
+
+      fraction = 0.0_dp
+      if (gap <= 0.0_dp .or. force <= 0.0_dp) return
+      response(:, 1) = -system%schur(:, place)
+      call system%solve_free(response)
+      stiffness = system%schur(place, place) + &
+         dot_product(system%schur(place, system%free), response(system%free, 1))
+      fraction = gap/(gap + force/stiffness)
+   end function closing_fraction
 
    !> Contact state of one interface.
    pure function contact_record(operators, with_heat, i, next) result(record)
@@ -97,12 +124,14 @@ contains
          call stick_edges(pairs%arc_length, pairs%weight, record%status, record%pressure, &
             record%shear, record%gap, operators%pairs%friction(first), record%edges_stick, &
             record%edge_stick)
+         if (allocated(operators%thermal%matrix%value)) then
+            record%slave_temperature = next%temperature(pairs%slave_node)
+            record%master_temperature = next%temperature(pairs%master_node)
+         end if
          if (.not. with_heat) return
          record%conductance = next%omega(first:last)
          record%heat_flux = next%omega(first:last)*next%jump(first:last)
          record%heat_rate = sum(pairs%weight*record%heat_flux)
-         record%slave_temperature = next%temperature(pairs%slave_node)
-         record%master_temperature = next%temperature(pairs%master_node)
       end associate
    end function contact_record
 

@@ -27,7 +27,7 @@ for deck in *.inp; do
    printf '%s: %s\n' "$deck" "${wrong#; }"
    cat "$folder/diff"
 done
-if [[ $("$program" check nowhere.inp 2>&1) != "nowhere.inp: error: the deck cannot be read" ]]; then
+if [[ $("$program" check nowhere.inp 2>&1) != "nowhere.inp: error: the deck cannot be read: there is no such file" ]]; then
    failed=$((failed + 1))
    printf 'nowhere.inp: a deck that does not exist is not reported by its path\n'
 fi
