@@ -109,7 +109,7 @@ def draw_residuals(figure, place, run, first, several):
         residual = np.maximum(run.data["residual"][attempt.rows], SMALLEST)
         axes.semilogy(run.data["iteration"][attempt.rows], residual, **looks)
     axes.set_xlabel("Iteration")
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+    axes.xaxis.set_major_locator(whole_numbers())
     axes.yaxis.set_major_locator(LogLocator(numticks=9))
     axes.yaxis.set_minor_formatter(NullFormatter())
     if first is None:
@@ -177,16 +177,26 @@ def series_looks(number):
 def finish(counts, relaxation, runs):
     """Label and scale the two lower panels."""
     counts.set_ylabel("Iterations")
-    counts.set_ylim(bottom=0)
+    most = max(np.max(np.bincount(run.data["increment"])) for run in runs)
+    counts.set_ylim(0, 1.12 * most)
     counts.tick_params(labelbottom=False)
-    counts.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
+    counts.yaxis.set_major_locator(whole_numbers(5))
     if len(runs) > 1:
         counts.legend(loc="best", ncols=len(runs))
     relaxation.set_ylabel("Range of $g$")
     relaxation.set_xlabel("Increment")
-    relaxation.xaxis.set_major_locator(MaxNLocator(integer=True))
+    relaxation.xaxis.set_major_locator(whole_numbers())
+    last = max(np.max(run.data["increment"]) for run in runs)
+    room = max(0.9, 0.02 * last)
+    relaxation.set_xlim(1 - room, last + room)
     least = min(np.min(run.data["g_min"]) for run in runs)
     if 0.0 < least < 0.02:
         relaxation.set_yscale("log")
+        relaxation.set_ylim(least**1.12, least**-0.12)
     else:
-        relaxation.set_ylim(min(0.0, 1.1 * least), 1.08)
+        relaxation.set_ylim(min(0.0, 1.12 * least), 1.12)
+
+
+def whole_numbers(most=9):
+    """Return ticks at whole numbers in steps of 1, 2, 5, 10 and so on, `most` + 1 at most."""
+    return MaxNLocator(nbins=most, steps=[1, 2, 5, 10], integer=True, min_n_ticks=1)

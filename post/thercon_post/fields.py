@@ -25,6 +25,7 @@ TITLES = {
     "flux_y": ("Heat flux $q_y$", "flux"),
 }
 FINE_CELLS = 60000  # about as many parts as a page can show
+ROUNDING = 1e-9  # values that differ by this part of the largest magnitude are the same
 
 
 def draw(result, options):
@@ -49,7 +50,7 @@ def draw_row(result, row, options):
     grid = Triangulation(*at.T, fine.triangles)
     window = mesh.bounds_of(moved)
     if options.region == "contact":
-        window = mesh.contact_window(result.contacts(), window)
+        window = mesh.contact_window(result.contacts(), result.cells, moved)
     figure, panels = layout(len(fields), window)
     for axes, letter, (quantity, nodal) in zip(panels, "abcdefgh", fields.items()):
         values = fine.values(nodal.astype(float))
@@ -57,7 +58,8 @@ def draw_row(result, row, options):
             values = np.maximum(values, 0.0)  # quadratic interpolation can undershoot
         inside = np.all((at >= window[0]) & (at <= window[1]), axis=1)
         mesh.frame(axes, window, result.units, cut=options.region == "contact")
-        draw_panel(axes, grid, values, quantity, limits(values[inside], quantity))
+        scale = magnitude(result, quantity, step)
+        draw_panel(axes, grid, values, quantity, limits(values[inside], quantity, scale), scale)
         draw_lines(axes, result.cells, moved)
         title = result.units.label(*TITLES[quantity])
         style.panel_title(axes, title, letter if len(fields) > 1 else "")
@@ -98,6 +100,12 @@ def read_fields(result, step, quantities):
     return {quantity: there[quantity] for quantity in chosen}
 
 
+def magnitude(result, quantity, step):
+    """Return the largest magnitude of a quantity, with all components of what it is one of."""
+    source, _ = FIELD_SOURCES[quantity]
+    return float(np.nanmax(np.abs(result.point_data(source, step))))
+
+
 def layout(count, window):
     """Return a figure and its axes: panels side by side, one below the other for wide models."""
     width, height = np.ptp(window, axis=0)
@@ -128,8 +136,10 @@ def share_labels(panels):
             axes.tick_params(labelbottom=False)
 
 
-def limits(values, quantity):
+def limits(values, quantity, scale):
     """Return levels for the colours: round numbers that cover the values of the window.
+
+    Values that differ by rounding only, measured by the magnitude `scale`, have levels about them.
 
     Stress peaks in re-entrant and clamped corners grow with every refinement and would leave one
     colour for the rest: beyond the middle 99 % stresses share the colours at the ends.
@@ -139,19 +149,26 @@ def limits(values, quantity):
         low, high = values.min(), values.max()
     else:
         low, high = np.percentile(values, (0.5, 99.5))
-    if quantity in SIGNED and low < 0.0 < high and min(-low, high) > 0.15 * max(-low, high):
+    if high - low <= ROUNDING * scale:
+        room = 0.05 * scale or 0.5
+        low, high = low - room, high + room
+    elif quantity in SIGNED and low < 0.0 < high and min(-low, high) > 0.15 * max(-low, high):
         high = max(-low, high)
         low = -high
-    if high - low <= 1e-12 * max(abs(low), abs(high), 1e-300):
-        low, high = low - 0.5, high + 0.5
     return MaxNLocator(nbins=14, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
 
 
-def draw_panel(axes, grid, values, quantity, levels):
+def settle(values, levels, scale):
+    """Return values with those that are at a level but for rounding put onto it."""
+    nearest = levels[np.argmin(np.abs(values[:, None] - levels), axis=1)]
+    return np.where(np.abs(values - nearest) <= ROUNDING * scale, nearest, values)
+
+
+def draw_panel(axes, grid, values, quantity, levels, scale):
     """Fill one panel with colours between thin lines of equal value, with a colour bar."""
     broken = ~np.isfinite(values)
     grid.set_mask(broken[grid.triangles].any(axis=1) if broken.any() else None)
-    values = np.where(broken, levels[0], values)
+    values = settle(np.where(broken, levels[0], values), levels, scale)
     extend = overflow(values, levels)
     colours = colour_map(quantity, levels)
     filled = axes.tricontourf(grid, values, levels=levels, cmap=colours, extend=extend)

@@ -19,9 +19,10 @@ def draw(result, options):
     model = bounds_of(cells.points)
     if contacts:
         figure, (whole, close) = two_panels(model)
-        panels = [(whole, model, False), (close, contact_window(contacts, model), True)]
+        panels = [(whole, model, False), (close, contact_window(contacts, cells, cells.points), True)]
     else:
-        figure, whole = plt.subplots(figsize=(style.SINGLE_COLUMN, style.SINGLE_COLUMN))
+        size = (style.SINGLE_COLUMN, style.SINGLE_COLUMN)
+        figure, whole = plt.subplots(layout="constrained", figsize=size)
         panels = [(whole, model, False)]
     for axes, window, nodes in panels:
         draw_elements(axes, cells, nodes)
@@ -68,14 +69,17 @@ def bounds_of(points):
     return np.array([points.min(axis=0), points.max(axis=0)])
 
 
-def contact_window(contacts, model):
-    """Return the window, as in `bounds_of`, about the pairs that ever close (else all pairs)."""
-    chosen = []
+def contact_window(contacts, cells, points):
+    """Return the window, as in `bounds_of`, about the pairs that ever close (else all pairs).
+
+    `points` (n, 2) are those of `cells`, where they are drawn.
+    """
+    model, chosen = bounds_of(points), []
     for contact in contacts:
         ever = (contact["status"] > 0).any(axis=0)
         if not ever.any():
             ever[:] = True
-        chosen.append(np.column_stack((contact["x"], contact["y"]))[ever])
+        chosen.append(points[np.isin(cells.node_id, contact["slave_node"][ever])])
     low, high = bounds_of(np.concatenate(chosen))
     half = 0.75 * max(np.max(high - low), 0.02 * np.max(model[1] - model[0]))
     middle = 0.5 * (low + high)

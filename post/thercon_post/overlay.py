@@ -42,6 +42,19 @@ class Overlay:
         """Return the legend's entry."""
         return Line2D([], [], label=self.label, **self.looks)
 
+    def handles(self, names, lines):
+        """Return the legend's entries, one for each column of {quantity: name} that is there."""
+        return [
+            Line2D([], [], label=f"{self.label}: {name}", ls=lines[quantity], **self.looks)
+            for quantity, name in names.items()
+            if quantity in self.columns
+        ]
+
+
+def file_parts(paths):
+    """Return what stands in a file name for the digitised figures laid over."""
+    return ["with", *(Path(path).stem for path in paths)] if paths else []
+
 
 def read_overlays(paths, abscissa, curves, others):
     """Read digitised figures; the arguments are those of `read_figure`."""

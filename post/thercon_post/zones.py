@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from . import style
 from .errors import UserError
-from .overlay import read_overlays
+from .overlay import file_parts, read_overlays
 from .result import OPEN, SLIP, STICK
 from .style import plt
 from .tables import write_table
@@ -15,7 +15,11 @@ from .tables import write_table
 CURVES = ("edge_contact", "edge_stick")
 PASSED_OVER = ("increment", "time", "s_edge_contact", "s_edge_stick")
 NAMES = {OPEN: ("I", "gap"), SLIP: ("II", "slip"), STICK: ("III", "stick")}
+CURVE_NAMES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
 LINES = {"edge_contact": "solid", "edge_stick": (0, (5, 2))}
+FURTHER = {"color": style.GREY, "lw": 0.9, "marker": "d", "ms": 2.8, "mew": 0.6}
+FURTHER_FILLS = {"edge_contact": style.GREY, "edge_stick": "white"}
+NO_STATE = -1  # outside the loads and pairs of the result
 LABEL_GRID = (60, 48)  # where region names may stand: loads x places
 LABEL_ROOM = 0.08  # room that a name needs around its middle, in parts of the axes
 
@@ -29,6 +33,7 @@ def draw(result, options):
         picture = Picture(result, contact, along, coordinate)
         figure = picture.draw(overlays)
         parts = [contact.name] if len(result.contact_names) > 1 else []
+        parts += file_parts(options.figures)
         name = style.file_name(result, "zones", *parts)
         written += style.write(figure, picture.table(), options.out, name)
         pairs = Path(options.out) / f"{style.file_name(result, 'zones', *parts, 'pairs')}.csv"
@@ -48,7 +53,7 @@ class Picture:
         load = result.history["load"]
         rising = bool(np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0))
         self.rising = rising
-        self.further = False  # whether there are edges besides the main ones
+        self.further = {}  # curve -> whether its further edges have lines or lonely points only
         # A load that turns would draw loading and unloading over each other.
         self.abscissa = load if rising else result.history["time"]
         self.abscissa_label = result.units.load_label(result.load_label) if rising else "Time"
@@ -93,10 +98,8 @@ class Picture:
         """Return the range of the abscissa: from zero where that is next to the first value."""
         low, high = float(np.min(values)), float(np.max(values))
         step = (high - low) / max(len(values) - 1, 1)
-        if 0.0 < low <= 3.0 * step:
-            low = 0.0
-        room = 0.015 * (high - low) or 0.5
-        return low - (room if low != 0.0 else 0.0), high + room
+        room = 0.02 * (high - low) or 0.5
+        return 0.0 if room < low <= 3.0 * step else low - room, high + room
 
     def window(self, drawn):
         """Return the range of the ordinate: the pairs that ever close and somewhat more, and
@@ -108,7 +111,7 @@ class Picture:
             room = 0.3 * max(last - first, 2.0 * np.min(np.diff(self.coordinate)))
             low, high = max(low, first - room), min(high, last + room)
         low, high = np.min(drawn, initial=low), np.max(drawn, initial=high)
-        room = 0.015 * (high - low)
+        room = 0.025 * (high - low)
         return low - room, high + room
 
     def draw_states(self, axes):
@@ -127,43 +130,41 @@ class Picture:
         others = self.edges(key.replace("edge_", "edges_"))
         count = np.sum(~np.isnan(others), axis=1)
         others = np.where(np.isclose(others, main[:, None], rtol=1e-12, atol=0.0), np.nan, others)
-        self.further |= not np.isnan(others).all()
+        looks = FURTHER | {"mfc": FURTHER_FILLS[key], "linestyle": LINES[key]}
         for column in others.T:
             # Columns belong together only between increments with as many edges.
             for piece in np.split(np.arange(len(count)), np.flatnonzero(np.diff(count)) + 1):
-                axes.plot(
-                    self.abscissa[piece],
-                    column[piece],
-                    color=style.GREY,
-                    linestyle=LINES[key],
-                    lw=0.9,
-                    marker="d",
-                    ms=2.4,
-                    zorder=2,
-                )
+                there = ~np.isnan(column[piece])
+                if there.any():
+                    line = bool(np.any(there[1:] & there[:-1]))
+                    self.further[key] = self.further.get(key, False) or line
+                    axes.plot(self.abscissa[piece], column[piece], zorder=2, **looks)
 
     def name_regions(self, axes):
-        """Write I, II and III where each region has most room around it."""
+        """Write I, II and III where each region has most room around it.
+
+        A region too narrow for its name has it outside, with a line, so that no curve is covered.
+        """
         (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
         u, v = (np.linspace(0.0, 1.0, n) for n in LABEL_GRID)
-        states = self.states_at(left + u * (right - left), low + v * (high - low))
+        states = self.states_at(left + u * (right - left), low + v * (high - low)).ravel()
         points = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
-        flat = states.ravel()
-        for state, (numeral, word) in self.names.items():
-            mine = points[flat == state]
-            if len(mine) == 0:
-                continue
-            room = np.min(np.stack([mine, 1.0 - mine]), axis=(0, 2))
-            if np.any(flat != state):
-                away = mine[:, None, :] - points[flat != state][None, :, :]
-                room = np.minimum(room, np.sqrt(np.min(np.sum(away**2, axis=2), axis=1)))
-            at = mine[np.argmax(room)]
-            # A region too narrow for its name has it beside itself, so that no curve is covered.
-            beside = np.array([-0.09, 0.19]) if room.max() < LABEL_ROOM else np.zeros(2)
+        room = np.where(states == NO_STATE, 0.0, room_around(points, states))
+        middles = {
+            state: np.flatnonzero(states == state)[np.argmax(room[states == state])]
+            for state in self.names
+            if np.any(states == state)
+        }
+        taken = []
+        for state, at in sorted(middles.items(), key=lambda item: -room[item[1]]):
+            place = at
+            if room[at] < LABEL_ROOM:
+                place = free_place(points, room, points[at], points[taken])
+            taken.append(place)
             axes.annotate(
-                f"{numeral}\n{word}",
-                xy=at,
-                xytext=at + beside,
+                "\n".join(self.names[state]),
+                xy=points[at],
+                xytext=points[place],
                 xycoords="axes fraction",
                 textcoords="axes fraction",
                 ha="center",
@@ -172,21 +173,33 @@ class Picture:
                 zorder=5,
                 fontsize=9,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 2.0},
-                arrowprops={"arrowstyle": "-", "lw": 0.6} if beside.any() else None,
+                arrowprops=None if place == at else {"arrowstyle": "-", "lw": 0.6, "shrinkB": 0},
             )
 
     def states_at(self, loads, places):
-        """Return the states (loads, places) of the nearest increments and pairs."""
+        """Return the states (loads, places) of the nearest increments and pairs.
+
+        They are NO_STATE on the main curves, before the first increment and pair, and behind the
+        last.
+        """
         row = np.argmin(np.abs(loads[:, None] - self.abscissa[None, :]), axis=1)
         pair = np.argmin(np.abs(places[:, None] - self.coordinate[None, :]), axis=1)
-        return self.status[np.ix_(row, pair)]
+        states = self.status[np.ix_(row, pair)].astype(int)
+        if len(self.abscissa) > 1:  # the names of a single increment stand beside its marks
+            states[is_outside(loads, self.abscissa)] = NO_STATE
+        states[:, is_outside(places, self.coordinate)] = NO_STATE
+        order, near = np.argsort(self.abscissa), np.ptp(places) / len(places)
+        for key in CURVES:
+            edge = np.interp(loads, self.abscissa[order], self.edges(key)[order])
+            states[np.abs(places - edge[:, None]) < near] = NO_STATE
+        return states
 
     def legend_handles(self, overlays):
         """Return the legend's entries: curves, pair states, digitised figures."""
-        names = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
         shown = [key for key in CURVES if not np.isnan(self.contact[key]).all()]
         handles = [
-            Line2D([], [], color="black", ls=LINES[key], lw=1.2, label=names[key]) for key in shown
+            Line2D([], [], color="black", ls=LINES[key], lw=1.2, label=CURVE_NAMES[key])
+            for key in shown
         ]
         handles += [
             Line2D(
@@ -195,10 +208,12 @@ class Picture:
             for state, marker, options in state_marks()
             if np.any(self.status == state)
         ]
-        if self.further:
-            looks = {"color": style.GREY, "lw": 0.9, "marker": "d", "ms": 2.4}
-            handles.append(Line2D([], [], label="further edges", **looks))
-        return handles + [overlay.handle() for overlay in overlays]
+        for key, line in self.further.items():
+            looks = FURTHER | {"mfc": FURTHER_FILLS[key], "ls": LINES[key] if line else "none"}
+            handles.append(Line2D([], [], label=f"further {CURVE_NAMES[key]}", **looks))
+        for overlay in overlays:
+            handles += overlay.handles(CURVE_NAMES, LINES)
+        return handles
 
     def table(self):
         """Return the curves as columns: edges on the axis of the picture, and as arc length."""
@@ -231,6 +246,30 @@ def state_marks():
         (SLIP, "o", {"mfc": "white", "mec": style.BLUE, "ms": 2.5, "mew": 0.45}),
         (STICK, "s", {"mfc": style.ORANGE, "mec": style.ORANGE, "ms": 2.0, "mew": 0.3}),
     ]
+
+
+def is_outside(values, of):
+    """Return where values are below the least of others or above the largest."""
+    return (values < np.min(of)) | (values > np.max(of))
+
+
+def room_around(points, states):
+    """Return how far each point (k, 2) of the axes is from other states and from the frame."""
+    room = np.min(np.hstack([points, 1.0 - points]), axis=1)
+    for state in np.unique(states):
+        mine, others = states == state, points[states != state]
+        if len(others):
+            away = points[mine][:, None, :] - others[None, :, :]
+            room[mine] = np.minimum(room[mine], np.sqrt(np.min(np.sum(away**2, axis=2), axis=1)))
+    return room
+
+
+def free_place(points, room, target, taken):
+    """Return the number of the point near `target` that has room for a name, clear of others."""
+    clear = np.linalg.norm(points - target, axis=1)
+    for other in taken:
+        room = np.minimum(room, 0.5 * np.linalg.norm(points - other, axis=1))
+    return int(np.argmin(np.where(room >= min(LABEL_ROOM, room.max()), clear, np.inf)))
 
 
 def is_lonely(values):

@@ -135,8 +135,8 @@ contains
       case default
          status = verify(value, '0123456789')
          if (status == 0 .and. len(value) > 0) read (value, *, iostat=status) command%width
-         if (status /= 0 .or. command%width < 1) call set_error(error, status_deck, &
-            'option --width needs a positive whole number, not '//value)
+         if (status /= 0 .or. command%width < 80) call set_error(error, status_deck, &
+            'option --width needs a whole number of at least 80, not '//value)
       end select
    end subroutine take_value
 

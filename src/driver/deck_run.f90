@@ -18,6 +18,7 @@ module deck_run
    use run_description, only: describe_run
    use run_output, only: run_output_type
    use system_calls, only: make_folder
+   use text, only: to_text
    implicit none
    private
    public :: run_deck, prepare_deck, base_name
@@ -38,7 +39,17 @@ contains
 
       since = wall_seconds()
       outcome%path = path
+      if (any(path(max(len(path) - 3, 1):) == ['.lst', '.sta', '.cvg']) .or. &
+         path(max(len(path) - 6, 1):) == '.vtkhdf') then
+         write (error_unit, '(2a)') path, ': error: a deck cannot have the name of a result file'
+         outcome%status = status_deck
+         return
+      end if
       call prepare_deck(path, command, cards, model, simulation, outcome%status)
+      if (outcome%status == 0) then
+         call simulation%reduce(model, error)
+         if (allocated(error)) call report_failure(path, error, outcome)
+      end if
       if (outcome%status == 0) then
          output%run%seconds_read = wall_seconds() - since - simulation%seconds%assemble - &
             simulation%seconds%reduce
@@ -86,13 +97,22 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(contact_pairs_type) :: pairs
       type(error_type), allocatable :: error
+      logical, allocatable :: paired(:)
       integer :: i
 
+      paired = [(.false., i=1, size(model%mesh%node_number))]
       do i = 1, size(model%contacts)
          call make_pairs(model%mesh, model%contacts(i), 1.0_dp, pairs, error)
          if (allocated(error)) then
             call report%error(place_type(image=model%contacts(i)%card), error%message)
+            cycle
          end if
+         associate (nodes => [pairs%slave_node, pairs%master_node])
+            if (any(paired(nodes))) call report%error(place_type(image=model%contacts(i)%card), &
+               'node '//to_text(model%mesh%node_number(nodes(findloc(paired(nodes), .true., &
+               dim=1))))//' belongs to two pairs, which is not built yet')
+            paired(nodes) = .true.
+         end associate
       end do
    end subroutine check_pairs
 
@@ -130,7 +150,8 @@ contains
             call output%fail(error%message, passes)
          end if
          call output%finish(model, pairs, output_error)
-         if (allocated(output_error)) call move_alloc(output_error, error)
+         if (allocated(output_error) .and. .not. allocated(error)) &
+            call move_alloc(output_error, error)
       end associate
    end subroutine solve_deck
 

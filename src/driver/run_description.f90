@@ -29,11 +29,13 @@ contains
       associate (operators => simulation%operators)
          run%equations_mechanical = operators%mechanical%map%equations
          run%contact_unknowns = operators%mechanical%map%tail
-         run%factor_bytes = operators%mechanical%solver%factor_bytes
+         if (simulation%is_reduced) run%factor_bytes = operators%mechanical%solver%factor_bytes
          if (.not. simulation%with_heat) return
          run%equations_thermal = operators%thermal%map%equations
          run%contact_unknowns = run%contact_unknowns + operators%thermal%map%tail
-         run%factor_bytes = run%factor_bytes + operators%thermal%solver%factor_bytes
+         if (simulation%is_reduced) then
+            run%factor_bytes = run%factor_bytes + operators%thermal%solver%factor_bytes
+         end if
       end associate
       call find_biot(model, simulation, run)
    end subroutine describe_run

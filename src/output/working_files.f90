@@ -11,7 +11,7 @@ module working_files
    private
    public :: working_file_type
 
-   real(dp), parameter :: patience = 20.0_dp   !! pause between publishings, in costs of one
+   real(dp), parameter :: patience = 11.0_dp   !! pause between publishings, in costs of one
 
    !> A file in place and the working copy beside it.
    type :: working_file_type

@@ -35,10 +35,9 @@ contains
    !> Factors the matrix for a numbering of the unknowns; done once for all increments with the same
    !> supports.
    !> Error: as the solver's factor.
-   subroutine reduce(self, solver_kind, map, error)
-      class(field_problem_type), intent(inout) :: self    !! the problem; its matrix is set
+   subroutine reduce(self, solver_kind, error)
+      class(field_problem_type), intent(inout) :: self    !! the problem; its matrix and map are set
       integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
-      type(equation_map_type), intent(in) :: map          !! numbering of the unknowns
       type(error_type), allocatable, intent(out) :: error !! see above
 
       call self%release()
@@ -47,8 +46,7 @@ contains
       else
          allocate (skyline_solver_type :: self%solver)
       end if
-      self%map = map
-      call self%solver%factor(map%transform(self%matrix), map%tail, error)
+      call self%solver%factor(self%map%transform(self%matrix), self%map%tail, error)
    end subroutine reduce
 
    !> Takes the load of an increment and condenses it on the tail.

@@ -47,9 +47,11 @@ module increments
       integer :: increments_of_step = 0             !! increments of the present step so far
       integer :: increments = 0                     !! increments so far
       type(run_seconds_type) :: seconds             !! where the time went
+      logical :: is_reduced = .false.               !! whether the bodies are reduced for this step
       logical :: with_heat = .false.                !! whether the present step solves heat
    contains
       procedure :: start
+      procedure :: reduce
       procedure :: finished
       procedure :: advance
       procedure :: release
@@ -57,7 +59,8 @@ module increments
 
 contains
 
-   !> Prepares a run and enters its first step. Error: as interface_operators' prepare and reduce.
+   !> Prepares a run and enters its first step.
+   !> Errors: as interface_operators' prepare and number.
    subroutine start(self, model, error)
       class(simulation_type), intent(inout) :: self       !! a fresh run
       type(model_type), intent(in) :: model               !! the model
@@ -66,7 +69,7 @@ contains
       real(dp) :: since
 
       since = wall_seconds()
-      call self%operators%prepare(model, any(model%steps%analysis == analysis_coupled), error)
+      call self%operators%prepare(model, error)
       if (allocated(error)) return
       self%points = make_points(model%mesh)
       call self%loads%prepare(model)
@@ -122,10 +125,12 @@ contains
          call enter_step(self, model, error)
          if (allocated(error)) return
       end if
+      if (.not. self%is_reduced) call self%reduce(model, error)
+      if (allocated(error)) return
       associate (step => model%steps(self%step))
          record%increment = self%increments + 1
          record%step = self%step
-         clock = next_instant(self, step)
+         clock = next_instant(self, model, step)
          record%time = clock%total_time
          call self%loads%move_to(clock, model)
          record%load = self%loads%axis_value(model, record%time)
@@ -160,16 +165,33 @@ contains
       end associate
    end subroutine advance
 
-   !> Enters the next step; the bodies are reduced again only where supports changed.
+   !> Assembles the bodies, where that is not done, and reduces them to their contact unknowns.
+   !> Errors: as interface_operators' reduce.
+   subroutine reduce(self, model, error)
+      class(simulation_type), intent(inout) :: self       !! the run, started
+      type(model_type), intent(in) :: model               !! the model
+      type(error_type), allocatable, intent(out) :: error !! see above
+      real(dp) :: since
+
+      since = wall_seconds()
+      if (.not. allocated(self%operators%mechanical%matrix%value)) then
+         call self%operators%assemble(model, any(model%steps%analysis == analysis_coupled))
+      end if
+      self%seconds%assemble = self%seconds%assemble + (wall_seconds() - since)
+      since = wall_seconds()
+      call self%operators%reduce(model, self%with_heat, error)
+      self%is_reduced = .not. allocated(error)
+      self%seconds%reduce = self%seconds%reduce + (wall_seconds() - since)
+   end subroutine reduce
+
+   !> Enters the next step; the bodies must be reduced again only where supports changed.
    subroutine enter_step(self, model, error)
       class(simulation_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: held(:), held_temperature(:)
-      real(dp) :: since
       logical :: heat
 
-      since = wall_seconds()
       self%step = self%step + 1
       self%step_time = 0.0_dp
       self%increments_of_step = 0
@@ -182,26 +204,53 @@ contains
             all(held_temperature .eqv. self%loads%temperature%active)) return
       end if
       self%with_heat = heat
-      call self%operators%reduce(model, self%loads%displacement%active, &
+      self%is_reduced = .false.
+      call self%operators%number(model, self%loads%displacement%active, &
          self%loads%temperature%active, heat, error)
-      self%seconds%reduce = self%seconds%reduce + (wall_seconds() - since)
    end subroutine enter_step
 
-   !> The end of the next increment. Increments are counted, not added up, so that they land on
-   !> their multiples.
-   pure function next_instant(self, step) result(clock)
+   !> The end of the next increment: the next multiple of the first increment, reckoned and not added
+   !> up, or without DIRECT an earlier instant on which the step must land.
+   pure function next_instant(self, model, step) result(clock)
       class(simulation_type), intent(in) :: self
+      type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
       type(step_clock_type) :: clock
+      real(dp) :: least, offset
+      integer :: i, k
 
-      clock%step_time = (self%increments_of_step + 1)*step%first_increment
-      if (clock%step_time > step%period - remainder*step%first_increment) then
-         clock%step_time = step%period
+      least = self%step_time + remainder*step%first_increment
+      clock%step_time = (floor(least/step%first_increment) + 1)*step%first_increment
+      if (.not. step%direct) then
+         do i = 1, size(model%verifications)
+            if (model%verifications(i)%at_last) cycle
+            clock%step_time = earlier(clock%step_time, least, &
+               model%verifications(i)%when - self%step_start)
+         end do
+         do i = 1, size(model%amplitudes)
+            associate (curve => model%amplitudes(i))
+               offset = merge(self%step_start, 0.0_dp, curve%total_time)
+               do k = 1, size(curve%times)
+                  clock%step_time = earlier(clock%step_time, least, curve%times(k) - offset)
+               end do
+            end associate
+         end do
       end if
+      if (clock%step_time > step%period - remainder*step%first_increment) &
+         clock%step_time = step%period
       clock%period = step%period
       clock%total_time = self%step_start + clock%step_time
       clock%ramped = step%ramped
    end function next_instant
+
+   !> The earlier of an instant and another one that lies behind the least.
+   pure function earlier(instant, least, other) result(first)
+      real(dp), intent(in) :: instant, least, other
+      real(dp) :: first
+
+      first = instant
+      if (other > least .and. other < instant) first = other
+   end function earlier
 
    !> Temperatures, displacements and contact state at the end of an increment.
    subroutine solve_state(self, model, step, next, record, error)

@@ -4,7 +4,7 @@ module interface_operators
    use conductance_laws, only: conductance_law_type
    use contact_pairs, only: contact_pairs_type, make_pairs
    use contact_system, only: contact_system_type
-   use equation_map, only: equation_map_type, make_map
+   use equation_map, only: make_map
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
@@ -42,18 +42,19 @@ module interface_operators
       real(dp), allocatable :: jump_load(:, :)                !! condensed mechanical load per jump
    contains
       procedure :: prepare
+      procedure :: number
+      procedure :: assemble
       procedure :: reduce
       procedure :: release
    end type interface_operators_type
 
 contains
 
-   !> Pairs the surfaces and assembles the matrices of the bodies.
+   !> Pairs the surfaces.
    !> Error: as make_pairs.
-   subroutine prepare(self, model, with_heat, error)
+   subroutine prepare(self, model, error)
       class(interface_operators_type), intent(inout) :: self !! empty
       type(model_type), intent(in) :: model                  !! the model
-      logical, intent(in) :: with_heat                       !! whether any step solves heat
       type(error_type), allocatable, intent(out) :: error    !! see above
       integer :: i, element
 
@@ -66,10 +67,6 @@ contains
          if (allocated(error)) return
       end do
       self%pairs = row_of(self%interfaces, model)
-      self%mechanical%matrix = assemble_stiffness(model%mesh, model%sections, model%materials)
-      self%thermal_load = assemble_thermal_load(model%mesh, model%sections, model%materials)
-      if (with_heat) self%thermal%matrix = &
-         assemble_conduction(model%mesh, model%sections, model%materials)
    end subroutine prepare
 
    !> Puts the pairs of all interfaces in one row.
@@ -101,19 +98,17 @@ contains
       end do
    end function row_of
 
-   !> Reduces the bodies for a set of supports.
-   !> Errors: bodies that nothing holds, an over-constrained pair, a failure of the solver.
-   subroutine reduce(self, model, held, held_temperature, with_heat, error)
+   !> Numbers the unknowns for a set of supports.
+   !> Error: an over-constrained pair.
+   subroutine number(self, model, held, held_temperature, with_heat, error)
       class(interface_operators_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model                  !! the model
       logical, intent(in) :: held(:)                         !! (2 nodes) prescribed displacements
       logical, intent(in) :: held_temperature(:)             !! (nodes) prescribed temperatures
       logical, intent(in) :: with_heat                       !! whether heat is solved
       type(error_type), allocatable, intent(out) :: error    !! see above
-      type(equation_map_type) :: map
       real(dp) :: frame(2, 2, size(self%pairs%slave)), scalar(1, 1, size(self%pairs%slave))
       logical :: on_tail(2, size(self%pairs%slave))
-      integer :: k
 
       call align_frames(self%pairs, held)
       associate (pairs => self%pairs, used => model%mesh%node_body > 0)
@@ -121,25 +116,50 @@ contains
          frame(:, 2, :) = pairs%tangent
          on_tail(1, :) = .true.
          on_tail(2, :) = pairs%friction > 0.0_dp
-         call make_map(used, held, pairs%slave, pairs%master, frame, on_tail, map, error)
-         if (allocated(error)) return
-         call self%mechanical%reduce(model%solver, map, error)
-         if (allocated(error)) return
-         call set_contact(self)
-         if (.not. with_heat) return
+         call make_map(used, held, pairs%slave, pairs%master, frame, on_tail, &
+            self%mechanical%map, error)
+         if (allocated(error) .or. .not. with_heat) return
          scalar = 1.0_dp
-         call make_map(used, held_temperature, pairs%slave, pairs%master, scalar, &
-            reshape([(.true., k=1, size(pairs%slave))], [1, size(pairs%slave)]), map, error)
-         if (allocated(error)) return
-         call self%thermal%reduce(model%solver, map, error)
-         if (allocated(error)) then
-            error%message = error%message//' (heat: no temperature or film holds it)'
-            return
-         end if
+         call make_map(used, held_temperature, pairs%slave, pairs%master, scalar, on_tail(:1, :), &
+            self%thermal%map, error)
+      end associate
+   end subroutine number
+
+   !> Reduces the bodies to the unknowns that were numbered last.
+   !> Errors: bodies that nothing holds, a failure of the solver.
+   subroutine reduce(self, model, with_heat, error)
+      class(interface_operators_type), intent(inout) :: self !! numbered
+      type(model_type), intent(in) :: model                  !! the model
+      logical, intent(in) :: with_heat                       !! whether heat is solved
+      type(error_type), allocatable, intent(out) :: error    !! see above
+
+      call self%mechanical%reduce(model%solver, error)
+      if (allocated(error)) return
+      call set_contact(self)
+      if (.not. with_heat) return
+      call self%thermal%reduce(model%solver, error)
+      if (allocated(error)) then
+         error%message = error%message//' (heat: no temperature holds it)'
+         return
+      end if
+      associate (map => self%thermal%map)
          self%jump_place = map%tail_index(map%relative(1, :))
       end associate
       call form_jump_load(self)
    end subroutine reduce
+
+   !> Assembles the matrices of the bodies alone, once.
+   subroutine assemble(self, model, with_heat)
+      class(interface_operators_type), intent(inout) :: self !! prepared
+      type(model_type), intent(in) :: model                  !! the model
+      logical, intent(in) :: with_heat                       !! whether any step solves heat
+
+      self%mechanical%matrix = assemble_stiffness(model%mesh, model%sections, model%materials)
+      self%thermal_load = assemble_thermal_load(model%mesh, model%sections, model%materials)
+      if (with_heat) then
+         self%thermal%matrix = assemble_conduction(model%mesh, model%sections, model%materials)
+      end if
+   end subroutine assemble
 
    !> A pair that is held along one axis on both nodes, as on an axis of symmetry, moves along the
    !> other one. Its normal, which a curved side gives only nearly so, is then taken along the axes.

@@ -15,7 +15,7 @@ sys.path.insert(0, str(POST))
 
 from synthetic import FRICTION, edge_of_contact, edge_of_stick, write_result  # noqa: E402
 
-from thercon_post import fields, profiles, style, zones  # noqa: E402
+from thercon_post import fields, mesh, profiles, style, zones  # noqa: E402
 from thercon_post.cells import Cells  # noqa: E402
 from thercon_post.cli import main, parser, spread  # noqa: E402
 from thercon_post.fine_mesh import refine  # noqa: E402
@@ -45,6 +45,26 @@ def draw(tmp_path, capsys):
             assert path.parent == tmp_path / "out"
             assert path.stat().st_size > 0
         return [path.name for path in written]
+
+    return call
+
+
+@pytest.fixture
+def kept(draw, monkeypatch):
+    """Return a function that calls plot and gives the figures drawn, laid out as on paper."""
+
+    def call(*arguments):
+        figures, write = [], style.write
+
+        def keep(figure, *rest):
+            figure.draw_without_rendering()
+            figures.append(figure)
+            return write(figure, *rest)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(style, "write", keep)
+            draw(*arguments)
+        return figures
 
     return call
 
@@ -99,6 +119,14 @@ def test_mesh_is_drawn_with_the_coordinates_of_the_file(draw, result, tmp_path):
     np.testing.assert_array_equal(numbers(drawn["y"]), points[connectivity, 1])
 
 
+def test_the_legend_of_a_mesh_without_contact_leaves_the_axis_label_free(kept, tmp_path):
+    path = tmp_path / "alone.vtkhdf"
+    write_result(path, contacts=())
+    (figure,) = kept("mesh", path)
+    label = figure.axes[0].xaxis.label.get_window_extent()
+    assert figure.legends[0].get_window_extent().y1 < label.y0
+
+
 @pytest.mark.parametrize("loads", [[540], [180, 360, 540]])
 def test_profiles_at_chosen_loads_hold_the_values_of_the_file(draw, result, tmp_path, loads):
     name = "-".join(["case.profiles", *map(str, loads)])
@@ -150,12 +178,47 @@ def test_zone_curves_along_s_are_those_of_the_file_and_keep_nan(draw, tmp_path):
     np.testing.assert_array_equal(numbers(drawn["edge_stick"]), stick)
 
 
-def test_zones_with_several_edges_are_drawn(draw, result, tmp_path):
+@pytest.mark.parametrize(("last", "line"), [(6, "None"), (9, "--")])
+def test_the_legend_of_further_edges_has_a_line_where_one_is_drawn(kept, result, last, line):
     with h5py.File(result, "r+") as file:
         edges = file["contact/CYLINDER/edges_stick"]
-        edges[5:9, 1] = edges[5:9, 0]
-        edges[5:9, 0] *= 0.5
-    draw("zones", result)
+        edges[5:last, 1] = 0.5 * edges[5:last, 0]
+    (figure,) = kept("zones", result)
+    entries = zip(figure.legends[0].get_texts(), figure.legends[0].legend_handles)
+    found = {text.get_text(): handle.get_linestyle() for text, handle in entries}
+    assert found["further edge of stick"] == line
+    assert "further edge of contact" not in found
+
+
+def test_names_of_zones_stand_apart_inside_the_axes_where_there_are_results(kept, tmp_path):
+    path = tmp_path / "late.vtkhdf"
+    write_result(path, loads=(300.0, 450.0, 600.0, 750.0, 900.0))
+    with h5py.File(path, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        status = contact["status"][()]
+        first = np.argmax(status == 0, axis=1)
+        status[:, :] = np.where(np.arange(status.shape[1]) < first[:, None] - 1, 2, 0)
+        status[np.arange(5), first - 1] = 1  # one pair slips: too narrow for its name
+        contact["status"][...] = status
+        contact["edge_stick"][...] = 0.9 * contact["edge_contact"][()]
+    (figure,) = kept("zones", path)
+    (axes,) = figure.axes
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert [text.get_text()[-4:] for text in axes.texts].count("slip") == 1
+    inside = axes.get_window_extent()
+    start = axes.transData.transform((300.0, 0.0))[0]
+    for number, box in enumerate(boxes):
+        assert start < box.x0 and box.x1 < inside.x1
+        assert inside.y0 < box.y0 and box.y1 < inside.y1
+        assert not any(box.overlaps(other) for other in boxes[:number])
+
+
+def test_a_digitised_figure_has_a_legend_entry_for_each_of_its_curves(kept, result, tmp_path):
+    figure = tmp_path / "fig3.csv"
+    figure.write_text("load,edge_contact,edge_stick\n100,2.5,1\n900,7.5,4\n")
+    (drawn,) = kept("zones", result, "--with", figure)
+    texts = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert texts[-2:] == ["fig3: edge of contact", "fig3: edge of stick"]
 
 
 def test_zones_of_a_load_that_turns_are_drawn_over_time(result):
@@ -184,6 +247,28 @@ def test_fields_are_those_of_the_file_at_the_load(draw, result, tmp_path):
             np.testing.assert_array_equal(numbers(drawn[quantity]), values)
         moved = file["VTKHDF/Points"][:, 1] + 2.0 * data["displacement"][rows, 1]
         np.testing.assert_allclose(numbers(drawn["y_drawn"]), moved, rtol=1e-14, atol=1e-14)
+
+
+def test_values_that_differ_by_rounding_have_one_colour():
+    values = -10.0 + 1e-14 * np.array([-3.0, 0.0, 2.0])
+    levels = fields.limits(values, "yy", 10.0)
+    assert levels[0] < -10.0 < levels[-1]
+    assert np.ptp(fields.settle(values, levels, 10.0)) == 0.0
+    noise = 1e-15 * np.array([-1.0, 0.5, 1.0])
+    levels = fields.limits(noise, "xx", 10.0)
+    assert np.ptp(levels) > 0.1 and np.ptp(fields.settle(noise, levels, 10.0)) == 0.0
+    # What differs by more stays as it is.
+    values = np.array([0.0, 4.0, 4.0 + 1e-6, 10.0])
+    levels = fields.limits(values, "von_mises", 10.0)
+    np.testing.assert_array_equal(fields.settle(values, levels, 10.0), values)
+
+
+def test_the_window_of_the_contact_follows_the_deformed_faces(result):
+    with Result(result) as opened:
+        cells, contacts = opened.cells, opened.contacts()
+    there = mesh.contact_window(contacts, cells, cells.points)
+    moved = mesh.contact_window(contacts, cells, cells.points + [3.0, -7.0])
+    np.testing.assert_allclose(moved - there, [[3.0, -7.0], [3.0, -7.0]], rtol=1e-12)
 
 
 def test_fields_of_chosen_quantities_only(draw, result, tmp_path):
@@ -215,6 +300,18 @@ def test_convergence_holds_every_iteration_and_marks_what_failed(draw, tmp_path)
     assert draw("convergence", picard, good) == three("picard.convergence-good")
     both = table(tmp_path, "picard.convergence-good.csv")
     assert both["result"].count("good") == 12 and "failed" in both["outcome"]
+
+
+def test_convergence_has_ticks_at_increments_and_room_above_g(kept, tmp_path):
+    for loads, ticks in (((60.0,), [1]), (np.arange(1.0, 46.0), [10, 20, 30, 40])):
+        path = tmp_path / "many.vtkhdf"
+        write_result(path, loads=tuple(loads))
+        (figure,) = kept("convergence", path)
+        axes = figure.axes[-1]
+        low, high = axes.get_xlim()
+        assert [tick for tick in axes.get_xticks() if low <= tick <= high] == ticks
+        frame, top = axes.transAxes.transform((0, 1))[1], axes.transData.transform((1, 1.0))[1]
+        assert frame - top > 0.05 * axes.get_window_extent().height
 
 
 def test_convergence_without_iterations_says_so(fail, result):
@@ -275,11 +372,14 @@ def test_a_digitised_figure_is_laid_over(draw, result, tmp_path):
     figure = tmp_path / "fig2.csv"
     figure.write_text("# from the printed figure\nx,pressure,heat_flux\n0,70,\n3,60,\n1,,0.9\n")
     draw("profiles", result, "--load", 540, "--with", figure)
-    svg = (tmp_path / "out" / "case.profiles-540.svg").read_text()
+    svg = (tmp_path / "out" / "case.profiles-540-with-fig2.svg").read_text()
     draw("profiles", result, "--load", 540)
     assert svg != (tmp_path / "out" / "case.profiles-540.svg").read_text()
     figure.write_text("load,edge_contact\n100,2.5\n900,7.5\n")
-    draw("zones", result, "--with", figure)
+    assert draw("zones", result, "--with", figure) == [
+        *three("case.zones-with-fig2"),
+        "case.zones-with-fig2-pairs.csv",
+    ]
 
 
 def test_tables_written_here_can_be_laid_over(draw, result, tmp_path):
