@@ -19,7 +19,8 @@ def draw(result, options):
     model = bounds_of(cells.points)
     if contacts:
         figure, (whole, close) = two_panels(model)
-        panels = [(whole, model, False), (close, contact_window(contacts, cells, cells.points), True)]
+        window = contact_window(contacts, cells, cells.points)
+        panels = [(whole, model, False), (close, window, True)]
     else:
         size = (style.SINGLE_COLUMN, style.SINGLE_COLUMN)
         figure, whole = plt.subplots(layout="constrained", figsize=size)

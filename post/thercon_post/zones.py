@@ -185,9 +185,10 @@ class Picture:
         row = np.argmin(np.abs(loads[:, None] - self.abscissa[None, :]), axis=1)
         pair = np.argmin(np.abs(places[:, None] - self.coordinate[None, :]), axis=1)
         states = self.status[np.ix_(row, pair)].astype(int)
-        if len(self.abscissa) > 1:  # the names of a single increment stand beside its marks
-            states[is_outside(loads, self.abscissa)] = NO_STATE
         states[:, is_outside(places, self.coordinate)] = NO_STATE
+        if len(self.abscissa) == 1:  # its names stand beside its marks
+            return states
+        states[is_outside(loads, self.abscissa)] = NO_STATE
         order, near = np.argsort(self.abscissa), np.ptp(places) / len(places)
         for key in CURVES:
             edge = np.interp(loads, self.abscissa[order], self.edges(key)[order])

@@ -173,9 +173,8 @@ contains
 
       if (.not. has_field(data, 1)) call context%note('first increment not given: 1')
       if (.not. has_field(data, 2)) call context%note('period not given: 1')
-      if (.not. has_field(data, 3)) call context%note('smallest increment not given: '// &
-         to_text(smallest_part)//' of the period')
-      if (.not. has_field(data, 4)) call context%note('largest increment not given: the first')
+      if (has_field(data, 3) .or. has_field(data, 4)) call context%note('smallest and largest '// &
+         'increment not used: increments are fixed, cutting back is not built yet')
    end subroutine note_increments
 
    !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0

@@ -25,6 +25,7 @@ module listing
       logical :: is_open = .false.                             !! whether the file is open
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       type(string_type), allocatable :: warnings(:)            !! warnings of the run
+      character(:), allocatable :: failure                     !! why the run ended early
       integer :: step = 0                                      !! step of the last increment
       integer :: increment_in_step = 0                         !! its number in the step
    contains
@@ -107,7 +108,8 @@ contains
       type(iteration_record_type), intent(in) :: iterations(:)  !! passes of that increment
       integer, intent(in) :: accepted                           !! increments that were accepted
 
-      call print_title(self%unit, 'NOT CONVERGED')
+      self%failure = reason
+      call print_title(self%unit, 'ENDED EARLY')
       call print_wrapped(self%unit, '   ', reason)
       if (accepted > 0) then
          write (self%unit, '(3x, a, i0, a)') 'The results hold the ', accepted, &
@@ -137,6 +139,10 @@ contains
          call self%diagrams(i)%print(self%unit, pairs(i))
       end do
       call print_warnings(self%unit, model%warnings, self%warnings)
+      if (allocated(self%failure)) then
+         call print_title(self%unit, 'ENDED EARLY')
+         call print_wrapped(self%unit, '   ', self%failure)
+      end if
       close (self%unit, iostat=status)
       if (status /= 0) call set_error(error, status_internal, 'cannot finish the listing')
       self%is_open = .false.

@@ -135,7 +135,7 @@ contains
       case (status_no_convergence)
          string = 'not converged'
       case (status_internal)
-         string = 'internal error'
+         string = 'internal/I-O error'
       case (status_verify)
          string = 'check failed'
       case (status_interrupted)

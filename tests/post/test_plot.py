@@ -57,9 +57,10 @@ def kept(draw, monkeypatch):
         figures, write = [], style.write
 
         def keep(figure, *rest):
-            figure.draw_without_rendering()
             figures.append(figure)
-            return write(figure, *rest)
+            written = write(figure, *rest)
+            figure.draw_without_rendering()  # places in dots of the figure, not of the file
+            return written
 
         with monkeypatch.context() as patch:
             patch.setattr(style, "write", keep)

@@ -245,4 +245,4 @@ def test_a_run_without_an_increment_leaves_the_older_result(results, tmp_path):
     assert increments_in(tmp_path / "cylinder.sta") == list(range(1, INCREMENTS + 1))
     assert increments_in(tmp_path / "cylinder.cvg")
     assert set(increments_in(tmp_path / "cylinder.cvg")) == {1}
-    assert "NOT CONVERGED" in (tmp_path / "cylinder.lst").read_text()
+    assert "ENDED EARLY" in (tmp_path / "cylinder.lst").read_text()
