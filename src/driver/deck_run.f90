@@ -150,8 +150,9 @@ contains
             call output%fail(error%message, passes)
          end if
          call output%finish(model, pairs, output_error)
-         if (allocated(output_error) .and. .not. allocated(error)) &
+         if (allocated(output_error) .and. .not. allocated(error)) then
             call move_alloc(output_error, error)
+         end if
       end associate
    end subroutine solve_deck
 

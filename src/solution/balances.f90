@@ -50,7 +50,8 @@ contains
    end function force_residual
 
    !> Largest imbalance, relative: of any single unsupported row, and per body and direction of the
-   !> supports' reactions against all that is applied to the body, by loads and through its contacts.
+   !> supports' reactions against all that is applied to the body, by loads and through its
+   !> contacts.
    pure function imbalance(internal, residual, supported, node_body, scale) result(relative)
       real(dp), intent(in) :: internal(:)      !! (components*nodes) of the bodies alone, K T or K u
       real(dp), intent(in) :: residual(:)      !! (components*nodes) as from the functions above

@@ -209,8 +209,8 @@ contains
          self%loads%temperature%active, heat, error)
    end subroutine enter_step
 
-   !> The end of the next increment: the next multiple of the first increment, reckoned and not added
-   !> up, or without DIRECT an earlier instant on which the step must land.
+   !> The end of the next increment: the next multiple of the first increment, reckoned and not
+   !> added up, or without DIRECT an earlier instant on which the step must land.
    pure function next_instant(self, model, step) result(clock)
       class(simulation_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -236,8 +236,9 @@ contains
             end associate
          end do
       end if
-      if (clock%step_time > step%period - remainder*step%first_increment) &
+      if (clock%step_time > step%period - remainder*step%first_increment) then
          clock%step_time = step%period
+      end if
       clock%period = step%period
       clock%total_time = self%step_start + clock%step_time
       clock%ramped = step%ramped

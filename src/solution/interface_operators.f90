@@ -16,7 +16,8 @@ module interface_operators
    private
    public :: interface_operators_type, pair_row_type
 
-   real(dp), parameter :: nearly_aligned = 0.99_dp !! cosine of a normal that counts as along an axis
+   real(dp), parameter :: nearly_aligned = 0.99_dp !! cosine of a normal that counts as along an
+   !! axis
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
 
    !> The pairs of all interfaces in one row.

@@ -1,0 +1,36 @@
+"""On which instants increments end, and which decks are refused before anything is solved."""
+
+import h5py
+import numpy as np
+from deck_runs import CYLINDER, copy_deck, run, solve
+
+DIRECT = {", STEADY STATE, DIRECT": ", STEADY STATE", "20., 900.": "100., 900."}
+CHECK = '*VERIFY, KIND=ANALYTIC, SOURCE="prescribed"'
+
+
+def test_increments_land_on_the_times_of_verify_cards_and_return_to_their_multiples(tmp_path):
+    deck = tmp_path / "cylinder.inp"
+    copy_deck(CYLINDER, deck, [CHECK, "NT, TOP, 450., 450., 1.E-12"], DIRECT)
+    text = deck.read_text()
+    deck.write_text(text[: text.rindex("*END STEP")] + "*END STEP\n")
+    with h5py.File(solve(deck)) as file:
+        times = file["history/time"][()]
+    np.testing.assert_allclose(times, [100, 200, 300, 400, 450, 500, 600, 700, 800, 900])
+
+
+def test_a_deck_is_never_overwritten_by_its_own_results(tmp_path):
+    for extension in (".lst", ".sta", ".cvg", ".vtkhdf"):
+        deck = copy_deck(CYLINDER, tmp_path / f"deck{extension}")
+        before = deck.read_bytes()
+        process = run("run", deck, "--out", tmp_path)
+        assert process.returncode == 1
+        assert "name of a result file" in process.stderr
+        assert deck.read_bytes() == before
+
+
+def test_a_node_in_two_pairs_is_refused_by_its_number(tmp_path):
+    twice = ["*CONTACT PAIR, INTERACTION=FACES, NAME=AGAIN", "CURVED, FLAT"]
+    process = run("check", copy_deck(CYLINDER, tmp_path / "twice.inp", twice))
+    assert process.returncode == 1
+    assert "node 1 belongs to two pairs" in process.stderr
+    assert "*CONTACT PAIR, INTERACTION=FACES, NAME=AGAIN" in process.stderr
