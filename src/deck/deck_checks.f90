@@ -40,11 +40,10 @@ contains
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
-      integer, parameter :: most_elements = (huge(1) - 1)/entries_per_element
       integer(long) :: elements, largest
 
       elements = size(mesh%element_number)*4_long**context%levels
-      if (elements > most_elements) then
+      if (elements*entries_per_element >= huge(1)) then
          call report%error(context%levels_place, 'the mesh would have '//to_text(elements)// &
             ' elements, more than the '//to_text(most_elements)//' that can be numbered')
          return
