@@ -14,9 +14,8 @@ module deck_checks
    private
    public :: check_model
 
-   !> Entries of the 16 x 16 matrix of an element: all those of a mesh are numbered in default
-   !> integers.
-   integer, parameter :: entries_per_element = 256
+   !> The entries of all elements' 16 x 16 matrices are numbered in default integers.
+   integer, parameter :: most_elements = 2**23 - 1
 
 contains
 
@@ -43,7 +42,7 @@ contains
       integer(long) :: elements, largest
 
       elements = size(mesh%element_number)*4_long**context%levels
-      if (elements*entries_per_element >= huge(1)) then
+      if (elements > most_elements) then
          call report%error(context%levels_place, 'the mesh would have '//to_text(elements)// &
             ' elements, more than the '//to_text(most_elements)//' that can be numbered')
          return
