@@ -18,7 +18,7 @@ module deck_run
    use run_description, only: describe_run
    use run_output, only: run_output_type
    use system_calls, only: make_folder
-   use text, only: to_text
+   use text, only: string_type, to_text
    implicit none
    private
    public :: run_deck, prepare_deck, base_name
@@ -56,6 +56,7 @@ contains
          call describe_run(path, model, simulation, output%run)
          call solve_deck(path, command, cards, model, simulation, output, error)
          if (allocated(error)) call report_failure(path, error, outcome)
+         call report_checks(path, output%failed_checks(model))
          outcome%increments = output%accepted()
          outcome%verify_passed = output%run%verify_passed
          outcome%verify_failed = output%run%verify_failed
@@ -155,6 +156,17 @@ contains
          end if
       end associate
    end subroutine solve_deck
+
+   !> Prints which checks of the deck failed.
+   subroutine report_checks(path, lines)
+      character(*), intent(in) :: path
+      type(string_type), intent(in) :: lines(:)
+      integer :: i
+
+      do i = 1, size(lines)
+         write (error_unit, '(3a)') path, ': error: ', lines(i)%value
+      end do
+   end subroutine report_checks
 
    !> Prints why a run ended early.
    subroutine report_failure(path, error, outcome)

@@ -24,14 +24,12 @@ module listing
       integer :: unit = 0                                      !! Fortran unit
       logical :: is_open = .false.                             !! whether the file is open
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
-      type(string_type), allocatable :: warnings(:)            !! warnings of the run
       character(:), allocatable :: failure                     !! why the run ended early
       integer :: step = 0                                      !! step of the last increment
       integer :: increment_in_step = 0                         !! its number in the step
    contains
       procedure :: open => open_listing
       procedure :: add
-      procedure :: add_warning
       procedure :: add_failure
       procedure :: finish
    end type listing_type
@@ -56,7 +54,7 @@ contains
          return
       end if
       self%is_open = .true.
-      allocate(self%diagrams(size(pairs)), self%warnings(0))
+      allocate(self%diagrams(size(pairs)))
       call print_heading(self%unit, model, run)
       call print_deck(self%unit, cards)
       call print_list(self%unit, 'DEFAULTS AND CARDS NOT NEEDED', model%notes)
@@ -91,15 +89,6 @@ contains
          call print_contact_table(self%unit, pairs(i), record%contacts(i), model%mesh%node_number)
       end do
    end subroutine add
-
-   !> Prints a warning of the run; it is repeated at the end.
-   subroutine add_warning(self, warning)
-      class(listing_type), intent(inout) :: self   !! the listing
-      character(*), intent(in) :: warning          !! one sentence
-
-      call print_wrapped(self%unit, '   warning: ', warning)
-      call append(self%warnings, warning)
-   end subroutine add_warning
 
    !> Names the increment that failed and prints its passes.
    subroutine add_failure(self, reason, iterations, accepted)
@@ -138,7 +127,8 @@ contains
       do i = 1, size(pairs)
          call self%diagrams(i)%print(self%unit, pairs(i))
       end do
-      call print_warnings(self%unit, model%warnings, self%warnings)
+      call print_list(self%unit, 'WARNINGS', model%warnings)
+      if (size(model%warnings) == 0) write (self%unit, '(/, a)') 'No warnings.'
       if (allocated(self%failure)) then
          call print_title(self%unit, 'ENDED EARLY')
          call print_wrapped(self%unit, '   ', self%failure)
@@ -222,26 +212,6 @@ contains
             real(work%flops_full, dp)), ' %)'
       end associate
    end subroutine print_balances
-
-   subroutine print_warnings(unit, of_deck, of_run)
-      integer, intent(in) :: unit
-      type(string_type), allocatable, intent(in) :: of_deck(:)
-      type(string_type), intent(in) :: of_run(:)
-      type(string_type), allocatable :: all_warnings(:)
-      integer :: i
-
-      allocate(all_warnings(0))
-      if (allocated(of_deck)) then
-         do i = 1, size(of_deck)
-            call append(all_warnings, of_deck(i)%value)
-         end do
-      end if
-      do i = 1, size(of_run)
-         call append(all_warnings, of_run(i)%value)
-      end do
-      call print_list(unit, 'WARNINGS', all_warnings)
-      if (size(all_warnings) == 0) write (unit, '(/, a)') 'No warnings.'
-   end subroutine print_warnings
 
    subroutine print_times(unit, run)
       integer, intent(in) :: unit

@@ -2,7 +2,7 @@
 module listing_tables
    use contact_pairs, only: contact_pairs_type
    use kinds, only: dp
-   use model, only: model_type, verify_type
+   use model, only: verify_type
    use records, only: contact_record_type, iteration_record_type
    use run_summaries, only: or_blank
    use text, only: to_text

@@ -11,7 +11,7 @@ module run_output
    use results, only: results_type
    use run_summaries, only: run_summary_type
    use clock, only: wall_seconds
-   use text, only: string_type
+   use text, only: append, string_type, to_text
    use verification, only: verifier_type
    implicit none
    private
@@ -30,10 +30,10 @@ module run_output
    contains
       procedure :: start
       procedure :: accept
-      procedure :: warn
       procedure :: fail
       procedure :: finish
       procedure :: accepted
+      procedure :: failed_checks
    end type run_output_type
 
 contains
@@ -83,14 +83,6 @@ contains
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine accept
 
-   !> Puts a warning of the run into the listing.
-   subroutine warn(self, warning)
-      class(run_output_type), intent(inout) :: self   !! the output
-      character(*), intent(in) :: warning             !! one sentence
-
-      call self%listing%add_warning(warning)
-   end subroutine warn
-
    !> Takes the increment at which the run ended without convergence.
    subroutine fail(self, reason, iterations)
       class(run_output_type), intent(inout) :: self             !! the output
@@ -121,6 +113,35 @@ contains
       if (allocated(listing_error) .and. .not. allocated(error)) error = listing_error
       call self%progress%clear()
    end subroutine finish
+
+   !> One line for each *VERIFY card that failed.
+   function failed_checks(self, model) result(lines)
+      class(run_output_type), intent(in) :: self        !! the output, finished
+      type(model_type), intent(in) :: model             !! the model
+      type(string_type), allocatable :: lines(:)        !! what was expected and what was found
+      integer :: i
+
+      allocate(lines(0))
+      do i = 1, size(model%verifications)
+         associate (check => model%verifications(i), outcome => self%verifier%outcomes(i))
+            if (outcome%passed) cycle
+            call append(lines, '*VERIFY on card '//to_text(check%line)//' failed: '// &
+               trim(check%quantity//' '//check%where)//', expected '//to_text(check%value)// &
+               merge_text(outcome%reason, ', found '//to_text(outcome%found)))
+         end associate
+      end do
+   end function failed_checks
+
+   !> The reason why there is no value, or else the value.
+   pure function merge_text(reason, value) result(string)
+      character(:), allocatable, intent(in) :: reason
+      character(*), intent(in) :: value
+      character(:), allocatable :: string
+
+      string = value
+      if (.not. allocated(reason)) return
+      if (len(reason) > 0) string = ', but '//reason
+   end function merge_text
 
    !> Number of increments that were accepted.
    pure function accepted(self) result(number)

@@ -1,25 +1,21 @@
 !> Load stepping: one call of advance solves one increment.
 module increments
-   use contact_operator, only: contact_operator_pass, increment_data_type, &
-      law_conductance, residual_floor
-   use contact_system, only: closing_law_type, contact_state_type
    use clock, only: wall_seconds
-   use closing_instant, only: solve_increment
+   use contact_operator, only: law_conductance
+   use contact_system, only: contact_state_type
    use errors, only: error_type, set_error, status_internal, status_no_convergence
    use field_recovery, only: make_points, point_map_type
-   use fixed_point, only: accelerator_type, fixed_point_residual, make_accelerator, &
-      predicted_conductance
    use increment_records, only: make_record
+   use increment_solution, only: recover_fields, solve_pairs
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use load_courses, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
-   use records, only: increment_record_type, iteration_record_type, status_open
+   use records, only: increment_record_type, status_open
    use solution_state, only: solution_state_type
    use steps, only: analysis_coupled, step_type
    use text, only: to_text
-   use thermal_matrix, only: field_history, scheme_load
    implicit none
    private
    public :: simulation_type, run_seconds_type
@@ -141,13 +137,17 @@ contains
          end if
          next = self%state
          next%increment_size = clock%step_time - self%step_time
-         call solve_state(self, model, step, next, record, error)
+         since = wall_seconds()
+         call solve_pairs(self%operators, self%loads, model, step, self%with_heat, self%state, &
+            next, record, error)
+         self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (allocated(error)) then
             error%message = 'increment '//to_text(record%increment)//' (time '// &
                to_text(record%time)//'): '//error%message
             return
          end if
          since = wall_seconds()
+         call recover_fields(self%operators, self%loads, model, self%with_heat, next)
          call make_record(self%operators, model, self%points, self%loads, self%with_heat, &
             self%state, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
@@ -252,151 +252,6 @@ contains
       first = instant
       if (other > least .and. other < instant) first = other
    end function earlier
-
-   !> Temperatures, displacements and contact state at the end of an increment.
-   subroutine solve_state(self, model, step, next, record, error)
-      class(simulation_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(step_type), intent(in) :: step
-      type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
-      type(error_type), allocatable, intent(out) :: error
-      type(increment_data_type) :: data
-      real(dp) :: since
-
-      since = wall_seconds()
-      data%scheme = step%scheme
-      data%previous = self%state%contact
-      data%omega_old = self%state%omega
-      data%jump_old = self%state%jump
-      data%displacement_scale = maxval(abs(self%state%displacement))
-      next%contact%reference = self%state%contact%tangential
-      self%operators%contact%closing = closing_law_type()
-      call self%operators%contact%forget_factors()
-      if (self%with_heat) call load_heat(self, data, next)
-      call load_mechanics(self, model, data, next)
-      if (self%with_heat .and. size(next%omega) > 0) then
-         call iterate(self, step, data, next, record, error)
-      else
-         call solve_increment(self%operators%contact, data%previous, data%welded_load, &
-            next%contact, error)
-         if (allocated(error)) return
-         next%omega = law_conductance(self%operators, next%contact)
-         next%omega_before = next%omega
-      end if
-      self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
-      if (allocated(error)) return
-      since = wall_seconds()
-      call recover_fields(self, model, next)
-      self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
-   end subroutine solve_state
-
-   !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.
-   subroutine load_heat(self, data, next)
-      class(simulation_type), intent(inout) :: self
-      type(increment_data_type), intent(inout) :: data
-      type(solution_state_type), intent(inout) :: next
-      real(dp), allocatable :: forces(:), zero(:)
-
-      associate (operators => self%operators, given => self%loads%temperature%value)
-         forces = field_history(data%scheme, operators%thermal%matrix, self%state%temperature) + &
-            scheme_load(data%scheme, self%state%heat_load, next%heat_load)
-         call operators%thermal%set_load(forces, given)
-         data%held_jump = given(operators%pairs%slave) - given(operators%pairs%master)
-         where (operators%jump_place > 0) data%held_jump = 0.0_dp
-         allocate (data%diagonal(operators%thermal%map%tail), source=-1.0_dp)
-         allocate (zero(operators%thermal%map%tail), source=0.0_dp)
-         next%temperature = operators%thermal%recover(zero)
-      end associate
-   end subroutine load_heat
-
-   !> Mechanical load of the increment, with the temperatures of load_heat or those that stay.
-   subroutine load_mechanics(self, model, data, next)
-      class(simulation_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(increment_data_type), intent(inout) :: data
-      type(solution_state_type), intent(inout) :: next
-
-      associate (operators => self%operators)
-         next%force_load = self%loads%nodal_forces(model)
-         call operators%mechanical%set_load(next%force_load + operators%thermal_load%multiply( &
-            next%temperature - model%initial_temperature), self%loads%displacement%value)
-         data%welded_load = operators%mechanical%condensed
-      end associate
-   end subroutine load_mechanics
-
-   !> The fixed-point iteration omega = U(omega) of an increment, section 4.
-   subroutine iterate(self, step, data, next, record, error)
-      class(simulation_type), intent(inout) :: self
-      type(step_type), intent(in) :: step
-      type(increment_data_type), intent(inout) :: data
-      type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
-      type(error_type), allocatable, intent(out) :: error
-      class(accelerator_type), allocatable :: accelerator
-      type(iteration_record_type) :: passes(step%fixed_point%max_iterations)
-      real(dp) :: image(size(next%omega)), ratio
-      integer :: status_before(size(next%omega)), i
-
-      ratio = 1.0_dp
-      if (self%increments > 0) ratio = next%increment_size/self%state%increment_size
-      next%omega = predicted_conductance(self%state%omega, self%state%omega_before, ratio)
-      call make_accelerator(step%fixed_point, size(next%omega), accelerator)
-      do i = 1, step%fixed_point%max_iterations
-         status_before = next%contact%status
-         call contact_operator_pass(self%operators, data, next%omega, next%jump, next%contact, &
-            image, record%work, error)
-         if (allocated(error)) exit
-         record%residual_floor = residual_floor(self%operators, data, next%contact, image)
-         passes(i) = iteration_record_type(increment=record%increment, iteration=i, &
-            residual=fixed_point_residual(next%omega, image), g_min=minval(accelerator%g), &
-            g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
-            pairs_changed=count(next%contact%status /= status_before))
-         if (passes(i)%residual <= max(step%fixed_point%tolerance, record%residual_floor)) exit
-         call accelerator%next(i, next%omega, image)
-      end do
-      next%omega_before = self%state%omega
-      record%iterations = passes(:min(i, size(passes)))
-      if (allocated(error)) then
-         record%iterations = passes(:i - 1)
-      else if (i > size(passes)) then
-         call set_error(error, status_no_convergence, 'the conductance does not converge in '// &
-            to_text(size(passes))//' iterations; last residual '// &
-            to_text(passes(size(passes))%residual)//', wanted '// &
-            to_text(max(step%fixed_point%tolerance, record%residual_floor)))
-      end if
-   end subroutine iterate
-
-   !> Fields of the whole bodies, from the solution on the pairs.
-   subroutine recover_fields(self, model, next)
-      class(simulation_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(solution_state_type), intent(inout) :: next
-      real(dp), allocatable :: on_tail(:)
-      integer :: k
-
-      associate (operators => self%operators)
-         if (self%with_heat) then
-            allocate (on_tail(operators%thermal%map%tail))
-            do k = 1, size(next%jump)
-               if (operators%jump_place(k) > 0) on_tail(operators%jump_place(k)) = next%jump(k)
-            end do
-            next%temperature = operators%thermal%recover(on_tail)
-            deallocate (on_tail)
-            call operators%mechanical%set_load(next%force_load + &
-               operators%thermal_load%multiply(next%temperature - model%initial_temperature), &
-               self%loads%displacement%value)
-         end if
-         allocate (on_tail(operators%mechanical%map%tail))
-         on_tail(operators%contact%normal) = operators%pairs%initial_gap - next%contact%gap
-         do k = 1, size(next%contact%status)
-            if (operators%contact%tangent(k) > 0) then
-               on_tail(operators%contact%tangent(k)) = next%contact%tangential(k)
-            end if
-         end do
-         next%displacement = operators%mechanical%recover(on_tail)
-      end associate
-   end subroutine recover_fields
 
    !> Frees the factors.
    subroutine release(self)

@@ -1,0 +1,170 @@
+!> One increment on the pairs: load, fixed-point iteration of section 4, and the fields behind it.
+module increment_solution
+   use closing_instant, only: solve_increment
+   use contact_operator, only: contact_operator_pass, increment_data_type, law_conductance, &
+      residual_floor
+   use contact_system, only: closing_law_type
+   use errors, only: error_type, set_error, status_no_convergence
+   use fixed_point, only: accelerator_type, fixed_point_residual, make_accelerator, &
+      predicted_conductance
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use loads, only: loads_type
+   use model, only: model_type
+   use records, only: increment_record_type, iteration_record_type
+   use solution_state, only: solution_state_type
+   use steps, only: step_type
+   use text, only: to_text
+   use thermal_matrix, only: field_history, scheme_load
+   implicit none
+   private
+   public :: solve_pairs, recover_fields
+
+contains
+
+   !> Jumps, contact state and conductance at the end of an increment, and the temperatures that
+   !> belong to welded contacts.
+   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
+   subroutine solve_pairs(operators, loads, model, step, with_heat, previous, next, record, error)
+      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+      type(loads_type), intent(in) :: loads                      !! loads at the end
+      type(model_type), intent(in) :: model                      !! the model
+      type(step_type), intent(in) :: step                        !! the step
+      logical, intent(in) :: with_heat                           !! whether heat is solved
+      type(solution_state_type), intent(in) :: previous          !! state at the start
+      type(solution_state_type), intent(inout) :: next           !! guess in, solution out
+      type(increment_record_type), intent(inout) :: record       !! receives passes and work
+      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(increment_data_type) :: data
+
+      data%scheme = step%scheme
+      data%previous = previous%contact
+      data%omega_old = previous%omega
+      data%jump_old = previous%jump
+      data%displacement_scale = maxval(abs(previous%displacement))
+      next%contact%reference = previous%contact%tangential
+      operators%contact%closing = closing_law_type()
+      call operators%contact%forget_factors()
+      if (with_heat) call load_heat(operators, loads, previous, data, next)
+      call load_mechanics(operators, loads, model, data, next)
+      if (with_heat .and. size(next%omega) > 0) then
+         call iterate(operators, step, previous, data, next, record, error)
+      else
+         call solve_increment(operators%contact, data%previous, data%welded_load, next%contact, &
+            error)
+         if (allocated(error)) return
+         next%omega = law_conductance(operators, next%contact)
+         next%omega_before = next%omega
+      end if
+   end subroutine solve_pairs
+
+   !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.
+   subroutine load_heat(operators, loads, previous, data, next)
+      type(interface_operators_type), intent(inout) :: operators
+      type(loads_type), intent(in) :: loads
+      type(solution_state_type), intent(in) :: previous
+      type(increment_data_type), intent(inout) :: data
+      type(solution_state_type), intent(inout) :: next
+      real(dp), allocatable :: forces(:), zero(:)
+
+      associate (given => loads%temperature%value)
+         forces = field_history(data%scheme, operators%thermal%matrix, previous%temperature) + &
+            scheme_load(data%scheme, previous%heat_load, next%heat_load)
+         call operators%thermal%set_load(forces, given)
+         data%held_jump = given(operators%pairs%slave) - given(operators%pairs%master)
+         where (operators%jump_place > 0) data%held_jump = 0.0_dp
+         allocate (data%diagonal(operators%thermal%map%tail), source=-1.0_dp)
+         allocate (zero(operators%thermal%map%tail), source=0.0_dp)
+         next%temperature = operators%thermal%recover(zero)
+      end associate
+   end subroutine load_heat
+
+   !> Mechanical load of the increment, with the temperatures of load_heat or those that stay.
+   subroutine load_mechanics(operators, loads, model, data, next)
+      type(interface_operators_type), intent(inout) :: operators
+      type(loads_type), intent(in) :: loads
+      type(model_type), intent(in) :: model
+      type(increment_data_type), intent(inout) :: data
+      type(solution_state_type), intent(inout) :: next
+
+      next%force_load = loads%nodal_forces(model)
+      call operators%mechanical%set_load(next%force_load + operators%thermal_load%multiply( &
+         next%temperature - model%initial_temperature), loads%displacement%value)
+      data%welded_load = operators%mechanical%condensed
+   end subroutine load_mechanics
+
+   !> The fixed-point iteration omega = U(omega) of an increment, section 4.
+   subroutine iterate(operators, step, previous, data, next, record, error)
+      type(interface_operators_type), intent(inout) :: operators
+      type(step_type), intent(in) :: step
+      type(solution_state_type), intent(in) :: previous
+      type(increment_data_type), intent(inout) :: data
+      type(solution_state_type), intent(inout) :: next
+      type(increment_record_type), intent(inout) :: record
+      type(error_type), allocatable, intent(out) :: error
+      class(accelerator_type), allocatable :: accelerator
+      type(iteration_record_type) :: passes(step%fixed_point%max_iterations)
+      real(dp) :: image(size(next%omega)), ratio
+      integer :: status_before(size(next%omega)), i
+
+      ratio = 1.0_dp
+      if (previous%increment_size > 0.0_dp) ratio = next%increment_size/previous%increment_size
+      next%omega = predicted_conductance(previous%omega, previous%omega_before, ratio)
+      call make_accelerator(step%fixed_point, size(next%omega), accelerator)
+      do i = 1, step%fixed_point%max_iterations
+         status_before = next%contact%status
+         call contact_operator_pass(operators, data, next%omega, next%jump, next%contact, &
+            image, record%work, error)
+         if (allocated(error)) exit
+         record%residual_floor = residual_floor(operators, data, next%contact, image)
+         passes(i) = iteration_record_type(increment=record%increment, iteration=i, &
+            residual=fixed_point_residual(next%omega, image), g_min=minval(accelerator%g), &
+            g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
+            pairs_changed=count(next%contact%status /= status_before))
+         if (passes(i)%residual <= max(step%fixed_point%tolerance, record%residual_floor)) exit
+         call accelerator%next(i, next%omega, image)
+      end do
+      next%omega_before = previous%omega
+      record%iterations = passes(:min(i, size(passes)))
+      if (allocated(error)) then
+         record%iterations = passes(:i - 1)
+      else if (i > size(passes)) then
+         call set_error(error, status_no_convergence, 'the conductance does not converge in '// &
+            to_text(size(passes))//' iterations; last residual '// &
+            to_text(passes(size(passes))%residual)//', wanted '// &
+            to_text(max(step%fixed_point%tolerance, record%residual_floor)))
+      end if
+   end subroutine iterate
+
+   !> Fields of the whole bodies, from the solution on the pairs.
+   subroutine recover_fields(operators, loads, model, with_heat, next)
+      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+      type(loads_type), intent(in) :: loads                      !! loads at the end
+      type(model_type), intent(in) :: model                      !! the model
+      logical, intent(in) :: with_heat                           !! whether heat is solved
+      type(solution_state_type), intent(inout) :: next           !! as solve_pairs left it
+      real(dp), allocatable :: on_tail(:)
+      integer :: k
+
+      if (with_heat) then
+         allocate (on_tail(operators%thermal%map%tail))
+         do k = 1, size(next%jump)
+            if (operators%jump_place(k) > 0) on_tail(operators%jump_place(k)) = next%jump(k)
+         end do
+         next%temperature = operators%thermal%recover(on_tail)
+         deallocate (on_tail)
+         call operators%mechanical%set_load(next%force_load + &
+            operators%thermal_load%multiply(next%temperature - model%initial_temperature), &
+            loads%displacement%value)
+      end if
+      allocate (on_tail(operators%mechanical%map%tail))
+      on_tail(operators%contact%normal) = operators%pairs%initial_gap - next%contact%gap
+      do k = 1, size(next%contact%status)
+         if (operators%contact%tangent(k) > 0) then
+            on_tail(operators%contact%tangent(k)) = next%contact%tangential(k)
+         end if
+      end do
+      next%displacement = operators%mechanical%recover(on_tail)
+   end subroutine recover_fields
+
+end module increment_solution
