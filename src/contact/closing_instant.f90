@@ -110,14 +110,9 @@ contains
       type(contact_state_type), intent(in) :: state
       integer, intent(in) :: k
       type(closing_law_type), intent(out) :: law
-      real(dp) :: response(size(held%schur, 1), 2), stiffness(2, 2), compliance(2, 2), overlap
-      integer :: place(2)
+      real(dp) :: stiffness(2, 2), compliance(2, 2), overlap
 
-      place = [held%normal(k), held%tangent(k)]
-      response = -held%schur(:, place)
-      call held%solve_free(response)
-      stiffness = held%schur(place, place) + &
-         matmul(held%schur(place, held%free), response(held%free, :))
+      stiffness = held%stiffness([held%normal(k), held%tangent(k)])
       compliance = reshape([stiffness(2, 2), -stiffness(2, 1), -stiffness(1, 2), &
          stiffness(1, 1)], [2, 2])/ &
          (stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1))

@@ -68,6 +68,7 @@ module contact_system
    contains
       procedure :: solve
       procedure :: solve_free
+      procedure :: stiffness
       procedure :: friction_rows
       procedure :: slip
       procedure :: factor_set
@@ -298,6 +299,20 @@ contains
       call self%lu%solve(rows)
       x(self%free, :) = rows
    end subroutine solve_free
+
+   !> Forces at some places of the tail for unit displacements there, the free ones following; with
+   !> the factors of the last active set. Source: (2.4), statically condensed.
+   pure function stiffness(self, places) result(forces)
+      class(contact_system_type), intent(in) :: self        !! the reduced system
+      integer, intent(in) :: places(:)                      !! (n) places that are not free
+      real(dp) :: forces(size(places), size(places))        !! (n, n) [force/length]
+      real(dp) :: response(size(self%schur, 1), size(places))
+
+      response = -self%schur(:, places)
+      call self%solve_free(response)
+      forces = self%schur(places, places) + &
+         matmul(self%schur(places, self%free), response(self%free, :))
+   end function stiffness
 
    !> One number per pair for its contact condition.
    pure function code(state) result(codes)

@@ -46,6 +46,7 @@ module mumps_solver
 
 contains
 
+   !> As factor_interface of linear_solver says.
    subroutine factor(self, lower, tail, error)
       class(mumps_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
@@ -189,6 +190,7 @@ contains
       end select
    end subroutine check
 
+   !> As condense_interface of linear_solver says.
    subroutine condense(self, rhs, condensed)
       class(mumps_solver_type), intent(inout) :: self
       real(dp), intent(in) :: rhs(:, :)
@@ -202,6 +204,7 @@ contains
       condensed = reshape(self%mumps%redrhs, [self%tail, size(rhs, 2)])
    end subroutine condense
 
+   !> As recover_interface of linear_solver says.
    subroutine recover(self, rhs, on_tail, solution)
       class(mumps_solver_type), intent(inout) :: self
       real(dp), intent(in) :: rhs(:, :)

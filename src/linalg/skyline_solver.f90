@@ -22,6 +22,7 @@ module skyline_solver
 
 contains
 
+   !> As factor_interface of linear_solver says.
    subroutine factor(self, lower, tail, error)
       class(skyline_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
@@ -48,6 +49,7 @@ contains
          'singular matrix: some body is not held by its supports and contacts')
    end subroutine factor
 
+   !> As condense_interface of linear_solver says.
    subroutine condense(self, rhs, condensed)
       class(skyline_solver_type), intent(inout) :: self
       real(dp), intent(in) :: rhs(:, :)
@@ -60,6 +62,7 @@ contains
       condensed = x(self%order - self%tail + 1:, :)
    end subroutine condense
 
+   !> As recover_interface of linear_solver says.
    subroutine recover(self, rhs, on_tail, solution)
       class(skyline_solver_type), intent(inout) :: self
       real(dp), intent(in) :: rhs(:, :)
@@ -75,6 +78,7 @@ contains
       solution = x(self%place, :)
    end subroutine recover
 
+   !> As release_interface of linear_solver says.
    subroutine release(self)
       class(skyline_solver_type), intent(inout) :: self
 

@@ -11,7 +11,7 @@ module listing
    use model, only: model_type
    use records, only: contact_record_type, increment_record_type, iteration_record_type
    use run_summaries, only: or_blank, run_summary_type
-   use text, only: append, string_type, to_text
+   use text, only: string_type, to_text
    use verification, only: outcome_type
    use zone_diagram, only: zone_counts, zone_diagram_type
    implicit none

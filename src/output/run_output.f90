@@ -127,13 +127,13 @@ contains
             if (outcome%passed) cycle
             call append(lines, '*VERIFY on card '//to_text(check%line)//' failed: '// &
                trim(check%quantity//' '//check%where)//', expected '//to_text(check%value)// &
-               merge_text(outcome%reason, ', found '//to_text(outcome%found)))
+               finding(outcome%reason, ', found '//to_text(outcome%found)))
          end associate
       end do
    end function failed_checks
 
-   !> The reason why there is no value, or else the value.
-   pure function merge_text(reason, value) result(string)
+   !> What a check found: a value, or the reason why there is none.
+   pure function finding(reason, value) result(string)
       character(:), allocatable, intent(in) :: reason
       character(*), intent(in) :: value
       character(:), allocatable :: string
@@ -141,7 +141,7 @@ contains
       string = value
       if (.not. allocated(reason)) return
       if (len(reason) > 0) string = ', but '//reason
-   end function merge_text
+   end function finding
 
    !> Number of increments that were accepted.
    pure function accepted(self) result(number)

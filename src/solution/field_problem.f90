@@ -24,6 +24,7 @@ module field_problem
    contains
       procedure :: reduce
       procedure :: set_load
+      procedure :: condense_load
       procedure :: recover
       procedure :: unit_responses
       procedure :: condense_forces
@@ -49,12 +50,12 @@ contains
       call self%solver%factor(self%map%transform(self%matrix), self%map%tail, error)
    end subroutine reduce
 
-   !> Takes the load of an increment and condenses it on the tail.
+   !> Takes the load of an increment.
    subroutine set_load(self, forces, given)
       class(field_problem_type), intent(inout) :: self    !! the problem
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
       real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
-      real(dp) :: zero(self%map%equations), condensed(self%map%tail, 1)
+      real(dp) :: zero(self%map%equations)
 
       zero = 0.0_dp
       self%given = given
@@ -62,9 +63,16 @@ contains
       allocate (self%rhs(self%map%equations, 1))
       self%rhs(:, 1) = self%map%restrict( &
          forces - self%matrix%multiply(self%map%expand(zero, given)))
+   end subroutine set_load
+
+   !> Condenses the load of the increment on the tail.
+   subroutine condense_load(self)
+      class(field_problem_type), intent(inout) :: self    !! the problem, its load set
+      real(dp) :: condensed(self%map%tail, 1)
+
       call self%solver%condense(self%rhs, condensed)
       self%condensed = condensed(:, 1)
-   end subroutine set_load
+   end subroutine condense_load
 
    !> Values of all degrees of freedom under the load of the increment.
    function recover(self, on_tail) result(values)

@@ -61,6 +61,7 @@ contains
       end if
    end subroutine make_accelerator
 
+   !> omega* becomes its image.
    subroutine next_picard(self, iteration, omega, image)
       class(picard_type), intent(inout) :: self
       integer, intent(in) :: iteration

@@ -89,15 +89,12 @@ contains
       real(dp), intent(in) :: gap, force
       integer, intent(in) :: place
       real(dp) :: fraction
-      real(dp) :: response(size(system%schur, 1), 1), stiffness
+      real(dp) :: stiffness(1, 1)
 
       fraction = 0.0_dp
       if (gap <= 0.0_dp .or. force <= 0.0_dp) return
-      response(:, 1) = -system%schur(:, place)
-      call system%solve_free(response)
-      stiffness = system%schur(place, place) + &
-         dot_product(system%schur(place, system%free), response(system%free, 1))
-      fraction = gap/(gap + force/stiffness)
+      stiffness = system%stiffness([place])
+      fraction = gap/(gap + force/stiffness(1, 1))
    end function closing_fraction
 
    !> Contact state of one interface.

@@ -71,6 +71,7 @@ contains
          forces = field_history(data%scheme, operators%thermal%matrix, previous%temperature) + &
             scheme_load(data%scheme, previous%heat_load, next%heat_load)
          call operators%thermal%set_load(forces, given)
+         call operators%thermal%condense_load()
          data%held_jump = given(operators%pairs%slave) - given(operators%pairs%master)
          where (operators%jump_place > 0) data%held_jump = 0.0_dp
          allocate (data%diagonal(operators%thermal%map%tail), source=-1.0_dp)
@@ -90,6 +91,7 @@ contains
       next%force_load = loads%nodal_forces(model)
       call operators%mechanical%set_load(next%force_load + operators%thermal_load%multiply( &
          next%temperature - model%initial_temperature), loads%displacement%value)
+      call operators%mechanical%condense_load()
       data%welded_load = operators%mechanical%condensed
    end subroutine load_mechanics
 
