@@ -115,7 +115,7 @@ contains
             mid = part - 1.5_dp
             do g = 1, 3
                half(part) = half(part) + 0.5_dp*gauss_weight_3(g)* &
-                  norm2(matmul(x(:, first:first + 2), side_slope(mid + 0.5_dp*gauss_point_3(g))))
+                  norm2(matmul(x(:, first:first + 2), side_slope(3, mid + 0.5_dp*gauss_point_3(g))))
             end do
          end do
          s(first + 1) = s(first) + half(1)
@@ -135,8 +135,8 @@ contains
       do first = 1, size(x, 2) - 2, 2
          do g = 1, 3
             weight(first:first + 2) = weight(first:first + 2) + gauss_weight_3(g)* &
-               side_shape(gauss_point_3(g))* &
-               norm2(matmul(x(:, first:first + 2), side_slope(gauss_point_3(g))))
+               side_shape(3, gauss_point_3(g))* &
+               norm2(matmul(x(:, first:first + 2), side_slope(3, gauss_point_3(g))))
          end do
       end do
    end function tributary_lengths
@@ -152,7 +152,7 @@ contains
       tangent = 0.0_dp
       do first = 1, size(x, 2) - 2, 2
          do node = 0, 2
-            along = matmul(x(:, first:first + 2), side_slope(node - 1.0_dp))
+            along = matmul(x(:, first:first + 2), side_slope(3, node - 1.0_dp))
             tangent(:, first + node) = tangent(:, first + node) + along/norm2(along)
          end do
       end do

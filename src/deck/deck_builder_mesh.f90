@@ -3,8 +3,9 @@ module deck_builder_mesh
    use card_parameters, only: need_parameter, parameter_place
    use card_values, only: check_extra, field_place, has_field, need_field, take_field
    use cards, only: cards_type, data_card_type
-   use deck_context, only: deck_context_type, plane_strain
+   use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use element_kinds, only: plane_strain, quad8
    use element_types, only: check_element_type
    use kinds, only: dp
    use mesh, only: mesh_type, nodes_per_element
@@ -125,6 +126,8 @@ contains
       n = data_card_count(cards, 'ELEMENT')
       allocate(mesh%element_number(n), mesh%element_section(n), card(n))
       allocate(mesh%element_nodes(nodes_per_element, n), source=0)
+      allocate(mesh%element_kind(n), source=quad8)
+      allocate(mesh%element_plane(n), source=plane_strain)
       allocate(context%element_place(n))
       allocate(context%element_valid(n), source=.false.)
       mesh%element_section = 0

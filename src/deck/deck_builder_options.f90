@@ -4,8 +4,9 @@ module deck_builder_options
       take_parameter
    use cards, only: cards_type, keyword_card_type
    use controls, only: solver_mumps, solver_skyline
-   use deck_context, only: deck_context_type, plane_strain
+   use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use element_kinds, only: plane_strain
    use model, only: model_type
    use text, only: to_text, to_upper
    implicit none

@@ -12,10 +12,9 @@ module deck_context
    implicit none
    private
    public :: deck_context_type, find_set, set_names, read_target
-   public :: plane_by_element, plane_strain
+   public :: plane_by_element
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
-   integer, parameter :: plane_strain = 1       !! PLANE=STRAIN
 
    !> State of the builder.
    type :: deck_context_type
@@ -26,7 +25,8 @@ module deck_context
       type(place_type), allocatable :: surface_place(:)   !! (surfaces) where the surface stands
       type(place_type), allocatable :: material_place(:)  !! (materials) where the material stands
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step stands
-      integer :: plane = plane_by_element                 !! PLANE=
+      !> PLANE=, a plane of element_kinds
+      integer :: plane = plane_by_element
       integer :: levels = 0                               !! *REFINE, LEVELS=
       type(place_type) :: levels_place                    !! where it stands
       character(:), allocatable :: load_set   !! LOAD=: node set; unallocated when not given

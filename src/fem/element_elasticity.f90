@@ -107,8 +107,8 @@ contains
 
       load = 0.0_dp
       do g = 1, 3
-         along = matmul(coordinates, side_slope(gauss_point_3(g)))
-         psi = side_shape(gauss_point_3(g))
+         along = matmul(coordinates, side_slope(3, gauss_point_3(g)))
+         psi = side_shape(3, gauss_point_3(g))
          do q = 1, 3
             load(:, q) = load(:, q) + gauss_weight_3(g)*thickness*psi(q)*[-along(2), along(1)]
          end do

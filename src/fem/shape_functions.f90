@@ -75,20 +75,30 @@ contains
       gradients(2, :) = (map(1, 1)*slope(2, :) - map(2, 1)*slope(1, :))/jacobian
    end subroutine element_gradients
 
-   !> Shape functions of a three-node side: first corner, midside, second corner.
-   pure function side_shape(xi) result(psi)
-      real(dp), intent(in) :: xi   !! -1 at the first corner, 1 at the second
-      real(dp) :: psi(3)           !! values
+   !> Shape functions of a side: first corner, midside node if there is one, second corner.
+   pure function side_shape(nodes, xi) result(psi)
+      integer, intent(in) :: nodes   !! 2 or 3
+      real(dp), intent(in) :: xi     !! -1 at the first corner, 1 at the second
+      real(dp) :: psi(nodes)         !! values
 
-      psi = [xi*(xi - 1)/2, 1 - xi**2, xi*(xi + 1)/2]
+      if (nodes == 2) then
+         psi = [(1 - xi)/2, (1 + xi)/2]
+      else
+         psi = [xi*(xi - 1)/2, 1 - xi**2, xi*(xi + 1)/2]
+      end if
    end function side_shape
 
    !> Their derivatives by xi.
-   pure function side_slope(xi) result(slope)
-      real(dp), intent(in) :: xi   !! -1 at the first corner, 1 at the second
-      real(dp) :: slope(3)         !! derivatives
+   pure function side_slope(nodes, xi) result(slope)
+      integer, intent(in) :: nodes   !! 2 or 3
+      real(dp), intent(in) :: xi     !! -1 at the first corner, 1 at the second
+      real(dp) :: slope(nodes)       !! derivatives
 
-      slope = [xi - 0.5_dp, -2*xi, xi + 0.5_dp]
+      if (nodes == 2) then
+         slope = [-0.5_dp, 0.5_dp]
+      else
+         slope = [xi - 0.5_dp, -2*xi, xi + 0.5_dp]
+      end if
    end function side_slope
 
 end module shape_functions

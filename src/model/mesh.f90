@@ -1,4 +1,4 @@
-!> The finite-element mesh of a model: nodes, eight-node elements, sets and surfaces.
+!> The finite-element mesh of a model: nodes, elements, sets and surfaces.
 !> Nodes and elements are known inside the program by their index; the deck's numbers are kept for
 !> messages and output.
 module mesh
@@ -31,7 +31,10 @@ module mesh
       integer, allocatable :: node_number(:)          !! (nodes) numbers in the deck
       real(dp), allocatable :: coordinates(:, :)      !! (2, nodes) x and y [length]
       integer, allocatable :: element_number(:)       !! (elements) numbers in the deck
-      integer, allocatable :: element_nodes(:, :)     !! (8, elements) indexes, corners, midsides
+      !> (8, elements) indexes, corners, midsides; zero beyond the nodes that the kind has
+      integer, allocatable :: element_nodes(:, :)
+      integer, allocatable :: element_kind(:)         !! (elements) quad8, ... of element_kinds
+      integer, allocatable :: element_plane(:)        !! (elements) plane_strain, ...
       integer, allocatable :: element_section(:)      !! (elements) index into model%sections
       integer, allocatable :: element_body(:)         !! (elements) 1..body_count: share nodes
       integer, allocatable :: node_body(:)            !! (nodes) body, 0 where no element uses it

@@ -66,6 +66,10 @@ contains
          (first + i, i=division%elements + 1, 4*division%elements)]
       mesh%element_section = [mesh%element_section, &
          (spread(mesh%element_section(i), 1, 3), i=1, division%elements)]
+      mesh%element_kind = [mesh%element_kind, &
+         (spread(mesh%element_kind(i), 1, 3), i=1, division%elements)]
+      mesh%element_plane = [mesh%element_plane, &
+         (spread(mesh%element_plane(i), 1, 3), i=1, division%elements)]
       call refine_elements(division, mesh%element_nodes)
    end subroutine refine_mesh
 

@@ -5,11 +5,41 @@ module steps
    implicit none
    private
    public :: step_type, boundary_type, nodal_load_type, face_load_type
-   public :: analysis_static, analysis_coupled, dof_temperature
+   public :: load_type, load_kind_count
+   public :: load_force, load_pressure, load_traction, load_body_force, load_gravity
+   public :: load_centrifugal, load_nodal_heat, load_face_heat, load_body_heat
+   public :: load_film_coefficient, load_film_sink, load_temperature
+   public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
 
    integer, parameter :: analysis_static = 1    !! *STATIC: mechanics at given temperatures
    integer, parameter :: analysis_coupled = 2   !! *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
+   integer, parameter :: analysis_heat = 3      !! *HEAT TRANSFER, STEADY STATE: gaps stay
    integer, parameter :: dof_temperature = 11   !! degree of freedom 11; 1 and 2 are u_x and u_y
+
+   ! Kinds of loads; behind each its item and component, and the unit of its value.
+   integer, parameter :: load_force = 1             !! node, dof 1 or 2 [force]
+   integer, parameter :: load_pressure = 2          !! element, face; towards the body [stress]
+   integer, parameter :: load_traction = 3          !! element, 2*(face - 1) + direction [stress]
+   integer, parameter :: load_body_force = 4        !! element, direction [force/volume]
+   integer, parameter :: load_gravity = 5           !! element, direction [force/mass]
+   integer, parameter :: load_centrifugal = 6       !! element, 1; speed squared [1/time^2]
+   integer, parameter :: load_nodal_heat = 7        !! node, 1; into the body [power]
+   integer, parameter :: load_face_heat = 8         !! element, face; into it [power/area]
+   integer, parameter :: load_body_heat = 9         !! element, 1 [power/volume]
+   integer, parameter :: load_film_coefficient = 10 !! element, face; K_h
+   integer, parameter :: load_film_sink = 11        !! element, face; T_h [temperature]
+   integer, parameter :: load_temperature = 12      !! node, 1; *TEMPERATURE of a step without heat
+   integer, parameter :: load_kind_count = 12       !! number of kinds
+
+   !> A load on one place, valid from this step on. The loads of a step on one place are added up.
+   type :: load_type
+      integer :: kind = 0           !! one of the load_* constants
+      integer :: item = 0           !! node or element index
+      integer :: component = 1      !! as said at the kind
+      real(dp) :: value = 0.0_dp    !! value at the end of the step, or factor of the amplitude
+      integer :: amplitude = 0      !! index into model%amplitudes, 0 for the step's own course
+      integer :: card = 0           !! running number of the load's data card, over all steps
+   end type load_type
 
    !> A prescribed displacement or temperature of one node, valid from this step on.
    type :: boundary_type
@@ -49,6 +79,10 @@ module steps
       type(boundary_type), allocatable :: boundaries(:)      !! prescribed values
       type(nodal_load_type), allocatable :: nodal_loads(:)   !! forces
       type(face_load_type), allocatable :: face_loads(:)     !! pressures
+      type(load_type), allocatable :: loads(:)               !! loads that the step gives
+      !> Kinds of loads whose former ones end with this step (OP=NEW).
+      logical :: ends_loads(load_kind_count) = .false.
+      logical :: ends_boundaries = .false.   !! *BOUNDARY, OP=NEW: former prescribed values end
       type(fixed_point_type) :: fixed_point                  !! fixed point of this step
       type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step
       integer :: field_frequency = 1                 !! fields at every n-th increment and the last
