@@ -125,7 +125,7 @@ contains
             if (interaction%law%open_kind /= law_none) cycle
             if (interaction%law%closed_kind /= law_none) cycle
             call context%note('surface interaction '//interaction%name// &
-               ' without *GAP LAW: no heat crosses')
+               ' without *GAP LAW and *GAP CONDUCTANCE: no heat crosses')
          end associate
       end do
       if (size(model%contacts) == 0) return

@@ -4,8 +4,8 @@ module deck_builder_steps
       take_parameter
    use card_values, only: check_extra, field_place, has_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use controls, only: fixed_point_type
-   use deck_builder_controls, only: build_fixed_point, check_thermal_scheme
+   use controls, only: fixed_point_type, implicit_scheme, thermal_scheme_type
+   use deck_builder_controls, only: build_fixed_point, build_thermal_scheme
    use deck_builder_loads, only: build_load_card
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -31,12 +31,14 @@ contains
       type(model_type), intent(inout) :: model             !! receives the steps
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(fixed_point_type) :: fixed_point
+      type(thermal_scheme_type) :: scheme
       type(step_type) :: before
       integer :: k, n, analyses, files
 
       n = card_count(cards, 'STEP')
       allocate(model%steps(n), context%step_place(n))
       n = 0
+      scheme = implicit_scheme
       analyses = 0
       files = 0
       context%boundaries_sound = .not. is_misspelt(cards, 'BOUNDARY')
@@ -51,6 +53,7 @@ contains
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
                model%steps(n)%fixed_point = fixed_point
+               model%steps(n)%scheme = scheme
             case ('STATIC', 'COUPLED TEMPERATURE-DISPLACEMENT')
                analyses = analyses + 1
                if (analyses > 1) call report%error(card%place, 'a second analysis in one step')
@@ -62,7 +65,8 @@ contains
                call build_fixed_point(card, report, fixed_point)
                if (n > 0) model%steps(n)%fixed_point = fixed_point
             case ('THERMAL SCHEME')
-               call check_thermal_scheme(card, report)
+               call build_thermal_scheme(cards, card, report, scheme)
+               if (n > 0) model%steps(n)%scheme = scheme
             case ('BOUNDARY', 'CLOAD', 'DLOAD')
                call build_load_card(cards, card, n, model, context, report)
             case ('NODE FILE', 'EL FILE', 'CONTACT FILE')

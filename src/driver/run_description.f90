@@ -1,6 +1,6 @@
 !> What a run models, in words and numbers, once its first step is prepared.
 module run_description
-   use conductance_laws, only: law_gas, law_power
+   use conductance_laws, only: law_none
    use controls, only: solver_mumps
    use increments, only: simulation_type
    use kinds, only: dp
@@ -56,8 +56,8 @@ contains
          call name('friction', '*FRICTION')
       end if
       if (.not. heat) return
-      if (any(model%interactions(model%contacts%interaction)%law%open_kind == law_gas) .or. &
-         any(model%interactions(model%contacts%interaction)%law%closed_kind == law_power)) then
+      if (any(model%interactions(model%contacts%interaction)%law%open_kind /= law_none) .or. &
+         any(model%interactions(model%contacts%interaction)%law%closed_kind /= law_none)) then
          call name('coupling', 'conductance that depends on gap or pressure')
       end if
    contains
