@@ -16,8 +16,11 @@
 !>
 !> The roles are found by an active set: solve, correct every pair that violates its condition,
 !> solve again. A set that comes back is left by correcting only the last offending pair (Murty's
-!> least-index rule), which cannot cycle on the P-matrix of a frictionless problem. Where contact
-!> alone holds a body and the first guess leaves it loose, all pairs are taken for closed.
+!> least-index rule), which cannot cycle on the P-matrix of a frictionless problem.
+!>
+!> Where contact alone holds a body, a set may leave it loose. A first guess that does is given up
+!> for all pairs closed. A correction that does is taken back, and fewer pairs, the worst ones, are
+!> corrected; a body from which not even one pair can be taken is loose.
 module contact_system
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -65,6 +68,7 @@ module contact_system
       real(dp), allocatable :: spring(:)          !! (tail) factor of the row's displacement
       type(lu_type) :: lu                         !! factors on the free places
       integer, allocatable :: factored(:)         !! (m) status*3 + direction of the factors
+      logical :: loose = .false.                  !! the set factored last leaves a body loose
    contains
       procedure :: solve
       procedure :: solve_free
@@ -78,7 +82,8 @@ module contact_system
 contains
 
    !> Contact state under a condensed load, the references of friction being given.
-   !> Error: no active set satisfies all conditions, or the bodies are not held.
+   !> Errors: no active set satisfies all conditions; the bodies are not held, and then loose is set
+   !> and the state is the one that does not hold them.
    subroutine solve(self, load, state, error)
       class(contact_system_type), intent(inout) :: self   !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
@@ -90,35 +95,79 @@ contains
       logical :: one_at_a_time
 
       one_at_a_time = .false.
+      call solve_set(self, load, state, error)
+      if (allocated(error) .and. any(state%status == status_open)) then
+         state%status = merge(status_stick, status_slip, self%tangent > 0)
+         state%direction = 0
+         call solve_set(self, load, state, error)
+      end if
       do set = 1, most_sets
+         if (allocated(error)) return
          visited(:, set) = code(state)
          do k = 1, set - 1
             one_at_a_time = one_at_a_time .or. all(visited(:, k) == visited(:, set))
          end do
-         call solve_set(self, load, state, error)
-         if (allocated(error) .and. set == 1 .and. any(state%status == status_open)) then
-            state%status = merge(status_stick, status_slip, self%tangent > 0)
-            state%direction = 0
-            call solve_set(self, load, state, error)
-         end if
-         if (allocated(error)) return
-         call judge(self, state, next, excess)
+         call judge(self, load, state, next, excess)
          if (all(excess <= 0.0_dp)) return
-         if (one_at_a_time) then
-            k = maxval(pack([(k, k=1, size(excess))], excess > 0.0_dp))
-            state%status(k) = next(1, k)
-            state%direction(k) = next(2, k)
-         else
-            state%status = next(1, :)
-            state%direction = next(2, :)
-         end if
+         call correct(self, load, next, excess, one_at_a_time, state, error)
       end do
+      if (allocated(error)) return
       call set_error(error, status_no_convergence, 'the contact zones do not settle')
    end subroutine solve
 
+   !> Corrects the offending pairs, all of them or one at a time, and solves; as few as it takes to
+   !> leave the bodies held.
+   !> Error: every correction leaves a body loose.
+   subroutine correct(self, load, next, excess, one_at_a_time, state, error)
+      class(contact_system_type), intent(inout) :: self
+      real(dp), intent(in) :: load(:)
+      integer, intent(in) :: next(:, :)
+      real(dp), intent(in) :: excess(:)
+      logical, intent(inout) :: one_at_a_time
+      type(contact_state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_state_type) :: sound
+      logical :: chosen(size(excess)), left(size(excess))
+      integer :: k, n
+
+      sound = state
+      if (.not. one_at_a_time) then
+         n = count(excess > 0.0_dp)
+         do while (n > 1)
+            left = excess > 0.0_dp
+            do k = n + 1, count(excess > 0.0_dp)
+               left(minloc(excess, dim=1, mask=left)) = .false.
+            end do
+            call take(left)
+            if (.not. allocated(error)) return
+            n = n/2
+         end do
+      end if
+      one_at_a_time = one_at_a_time .or. allocated(error)
+      do k = size(excess), 1, -1
+         if (excess(k) <= 0.0_dp) cycle
+         chosen = .false.
+         chosen(k) = .true.
+         call take(chosen)
+         if (.not. allocated(error)) return
+      end do
+   contains
+      subroutine take(pairs)
+         logical, intent(in) :: pairs(:)
+
+         state = sound
+         where (pairs)
+            state%status = next(1, :)
+            state%direction = next(2, :)
+         end where
+         call solve_set(self, load, state, error)
+      end subroutine take
+   end subroutine correct
+
    !> What status each pair should have, and by how much it violates the present one.
-   subroutine judge(self, state, next, excess)
+   subroutine judge(self, load, state, next, excess)
       class(contact_system_type), intent(in) :: self
+      real(dp), intent(in) :: load(:)
       type(contact_state_type), intent(in) :: state
       integer, intent(out) :: next(:, :)
       real(dp), intent(out) :: excess(:)
@@ -127,7 +176,8 @@ contains
 
       gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(self%initial_gap)), &
          maxval(abs(state%tangential))) + tiny(1.0_dp)
-      force_tolerance = 1.0e-12_dp*maxval(abs(state%force)) + tiny(1.0_dp)
+      force_tolerance = max(1.0e-12_dp*maxval(abs(state%force)), &
+         1.0e-13_dp*largest_term(self, load, state)) + tiny(1.0_dp)
       next(1, :) = state%status
       next(2, :) = state%direction
       do k = 1, size(state%status)
@@ -136,6 +186,25 @@ contains
             self%tangent(k) > 0, gap_tolerance, force_tolerance, excess(k))
       end do
    end subroutine judge
+
+   !> Largest sum of the terms of which a contact force is made, S d - c, without their signs: what
+   !> its rounding goes by where the terms cancel, as in a body that contact moves as a whole.
+   pure function largest_term(self, load, state) result(force)
+      class(contact_system_type), intent(in) :: self
+      real(dp), intent(in) :: load(:)
+      type(contact_state_type), intent(in) :: state
+      real(dp) :: force
+      real(dp) :: terms(size(load))
+      integer :: k
+
+      terms = abs(load)
+      do k = 1, size(state%status)
+         terms = terms + abs(self%schur(:, self%normal(k))*(self%initial_gap(k) - state%gap(k)))
+         if (self%tangent(k) == 0) cycle
+         terms = terms + abs(self%schur(:, self%tangent(k))*state%tangential(k))
+      end do
+      force = maxval(terms)
+   end function largest_term
 
    !> Tangential motion of a pair since friction acts on it in this increment.
    pure function slip(self, state, k)
@@ -204,7 +273,6 @@ contains
       type(contact_state_type), intent(in) :: state       !! statuses and directions
       type(error_type), allocatable, intent(out) :: error !! see above
       real(dp), allocatable :: rows(:, :)
-      logical :: singular
       integer :: i
 
       if (allocated(self%factored)) then
@@ -217,8 +285,8 @@ contains
       do i = 1, size(self%free)
          rows(i, i) = rows(i, i) + self%spring(self%free(i))
       end do
-      call self%lu%factor(rows, singular)
-      if (.not. singular) return
+      call self%lu%factor(rows, self%loose)
+      if (.not. self%loose) return
       call self%forget_factors()
       call set_error(error, status_no_convergence, &
          'the bodies are not held by their supports and the pairs that are in contact')

@@ -12,11 +12,14 @@ module deck_run
    use errors, only: error_type, status_deck, status_no_convergence, status_verify
    use increments, only: simulation_type
    use kinds, only: dp
+   use loads, only: loads_type
+   use loose_bodies, only: bodies_held_by_nothing, bodies_without_temperature
    use model, only: model_type
    use progress, only: deck_outcome_type
    use records, only: increment_record_type, iteration_record_type
    use run_description, only: describe_run
    use run_output, only: run_output_type
+   use steps, only: analysis_heat, analysis_static
    use system_calls, only: make_folder
    use text, only: string_type, to_text
    implicit none
@@ -81,12 +84,12 @@ contains
       call read_deck(path, command%width, command%settings, cards, report)
       call build_model(cards, model, report)
       if (.not. report%has_errors()) call check_pairs(model, report)
-      call report%print(error_unit)
-      if (report%has_errors()) then
-         status = status_deck
-         return
+      if (.not. report%has_errors()) then
+         call simulation%start(model, error)
+         if (.not. allocated(error)) call check_supports(cards%last, model, simulation, report)
       end if
-      call simulation%start(model, error)
+      call report%print(error_unit)
+      if (report%has_errors()) status = status_deck
       if (.not. allocated(error)) return
       status = error%status
       write (error_unit, '(3a)') path, ': error: ', error%message
@@ -116,6 +119,41 @@ contains
          end associate
       end do
    end subroutine check_pairs
+
+   !> Reports the bodies that nothing holds and those whose temperature nothing determines, for the
+   !> first step that leaves one so.
+   subroutine check_supports(last, model, simulation, report)
+      type(place_type), intent(in) :: last
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(deck_report_type), intent(inout) :: report
+      type(loads_type) :: loads
+      type(string_type), allocatable :: messages(:)
+      integer :: i, step
+
+      loads = simulation%loads
+      do step = 1, size(model%steps)
+         if (step > 1) call loads%begin_step(model%steps(step))
+         associate (analysis => model%steps(step)%analysis, pairs => simulation%operators%pairs)
+            if (analysis /= analysis_heat) then
+               call bodies_held_by_nothing(model, pairs, loads%displacement%active, messages)
+               call report_all()
+            end if
+            if (analysis /= analysis_static) then
+               call bodies_without_temperature(model, pairs, loads%temperature%active, step, &
+                  messages)
+               call report_all()
+            end if
+         end associate
+         if (report%has_errors()) return
+      end do
+   contains
+      subroutine report_all()
+         do i = 1, size(messages)
+            call report%error(last, 'step '//to_text(step)//': '//messages(i)%value)
+         end do
+      end subroutine report_all
+   end subroutine check_supports
 
    !> All increments, with their output.
    subroutine solve_deck(path, command, cards, model, simulation, output, error)

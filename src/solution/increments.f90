@@ -11,6 +11,7 @@ module increments
    use kinds, only: dp
    use load_courses, only: step_clock_type
    use loads, only: loads_type
+   use loose_bodies, only: bodies_held_by_no_pair
    use model, only: model_type
    use records, only: increment_record_type, status_open
    use solution_state, only: solution_state_type
@@ -142,6 +143,9 @@ contains
             next, record, error)
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (allocated(error)) then
+            if (self%operators%contact%loose) error%message = error%message// &
+               bodies_held_by_no_pair(model, self%operators%pairs, &
+               self%loads%displacement%active, next%contact%status)
             error%message = 'increment '//to_text(record%increment)//' (time '// &
                to_text(record%time)//'): '//error%message
             return
