@@ -3,10 +3,11 @@
 module deck_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use element_kinds, only: quad8
    use kinds, only: dp, long
    use mesh, only: face_nodes, mesh_type
    use model, only: model_type
-   use quadrature, only: square_points
+   use quadrature, only: integration_rule
    use shape_functions, only: element_shape
    use steps, only: analysis_coupled, dof_temperature
    use text, only: to_text
@@ -101,14 +102,14 @@ contains
       real(dp) :: points(2, 9), weights(9), slope(8, 2, 9), map(2, 2)
       integer :: e, g
 
-      call square_points(points, weights)
+      call integration_rule(quad8, points, weights)
       do g = 1, 9
          ! Along xi, and along eta, each shape function is a parabola: its difference over
          ! a distance of 2 is its slope.
-         slope(:, 1, g) = (element_shape(points(:, g) + [1.0_dp, 0.0_dp]) - &
-            element_shape(points(:, g) - [1.0_dp, 0.0_dp]))/2
-         slope(:, 2, g) = (element_shape(points(:, g) + [0.0_dp, 1.0_dp]) - &
-            element_shape(points(:, g) - [0.0_dp, 1.0_dp]))/2
+         slope(:, 1, g) = (element_shape(quad8, points(:, g) + [1.0_dp, 0.0_dp]) - &
+            element_shape(quad8, points(:, g) - [1.0_dp, 0.0_dp]))/2
+         slope(:, 2, g) = (element_shape(quad8, points(:, g) + [0.0_dp, 1.0_dp]) - &
+            element_shape(quad8, points(:, g) - [0.0_dp, 1.0_dp]))/2
       end do
       do e = 1, size(mesh%element_number)
          if (.not. context%element_valid(e)) cycle

@@ -1,7 +1,8 @@
 !> Heat conduction in one eight-node element.
 module element_conduction
+   use element_kinds, only: quad8
    use kinds, only: dp
-   use quadrature, only: square_points
+   use quadrature, only: integration_rule
    use shape_functions, only: element_gradients
    implicit none
    private
@@ -19,10 +20,10 @@ contains
       real(dp) :: points(2, 9), weights(9), b(2, 8), jacobian, factor
       integer :: g, q
 
-      call square_points(points, weights)
+      call integration_rule(quad8, points, weights)
       k = 0.0_dp
       do g = 1, 9
-         call element_gradients(coordinates, points(:, g), b, jacobian)
+         call element_gradients(quad8, coordinates, points(:, g), b, jacobian)
          factor = weights(g)*jacobian*thickness
          do q = 1, 8
             k(:, q) = k(:, q) + factor*(conductivity(1)*b(1, q)*b(1, :) &
@@ -40,7 +41,7 @@ contains
       real(dp) :: flux(2)                         !! q_x, q_y [power/length^2]
       real(dp) :: b(2, 8), jacobian
 
-      call element_gradients(coordinates, point, b, jacobian)
+      call element_gradients(quad8, coordinates, point, b, jacobian)
       flux = -conductivity*matmul(b, temperature)
    end function heat_flux_at
 

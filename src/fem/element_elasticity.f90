@@ -1,13 +1,14 @@
 !> Plane-strain thermoelasticity in one eight-node element, eq. (1.5) for an isotropic body.
 !> Degrees of freedom are ordered u_x, u_y of node 1, u_x, u_y of node 2, ...
 module element_elasticity
+   use element_kinds, only: quad8
    use kinds, only: dp
-   use quadrature, only: gauss_point_3, gauss_weight_3, square_points
-   use shape_functions, only: element_gradients, element_shape, side_shape, side_slope
+   use quadrature, only: integration_rule
+   use shape_functions, only: element_gradients, element_shape
    implicit none
    private
    public :: elastic_matrix, thermal_modulus, element_stiffness, element_thermal_load
-   public :: stress_at, side_pressure_load
+   public :: stress_at
 
 contains
 
@@ -47,10 +48,10 @@ contains
       real(dp) :: points(2, 9), weights(9), gradients(2, 8), b(3, 16), jacobian
       integer :: g
 
-      call square_points(points, weights)
+      call integration_rule(quad8, points, weights)
       k = 0.0_dp
       do g = 1, 9
-         call element_gradients(coordinates, points(:, g), gradients, jacobian)
+         call element_gradients(quad8, coordinates, points(:, g), gradients, jacobian)
          b = strain_matrix(gradients)
          k = k + weights(g)*jacobian*thickness*matmul(transpose(b), matmul(e, b))
       end do
@@ -66,11 +67,11 @@ contains
       real(dp) :: points(2, 9), weights(9), gradients(2, 8), psi(8), jacobian
       integer :: g, q
 
-      call square_points(points, weights)
+      call integration_rule(quad8, points, weights)
       load = 0.0_dp
       do g = 1, 9
-         call element_gradients(coordinates, points(:, g), gradients, jacobian)
-         psi = element_shape(points(:, g))
+         call element_gradients(quad8, coordinates, points(:, g), gradients, jacobian)
+         psi = element_shape(quad8, points(:, g))
          do q = 1, 8
             load(:, q) = load(:, q) + weights(g)*jacobian*thickness*beta*psi(q) &
                *reshape(gradients, [16])
@@ -90,30 +91,12 @@ contains
       real(dp) :: stress(4)                        !! xx, yy, zz, xy [stress]
       real(dp) :: gradients(2, 8), strain(3), jacobian, thermal
 
-      call element_gradients(coordinates, point, gradients, jacobian)
+      call element_gradients(quad8, coordinates, point, gradients, jacobian)
       strain = matmul(strain_matrix(gradients), reshape(displacement, [16]))
-      thermal = beta*dot_product(element_shape(point), temperature)
+      thermal = beta*dot_product(element_shape(quad8, point), temperature)
       stress([1, 2, 4]) = matmul(e, strain) - [thermal, thermal, 0.0_dp]
       stress(3) = e(1, 2)*(strain(1) + strain(2)) - thermal
    end function stress_at
-
-   !> Nodal forces of a unit pressure on a side; the body lies on the left of the direction 1-2-3.
-   pure function side_pressure_load(coordinates, thickness) result(load)
-      real(dp), intent(in) :: coordinates(2, 3)   !! first corner, midside, second corner [length]
-      real(dp), intent(in) :: thickness           !! thickness [length]
-      real(dp) :: load(2, 3)                      !! [length^2]
-      real(dp) :: along(2), psi(3)
-      integer :: g, q
-
-      load = 0.0_dp
-      do g = 1, 3
-         along = matmul(coordinates, side_slope(3, gauss_point_3(g)))
-         psi = side_shape(3, gauss_point_3(g))
-         do q = 1, 3
-            load(:, q) = load(:, q) + gauss_weight_3(g)*thickness*psi(q)*[-along(2), along(1)]
-         end do
-      end do
-   end function side_pressure_load
 
    !> B: (eps_xx, eps_yy, gamma_xy) from the nodal displacements.
    pure function strain_matrix(gradients) result(b)

@@ -4,6 +4,7 @@
 module field_recovery
    use element_conduction, only: heat_flux_at
    use element_elasticity, only: elastic_matrix, stress_at, thermal_modulus
+   use element_kinds, only: quad8
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
@@ -72,8 +73,10 @@ contains
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp) :: stress(4, size(points%node))        !! xx, yy, zz, xy [stress]
       real(dp) :: at_gauss(4, 4), e(3, 3), beta
+      real(dp) :: square(2, 8)
       integer :: element, g
 
+      square = node_position(quad8)
       stress = 0.0_dp
       do element = 1, size(mesh%element_number)
          associate (nodes => mesh%element_nodes(:, element), &
@@ -82,7 +85,7 @@ contains
             beta = thermal_modulus(material%young, material%poisson, material%expansion)
             do g = 1, 4
                at_gauss(:, g) = stress_at(mesh%coordinates(:, nodes), &
-                  gauss_coordinate_2*node_position(:, g), e, beta, displacement(:, nodes), &
+                  gauss_coordinate_2*square(:, g), e, beta, displacement(:, nodes), &
                   temperature(nodes))
             end do
          end associate
@@ -100,15 +103,17 @@ contains
       real(dp), intent(in) :: temperature(:)          !! (nodes) [temperature]
       real(dp) :: flux(2, size(points%node))          !! x, y [power/length^2]
       real(dp) :: at_gauss(2, 4)
+      real(dp) :: square(2, 8)
       integer :: element, g
 
+      square = node_position(quad8)
       flux = 0.0_dp
       do element = 1, size(mesh%element_number)
          associate (nodes => mesh%element_nodes(:, element), &
             material => materials(sections(mesh%element_section(element))%material))
             do g = 1, 4
                at_gauss(:, g) = heat_flux_at(mesh%coordinates(:, nodes), &
-                  gauss_coordinate_2*node_position(:, g), material%conductivity, &
+                  gauss_coordinate_2*square(:, g), material%conductivity, &
                   temperature(nodes))
             end do
          end associate
@@ -123,13 +128,15 @@ contains
       integer, intent(in) :: points(8)
       real(dp), intent(inout) :: values(:, :)    !! (components, points)
       real(dp) :: position(2)
+      real(dp) :: square(2, 8)
       integer :: g, q
 
+      square = node_position(quad8)
       do q = 1, 8
-         position = node_position(:, q)/gauss_coordinate_2
+         position = square(:, q)/gauss_coordinate_2
          do g = 1, 4
             values(:, points(q)) = values(:, points(q)) + at_gauss(:, g)* &
-               (1 + position(1)*node_position(1, g))*(1 + position(2)*node_position(2, g))/4
+               (1 + position(1)*square(1, g))*(1 + position(2)*square(2, g))/4
          end do
       end do
    end subroutine spread_to_nodes
