@@ -76,7 +76,7 @@ module keywords
       'PRESSURE-OVERCLOSURE='), &
       known_keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
       'INTERACTION=/NAME=/~TYPE=/~SMALL SLIDING/!ADJUST=/!TIED'), &
-      known_keyword_type('CLEARANCE', later, in_model, 0, many, ''), &
+      known_keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
       known_keyword_type('TRANSFORM', refused, in_model, 0, many, '')]
 
    type(known_keyword_type), parameter :: control_keywords(9) = [ &

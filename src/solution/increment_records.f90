@@ -1,6 +1,7 @@
 !> The record of an accepted increment, made from its state.
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use axis_limits, only: tractions, with_axis_limit
    use balances, only: contact_violation, force_residual, heat_residual, imbalance
    use contact_system, only: contact_system_type
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
@@ -111,8 +112,10 @@ contains
       associate (pairs => operators%interfaces(i), contact => next%contact)
          record%status = contact%status(first:last)
          record%gap = contact%gap(first:last)
-         record%pressure = contact%force(first:last)/pairs%weight
-         record%shear = contact%shear_force(first:last)/pairs%weight
+         record%pressure = tractions(contact%force(first:last), pairs%weight, &
+            pairs%position(1, :), even=.true.)
+         record%shear = tractions(contact%shear_force(first:last), pairs%weight, &
+            pairs%position(1, :), even=.false.)
          record%slip = contact%tangential(first:last) - next%closing(first:last)
          record%normal_force = sum(contact%force(first:last))
          record%shear_force = sum(contact%shear_force(first:last))
@@ -127,7 +130,8 @@ contains
          end if
          if (.not. with_heat) return
          record%conductance = next%omega(first:last)
-         record%heat_flux = next%omega(first:last)*next%jump(first:last)
+         record%heat_flux = with_axis_limit(next%omega(first:last)*next%jump(first:last), &
+            pairs%weight, pairs%position(1, :), even=.true.)
          record%heat_rate = sum(pairs%weight*record%heat_flux)
       end associate
    end function contact_record
