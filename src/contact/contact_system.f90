@@ -20,7 +20,8 @@
 !>
 !> Where contact alone holds a body, a set may leave it loose. A first guess that does is given up
 !> for all pairs closed. A correction that does is taken back, and fewer pairs, the worst ones, are
-!> corrected; a body from which not even one pair can be taken is loose.
+!> corrected. If even a single pair cannot be taken, the body moves on until another pair stops it: an
+!> open one that closes, or a slipping one whose slip would turn. If none does, the body is loose.
 module contact_system
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -32,6 +33,7 @@ module contact_system
    public :: contact_system_type, contact_state_type, closing_law_type
 
    integer, parameter :: most_sets = 200   !! active sets tried before giving up
+   real(dp), parameter :: least_motion = 1.0e-8_dp !! part of a motion that is more than rounding
 
    !> Contact state of all pairs.
    type :: contact_state_type
@@ -83,7 +85,7 @@ contains
 
    !> Contact state under a condensed load, the references of friction being given.
    !> Errors: no active set satisfies all conditions; the bodies are not held, and then loose is set
-   !> and the state is the one that does not hold them.
+   !> and the status is the one to which all corrections together led.
    subroutine solve(self, load, state, error)
       class(contact_system_type), intent(inout) :: self   !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
@@ -91,26 +93,28 @@ contains
       type(error_type), allocatable, intent(out) :: error !! see above
       integer :: visited(size(state%status), most_sets)
       real(dp) :: excess(size(state%status))
+      integer, allocatable :: loosest(:)
       integer :: next(2, size(state%status)), k, set
       logical :: one_at_a_time
 
       one_at_a_time = .false.
       call solve_set(self, load, state, error)
-      if (allocated(error) .and. any(state%status == status_open)) then
+      if (allocated(error)) then
          state%status = merge(status_stick, status_slip, self%tangent > 0)
          state%direction = 0
          call solve_set(self, load, state, error)
       end if
       do set = 1, most_sets
-         if (allocated(error)) return
+         if (allocated(error)) exit
          visited(:, set) = code(state)
          do k = 1, set - 1
             one_at_a_time = one_at_a_time .or. all(visited(:, k) == visited(:, set))
          end do
          call judge(self, load, state, next, excess)
          if (all(excess <= 0.0_dp)) return
-         call correct(self, load, next, excess, one_at_a_time, state, error)
+         call correct(self, load, next, excess, one_at_a_time, loosest, state, error)
       end do
+      if (allocated(loosest)) state%status = loosest
       if (allocated(error)) return
       call set_error(error, status_no_convergence, 'the contact zones do not settle')
    end subroutine solve
@@ -118,51 +122,123 @@ contains
    !> Corrects the offending pairs, all of them or one at a time, and solves; as few as it takes to
    !> leave the bodies held.
    !> Error: every correction leaves a body loose.
-   subroutine correct(self, load, next, excess, one_at_a_time, state, error)
+   subroutine correct(self, load, next, excess, one_at_a_time, loosest, state, error)
       class(contact_system_type), intent(inout) :: self
       real(dp), intent(in) :: load(:)
       integer, intent(in) :: next(:, :)
       real(dp), intent(in) :: excess(:)
       logical, intent(inout) :: one_at_a_time
+      integer, allocatable, intent(inout) :: loosest(:) !! status that all corrections would give
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: sound
-      logical :: chosen(size(excess)), left(size(excess))
+      logical :: chosen(size(excess))
       integer :: k, n
 
       sound = state
       if (.not. one_at_a_time) then
          n = count(excess > 0.0_dp)
          do while (n > 1)
-            left = excess > 0.0_dp
+            chosen = excess > 0.0_dp
             do k = n + 1, count(excess > 0.0_dp)
-               left(minloc(excess, dim=1, mask=left)) = .false.
+               chosen(minloc(excess, dim=1, mask=chosen)) = .false.
             end do
-            call take(left)
-            if (.not. allocated(error)) return
+            call solve_corrected(self, load, sound, next, chosen, state, error)
+            if (.not. allocated(error)) then
+               if (count(chosen) == count(excess > 0.0_dp) .and. allocated(loosest)) &
+                  deallocate (loosest)
+               return
+            end if
+            if (.not. allocated(loosest)) loosest = state%status
             n = n/2
          end do
       end if
       one_at_a_time = one_at_a_time .or. allocated(error)
       do k = size(excess), 1, -1
          if (excess(k) <= 0.0_dp) cycle
-         chosen = .false.
-         chosen(k) = .true.
-         call take(chosen)
+         call solve_corrected(self, load, sound, next, [(n == k, n=1, size(excess))], state, error)
+         if (allocated(error)) call stop_motion(self, load, k, state, error)
          if (.not. allocated(error)) return
       end do
-   contains
-      subroutine take(pairs)
-         logical, intent(in) :: pairs(:)
-
-         state = sound
-         where (pairs)
-            state%status = next(1, :)
-            state%direction = next(2, :)
-         end where
-         call solve_set(self, load, state, error)
-      end subroutine take
+      if (.not. allocated(loosest)) loosest = merge(next(1, :), sound%status, excess > 0.0_dp)
    end subroutine correct
+
+   !> Solution with some pairs corrected.
+   subroutine solve_corrected(self, load, sound, next, corrected, state, error)
+      class(contact_system_type), intent(inout) :: self
+      real(dp), intent(in) :: load(:)
+      type(contact_state_type), intent(in) :: sound
+      integer, intent(in) :: next(:, :)
+      logical, intent(in) :: corrected(:)
+      type(contact_state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(out) :: error
+
+      state = sound
+      where (corrected)
+         state%status = next(1, :)
+         state%direction = next(2, :)
+      end where
+      call solve_set(self, load, state, error)
+   end subroutine solve_corrected
+
+   !> Lets a body that is loose since a pair was taken from it move on until other pairs hold it.
+   !> Error: none does.
+   subroutine stop_motion(self, load, taken, state, error)
+      class(contact_system_type), intent(inout) :: self
+      real(dp), intent(in) :: load(:)
+      integer, intent(in) :: taken
+      type(contact_state_type), intent(inout) :: state   !! the loose set, values of the one before
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: k, n
+
+      do n = 1, size(state%status)
+         k = stopping_pair(self, state, taken)
+         if (k == 0) return
+         state%status(k) = merge(status_stick, status_slip, self%tangent(k) > 0)
+         state%direction(k) = 0
+         call solve_set(self, load, state, error)
+         if (.not. allocated(error)) return
+      end do
+   end subroutine stop_motion
+
+   !> The pair that first stops the motion on which a body sets out when a pair is taken from it; 0
+   !> where none does. The motion is the null vector of the set that was factored last.
+   pure function stopping_pair(self, state, taken) result(first)
+      class(contact_system_type), intent(in) :: self
+      type(contact_state_type), intent(in) :: state   !! the loose set, values of the one before it
+      integer, intent(in) :: taken                    !! the pair
+      integer :: first
+      real(dp) :: motion(size(self%schur, 1)), sense, way, nearest, distance
+      integer :: k
+
+      first = 0
+      motion = 0.0_dp
+      motion(self%free) = self%lu%null_vector()
+      if (state%status(taken) == status_open) then
+         sense = -motion(self%normal(taken))
+      else if (self%tangent(taken) == 0) then
+         return
+      else
+         sense = -state%direction(taken)*motion(self%tangent(taken))
+      end if
+      if (abs(sense) <= least_motion*maxval(abs(motion))) return
+      motion = sign(1.0_dp, sense)*motion/maxval(abs(motion))
+      nearest = huge(1.0_dp)
+      do k = 1, size(state%status)
+         if (k == taken .or. state%status(k) == status_stick) cycle
+         if (state%status(k) == status_open) then
+            way = motion(self%normal(k))
+            distance = max(state%gap(k), 0.0_dp)
+         else
+            if (self%tangent(k) == 0) cycle
+            way = state%direction(k)*motion(self%tangent(k))
+            distance = abs(self%slip(state, k))
+         end if
+         if (way <= least_motion .or. distance >= nearest*way) cycle
+         nearest = distance/way
+         first = k
+      end do
+   end function stopping_pair
 
    !> What status each pair should have, and by how much it violates the present one.
    subroutine judge(self, load, state, next, excess)
