@@ -85,13 +85,13 @@ def press_fit():
 
 
 def fuel_pellet():
-    """Three pellets, radius 4.1 and height 10, in a tube of radii 4.16 and 4.75."""
+    """Three pellets, radius 4.1 and height 10, in a tube of radii 4.12 and 4.70."""
     cards, radii, height = [], spaced(0.0, 4.1, 6, 0.4), 10.0
     for k in range(3):
         rows = [height * k + v for v in [0.0, 0.7, 2.0, 3.5, 5.0, 6.5, 8.0, 9.3, 10.0]]
         cards += block(f"PELLET{k + 1}", radii, rows, 1000 * k + 1, "CAX8")
     rows = sorted({height * k + v for k in range(3) for v in [0.0, 0.7, 2.0, 3.5, 5.0, 6.5, 8.0, 9.3, 10.0]})
-    wall = spaced(4.16, 4.75, 2)
+    wall = spaced(4.12, 4.70, 2)
     cards += block("TUBE", wall, rows, 4001, "CAX8")
     for k in range(3):
         cards += side_part(f"BORE{k + 1}", wall, rows, 4001, height * k, height * (k + 1))
@@ -105,14 +105,13 @@ def brake_pad():
     disc_ys = spaced(-10.0, 0.0, 4, 0.5)
     cards = block("PAD", across, spaced(0.0, 12.0, 5, 2.0), 1, "CPE8")
     cards += block("DISC", disc_xs, disc_ys, 1001, "CPE8")
-    cards += part("TRACK", disc_xs, disc_ys, 1001, -20.0, 20.0)
-    return cards + part("AHEAD", disc_xs, disc_ys, 1001, -40.0, -20.0)
+    return cards + part("TRACK", disc_xs, disc_ys, 1001, -20.0, 20.0)
 
 
 def cracked_plate():
-    """Half of a plate 80 wide and 80 high, with a crack of half-length 10 across its middle."""
+    """Half of a plate 80 wide and 160 high, with a crack of half-length 10 across its middle."""
     xs = spaced(0.0, 10.0, 8, 0.2) + spaced(10.0, 40.0, 9, 8.0)[1:]
-    half = spaced(0.0, 40.0, 9, 16.0)
+    half = spaced(0.0, 80.0, 11, 30.0)
     ys = [-y for y in reversed(half)] + half[1:]
     return block("PLATE", xs, ys, 1, "CPS8", cut=(0.0, 10.0))
 
