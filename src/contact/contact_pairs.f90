@@ -94,13 +94,13 @@ contains
       never = smallest_gap > 0.0_dp .and. smallest_gap >= initial_gap*(1.0_dp - unmoved)
    end function never_approached
 
-   !> Turns both lines to run from the slave's first pair on: an open one if it starts at the wrong
-   !> end, a ring of the master always, for it runs against the slave.
+   !> Turns both lines to run from the slave's first pair on: an open one if its ends so lie
+   !> nearer, a ring of the master always, for it runs against the slave.
    subroutine align(mesh, slave, master, turned_slave, turned_master)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(inout) :: slave, master
       logical, intent(out) :: turned_slave, turned_master
-      real(dp) :: distance(size(master%nodes))
+      real(dp) :: distance(size(master%nodes)), end_distance(size(master%nodes))
       integer :: n, start
 
       turned_slave = .false.
@@ -114,6 +114,8 @@ contains
          end if
          n = size(master%nodes)
          distance = norm2(x(:, master%nodes) - spread(x(:, slave%nodes(1)), 2, n), dim=1)
+         end_distance = norm2(x(:, master%nodes) - &
+            spread(x(:, slave%nodes(size(slave%nodes))), 2, n), dim=1)
          if (master%closed) then
             start = 1 + (master%side_nodes - 1)*(minloc(distance(::master%side_nodes - 1), dim=1) &
                - 1)
@@ -121,7 +123,7 @@ contains
             master%nodes(2:) = master%nodes(n:2:-1)
             turned_master = .true.
          else
-            turned_master = distance(1) > distance(n)
+            turned_master = distance(1) + end_distance(n) > distance(n) + end_distance(1)
             if (turned_master) master%nodes = master%nodes(n:1:-1)
          end if
       end associate

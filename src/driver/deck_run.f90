@@ -136,13 +136,14 @@ contains
          if (any((slave(:pair - 1) == a .and. master(:pair - 1) == b) .or. &
             (slave(:pair - 1) == b .and. master(:pair - 1) == a))) then
             message = 'nodes '//to_text(numbers(a))//' and '//to_text(numbers(b))// &
-               ' are paired by an earlier *CONTACT PAIR already'
+               ' are paired by an earlier *CONTACT PAIR already; leave one of the two out, or '// &
+               'end its surfaces an element earlier'
          else
             message = 'nodes '//to_text(numbers(a))//' and '//to_text(numbers(b))// &
-               ' are joined by earlier pairs already, in a loop round a corner'
+               ' are joined by earlier pairs already, in a loop round a corner; leave the '// &
+               'corner out: end both surfaces an element earlier'
          end if
       end associate
-      message = message//'; leave the nodes out: end both surfaces an element earlier'
    end function loop_fault
 
    !> Reports the bodies that nothing holds and those whose temperature nothing determines, for the
