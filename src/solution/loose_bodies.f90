@@ -16,8 +16,8 @@ module loose_bodies
 
 contains
 
-   !> Bodies that neither supports nor contact could ever hold: all pairs count as closed, those with
-   !> friction as stuck.
+   !> Bodies that neither supports nor contact could ever hold: all pairs count as closed, those
+   !> with friction as stuck.
    subroutine bodies_held_by_nothing(model, pairs, held, messages)
       type(model_type), intent(in) :: model         !! the model
       type(pair_row_type), intent(in) :: pairs      !! all pairs
@@ -109,8 +109,8 @@ contains
       end do
    end subroutine bodies_without_temperature
 
-   !> Bodies whose temperature the conductances of an instant leave undetermined, as a message; empty
-   !> where there are none.
+   !> Bodies whose temperature the conductances of an instant leave undetermined, as a message;
+   !> empty where there are none.
    function bodies_heated_by_no_pair(model, pairs, held, step, conducts) result(words)
       type(model_type), intent(in) :: model         !! the model
       type(pair_row_type), intent(in) :: pairs      !! all pairs
@@ -189,18 +189,14 @@ contains
       integer, intent(in) :: body
       character(:), allocatable :: name
       character(:), allocatable :: materials
-      logical :: of_body(size(model%mesh%element_body)), seen
-      integer :: e, m
+      integer :: m
 
       associate (mesh => model%mesh)
-         of_body = mesh%element_body == body
          materials = ''
          do m = 1, size(model%materials)
-            seen = .false.
-            do e = 1, size(of_body)
-               if (of_body(e)) seen = seen .or. model%sections(mesh%element_section(e))%material == m
-            end do
-            if (.not. seen .or. .not. allocated(model%materials(m)%name)) cycle
+            if (.not. any(mesh%element_body == body .and. &
+               model%sections(mesh%element_section)%material == m)) cycle
+            if (.not. allocated(model%materials(m)%name)) cycle
             materials = materials//' and '//model%materials(m)%name
          end do
          name = 'body '//to_text(body)//' ('
