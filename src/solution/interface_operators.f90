@@ -46,6 +46,8 @@ module interface_operators
       procedure :: number
       procedure :: assemble
       procedure :: reduce
+      procedure :: reduce_heat
+      procedure :: set_film
       procedure :: release
    end type interface_operators_type
 
@@ -137,7 +139,16 @@ contains
       call self%mechanical%reduce(model%solver, error)
       if (allocated(error)) return
       call set_contact(self)
-      if (.not. with_heat) return
+      if (with_heat) call self%reduce_heat(model, error)
+   end subroutine reduce
+
+   !> Reduces the heat problem to the jumps.
+   !> Errors: bodies whose temperature nothing determines, a failure of the solver.
+   subroutine reduce_heat(self, model, error)
+      class(interface_operators_type), intent(inout) :: self !! numbered
+      type(model_type), intent(in) :: model                  !! the model
+      type(error_type), allocatable, intent(out) :: error    !! see above
+
       call self%thermal%reduce(model%solver, error)
       if (allocated(error)) then
          error%message = error%message//' (heat: no temperature holds it)'
@@ -147,7 +158,32 @@ contains
          self%jump_place = map%tail_index(map%relative(1, :))
       end associate
       call form_jump_load(self)
-   end subroutine reduce
+   end subroutine reduce_heat
+
+   !> Takes the films of an increment; where they differ from those of the factors, the heat problem
+   !> is reduced again.
+   !> Errors: as reduce_heat.
+   subroutine set_film(self, film, model, error)
+      class(interface_operators_type), intent(inout) :: self !! reduced
+      type(sparse_matrix_type), intent(in) :: film !! (nodes, nodes) [power/temperature]
+      type(model_type), intent(in) :: model                  !! the model
+      type(error_type), allocatable, intent(out) :: error    !! see above
+
+      if (same_values(film, self%thermal%added)) return
+      self%thermal%added = film
+      call self%reduce_heat(model, error)
+   end subroutine set_film
+
+   !> Whether two matrices have the same entries.
+   pure logical function same_values(a, b)
+      type(sparse_matrix_type), intent(in) :: a, b
+
+      same_values = allocated(a%value) .eqv. allocated(b%value)
+      if (.not. (same_values .and. allocated(a%value))) return
+      same_values = size(a%value) == size(b%value)
+      if (same_values) same_values = all(a%column == b%column) .and. &
+         all(abs(a%value - b%value) <= 0.0_dp)
+   end function same_values
 
    !> Assembles the matrices of the bodies alone, once.
    subroutine assemble(self, model, with_heat)
