@@ -60,6 +60,7 @@ contains
 
       if (meant == 'ELASTIC') material%has_elasticity = .true.
       if (meant == 'CONDUCTIVITY') material%has_conductivity = .true.
+      if (meant == 'DENSITY') material%has_density = .true.
    end subroutine presume_property
 
    !> Index of a material by its name; 0 for an unknown one.
@@ -91,7 +92,7 @@ contains
          case ('CONDUCTIVITY')
             call build_conductivity(card, data, context, report, material)
          case ('DENSITY')
-            call build_density(data, context, report)
+            call build_density(data, context, report, material)
          case default
             return
          end select
@@ -193,17 +194,19 @@ contains
       end do
    end subroutine build_conductivity
 
-   subroutine build_density(data, context, report)
+   subroutine build_density(data, context, report, material)
       type(data_card_type), intent(in) :: data
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
-      real(dp) :: density
+      type(material_type), intent(inout) :: material
       logical :: valid
 
       valid = .true.
-      call need_field(data, 1, 'density', report, density, valid)
+      material%has_density = .true.
+      call need_field(data, 1, 'density', report, material%density, valid)
       call read_temperature(data, 2, 'density', context, report)
-      call context%note('*DENSITY is read and not needed')
+      if (.not. valid .or. material%density > 0.0_dp) return
+      call report%error(field_place(data, 1), 'density must be positive')
    end subroutine build_density
 
 end module deck_builder_materials

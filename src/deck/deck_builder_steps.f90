@@ -63,7 +63,7 @@ contains
                if (n > 0) model%steps(n)%fixed_point = fixed_point
             case ('THERMAL SCHEME')
                call check_thermal_scheme(card, report)
-            case ('BOUNDARY', 'CLOAD', 'DLOAD')
+            case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'FILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)
             case ('NODE FILE', 'EL FILE', 'CONTACT FILE')
                if (n > 0) call build_file_output(card, files, context, report, model%steps(n))

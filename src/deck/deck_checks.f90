@@ -5,11 +5,12 @@ module deck_checks
    use deck_report, only: deck_report_type
    use element_kinds, only: quad8
    use kinds, only: dp, long
+   use load_checks, only: check_loads
    use mesh, only: face_nodes, mesh_type
    use model, only: model_type
    use quadrature, only: integration_rule
    use shape_functions, only: element_shape
-   use steps, only: analysis_coupled, dof_temperature
+   use steps, only: analysis_coupled
    use text, only: to_text
    implicit none
    private
@@ -31,8 +32,7 @@ contains
       call check_materials(context, model, report)
       call check_jacobians(context, model%mesh, report)
       call check_sides(context, model%mesh, report)
-      call check_forces(context, model%mesh, report)
-      call check_temperatures(context, model, report)
+      call check_loads(context, model, report)
    end subroutine check_model
 
    !> The refined mesh, its matrices and the new numbers of its nodes fit into default integers.
@@ -165,46 +165,6 @@ contains
          end do
       end do
    end subroutine check_sides
-
-   !> A force acts on an element.
-   subroutine check_forces(context, mesh, report)
-      type(deck_context_type), intent(in) :: context
-      type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
-      logical :: used(0:size(mesh%node_number))
-      integer :: i
-
-      used = .false.
-      used([mesh%element_nodes]) = .true.
-      do i = 1, context%forces%count
-         associate (request => context%forces%items(i))
-            if (request%set > 0) then
-               if (all(used(mesh%node_sets(request%set)%members))) cycle
-            else if (used(request%item)) then
-               cycle
-            end if
-            call report%error(request%place, 'a force on a node that no element has')
-         end associate
-      end do
-   end subroutine check_forces
-
-   !> Warns of temperatures that come after the last step that solves heat.
-   subroutine check_temperatures(context, model, report)
-      type(deck_context_type), intent(in) :: context
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      integer :: i
-
-      do i = 1, context%boundaries%count
-         associate (request => context%boundaries%items(i))
-            if (request%component /= dof_temperature) cycle
-            if (any(model%steps(max(1, request%step):)%analysis == analysis_coupled)) cycle
-            call report%warning(request%place, &
-               'a temperature without effect: no step from here '// &
-               'on solves heat')
-         end associate
-      end do
-   end subroutine check_temperatures
 
    !> Whether a side has the corners of the one that was met first with its midside node.
    pure logical function is_same_side(mesh, first, e, f)

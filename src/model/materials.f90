@@ -12,9 +12,11 @@ module materials
       real(dp) :: poisson = 0.0_dp                    !! Poisson's ratio nu [-]
       real(dp) :: expansion = 0.0_dp                  !! linear expansion alpha [1/temperature]
       real(dp) :: conductivity(2) = 0.0_dp            !! K_x, K_y [power/(length temperature)]
+      real(dp) :: density = 0.0_dp                    !! density [mass/volume]
       logical :: has_elasticity = .false.             !! *ELASTIC was given
       logical :: has_expansion = .false.              !! *EXPANSION was given
       logical :: has_conductivity = .false.           !! *CONDUCTIVITY was given
+      logical :: has_density = .false.                !! *DENSITY was given
    end type material_type
 
    !> One *SOLID SECTION.

@@ -7,7 +7,8 @@ module refinement
    use mesh_division, only: child_element, divide, division_type, inner_node, node_count, &
       refined_values, side_node
    use model, only: model_type
-   use steps, only: face_load_type
+   use steps, only: load_body_force, load_body_heat, load_centrifugal, load_face_heat, &
+      load_film_coefficient, load_film_sink, load_gravity, load_pressure, load_traction, load_type
    implicit none
    private
    public :: refine
@@ -29,8 +30,8 @@ contains
          end if
          if (allocated(model%steps)) then
             do s = 1, size(model%steps)
-               if (allocated(model%steps(s)%face_loads)) then
-                  call refine_face_loads(division%elements, model%steps(s)%face_loads)
+               if (allocated(model%steps(s)%loads)) then
+                  call refine_loads(division%elements, model%steps(s)%loads)
                end if
             end do
          end if
@@ -150,20 +151,34 @@ contains
       call move_alloc(halves, faces)
    end subroutine refine_faces
 
-   subroutine refine_face_loads(elements, loads)
+   !> Loads on a side go to the two children at it, those on an element to all four.
+   subroutine refine_loads(elements, loads)
       integer, intent(in) :: elements
-      type(face_load_type), allocatable, intent(inout) :: loads(:)
-      type(face_load_type), allocatable :: halves(:)
-      integer :: i, f
+      type(load_type), allocatable, intent(inout) :: loads(:)
+      type(load_type), allocatable :: refined(:)
+      integer :: i, n, f, children(4), child
 
-      allocate(halves(2*size(loads)))
+      allocate(refined(4*size(loads)))
+      n = 0
       do i = 1, size(loads)
-         f = loads(i)%face
-         halves(2*i - 1:2*i) = loads(i)
-         halves(2*i - 1)%element = child_element(elements, loads(i)%element, f)
-         halves(2*i)%element = child_element(elements, loads(i)%element, mod(f, 4) + 1)
+         children = [(child_element(elements, loads(i)%item, child), child=1, 4)]
+         select case (loads(i)%kind)
+         case (load_pressure, load_traction, load_face_heat, load_film_coefficient, load_film_sink)
+            f = loads(i)%component
+            if (loads(i)%kind == load_traction) f = (f + 1)/2
+            refined(n + 1:n + 2) = loads(i)
+            refined(n + 1:n + 2)%item = children([f, mod(f, 4) + 1])
+            n = n + 2
+         case (load_body_force, load_gravity, load_centrifugal, load_body_heat)
+            refined(n + 1:n + 4) = loads(i)
+            refined(n + 1:n + 4)%item = children
+            n = n + 4
+         case default
+            n = n + 1
+            refined(n) = loads(i)
+         end select
       end do
-      call move_alloc(halves, loads)
-   end subroutine refine_face_loads
+      loads = refined(:n)
+   end subroutine refine_loads
 
 end module refinement
