@@ -13,7 +13,7 @@ module deck_builder_element_loads
    use text, only: append, nearest_known, string_type, to_text, to_upper
    implicit none
    private
-   public :: build_element_load, report_label
+   public :: build_element_load, report_label, need_vector
 
 contains
 
@@ -85,6 +85,23 @@ contains
          nearest_known(label, names))
    end subroutine report_label
 
+   !> Takes three fields in a row; of fields that are missing the first is reported.
+   subroutine need_vector(data, first, what, report, vector, valid)
+      type(data_card_type), intent(in) :: data             !! the card
+      integer, intent(in) :: first                         !! position of the first field
+      character(*), intent(in) :: what                     !! what they are
+      type(deck_report_type), intent(inout) :: report      !! receives the error
+      real(dp), intent(out) :: vector(3)                   !! their values, zero after an error
+      logical, intent(inout) :: valid   !! becomes false after an error; then nothing more is read
+      integer :: i
+
+      vector = 0.0_dp
+      do i = 1, 3
+         if (valid) call need_field(data, first + i - 1, what//' '//'xyz'(i:i), report, vector(i), &
+            valid)
+      end do
+   end subroutine need_vector
+
    !> Every element of the request has the side.
    subroutine check_face(data, request, model, context, report, valid)
       type(data_card_type), intent(in) :: data
@@ -152,9 +169,7 @@ contains
       integer :: i
 
       call need_field(data, 3, 'magnitude', report, magnitude, valid)
-      do i = 1, 3
-         call need_field(data, 3 + i, 'direction', report, direction(i), valid)
-      end do
+      call need_vector(data, 4, 'direction', report, direction, valid)
       call check_extra(data, 6, 'element or set, GRAV, magnitude, direction x, y, z', report)
       if (.not. valid) return
       if (abs(direction(3)) > 0.0_dp) then
@@ -180,15 +195,10 @@ contains
       type(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: valid
       real(dp) :: point(3), direction(3)
-      integer :: i
 
       call need_field(data, 3, 'speed squared', report, request%value, valid)
-      do i = 1, 3
-         call need_field(data, 3 + i, 'point of the axis', report, point(i), valid)
-      end do
-      do i = 1, 3
-         call need_field(data, 6 + i, 'direction of the axis', report, direction(i), valid)
-      end do
+      call need_vector(data, 4, 'point of the axis', report, point, valid)
+      call need_vector(data, 7, 'direction of the axis', report, direction, valid)
       call check_extra(data, 9, &
          'element or set, CENTRIF, speed squared, point x, y, z, direction x, y, z', report)
       if (.not. valid) return

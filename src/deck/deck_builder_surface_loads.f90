@@ -2,7 +2,7 @@
 module deck_builder_surface_loads
    use card_values, only: check_extra, field_place, need_field
    use cards, only: data_card_type
-   use deck_builder_element_loads, only: report_label
+   use deck_builder_element_loads, only: need_vector, report_label
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
@@ -83,9 +83,7 @@ contains
       integer :: i
 
       call need_field(data, 3, 'magnitude', report, magnitude, valid)
-      do i = 1, 3
-         call need_field(data, 3 + i, 'direction', report, direction(i), valid)
-      end do
+      call need_vector(data, 4, 'direction', report, direction, valid)
       call check_extra(data, 6, 'surface, TRVEC, magnitude, direction x, y, z', report)
       if (.not. valid) return
       if (abs(direction(3)) > 0.0_dp) then
