@@ -72,6 +72,7 @@ contains
 
       if (meant == 'ELASTIC') material%has_elasticity = .true.
       if (meant == 'CONDUCTIVITY') material%has_conductivity = .true.
+      if (meant == 'DENSITY') material%has_density = .true.
    end subroutine presume_property
 
    !> Index of a material by its name; 0 for an unknown one.
@@ -317,6 +318,7 @@ contains
       call read_constants(cards, card, names, context, report, constants, valid)
       if (valid) call refuse_not_positive(cards, card, names, constants, [1], report)
       material%density = constants(1)
+      material%has_density = .true.
    end subroutine build_density
 
 end module deck_builder_materials

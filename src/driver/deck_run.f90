@@ -159,7 +159,8 @@ contains
 
       loads = simulation%loads
       do step = 1, size(model%steps)
-         if (step > 1) call loads%begin_step(model%steps(step))
+         if (step > 1) call loads%begin_step(model%steps(step), simulation%state%displacement, &
+            simulation%state%temperature)
          associate (analysis => model%steps(step)%analysis, pairs => simulation%operators%pairs)
             if (analysis /= analysis_heat) then
                call bodies_held_by_nothing(model, pairs, loads%displacement%active, messages)

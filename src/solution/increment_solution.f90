@@ -45,7 +45,11 @@ contains
       next%contact%reference = previous%contact%tangential
       operators%contact%closing = closing_law_type()
       call operators%contact%forget_factors()
-      if (with_heat) call load_heat(operators, loads, previous, data, next)
+      if (with_heat) then
+         call load_heat(operators, loads, previous, data, next)
+      else
+         call loads%set_temperatures(next%temperature)
+      end if
       call load_mechanics(operators, loads, model, data, next)
       if (with_heat .and. size(next%omega) > 0) then
          call iterate(operators, step, previous, data, next, record, error)

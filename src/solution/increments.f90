@@ -222,7 +222,8 @@ contains
       self%increments_of_step = 0
       held = self%loads%displacement%active
       held_temperature = self%loads%temperature%active
-      call self%loads%begin_step(model%steps(self%step))
+      call self%loads%begin_step(model%steps(self%step), self%state%displacement, &
+         self%state%temperature)
       heat = model%steps(self%step)%analysis == analysis_coupled
       if (self%step > 1 .and. (heat .eqv. self%with_heat)) then
          if (all(held .eqv. self%loads%displacement%active) .and. &
