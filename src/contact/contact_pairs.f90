@@ -10,7 +10,9 @@ module contact_pairs
    use text, only: to_text
    implicit none
    private
-   public :: contact_pairs_type, make_pairs
+   public :: contact_pairs_type, make_pairs, never_approached
+
+   real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
 
    !> The pairs of one interface, ordered along the slave from the end with the smaller x (then y).
    type :: contact_pairs_type
@@ -71,6 +73,15 @@ contains
       end if
       call check_opposite(mesh, pairs, error)
    end subroutine make_pairs
+
+   !> Whether a pair neither closed nor came nearer than it was.
+   elemental function never_approached(initial_gap, smallest_gap) result(never)
+      real(dp), intent(in) :: initial_gap    !! h [length]
+      real(dp), intent(in) :: smallest_gap   !! smallest gap of all increments [length]
+      logical :: never                       !! to be reported
+
+      never = smallest_gap > 0.0_dp .and. smallest_gap >= initial_gap*(1.0_dp - unmoved)
+   end function never_approached
 
    !> Turns a line of nodes so that it starts at the end with the smaller x, then y.
    subroutine start_at_smaller_x(mesh, nodes, turned)

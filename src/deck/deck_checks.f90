@@ -8,7 +8,7 @@ module deck_checks
    use model, only: model_type
    use quadrature, only: square_points
    use shape_functions, only: element_shape
-   use steps, only: analysis_coupled, dof_temperature
+   use steps, only: dof_temperature, solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
    private
@@ -77,18 +77,17 @@ contains
       type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
-      logical :: coupled
       integer :: m
 
-      coupled = any(model%steps%analysis == analysis_coupled)
       do m = 1, size(model%materials)
          if (.not. any(model%sections%material == m)) cycle
          associate (material => model%materials(m))
-            if (.not. material%has_elasticity) call report%error(context%material_place(m), &
+            if (any(solves_mechanics(model%steps%analysis)) .and. .not. &
+               material%has_elasticity) call report%error(context%material_place(m), &
                'material '//material%name//' has no *ELASTIC')
-            if (coupled .and. .not. material%has_conductivity) call report%error( &
-               context%material_place(m), 'material '//material%name// &
-               ' has no *CONDUCTIVITY, which *COUPLED TEMPERATURE-DISPLACEMENT needs')
+            if (any(solves_heat(model%steps%analysis)) .and. .not. &
+               material%has_conductivity) call report%error(context%material_place(m), &
+               'material '//material%name//' has no *CONDUCTIVITY, which a step with heat needs')
          end associate
       end do
    end subroutine check_materials
@@ -197,7 +196,7 @@ contains
       do i = 1, context%boundaries%count
          associate (request => context%boundaries%items(i))
             if (request%component /= dof_temperature) cycle
-            if (any(model%steps(max(1, request%step):)%analysis == analysis_coupled)) cycle
+            if (any(solves_heat(model%steps(max(1, request%step):)%analysis))) cycle
             call report%warning(request%place, &
                'a temperature without effect: no step from here '// &
                'on solves heat')
