@@ -1,6 +1,7 @@
 !> One pass of the contact operator U = chi H L of section 2: conductance -> temperature jumps ->
 !> contact state -> conductance, all on the pairs.
 module contact_operator
+   use axis_limits, only: tractions
    use closing_instant, only: solve_increment
    use conductance_laws, only: conductance, conductance_slope
    use contact_system, only: contact_state_type
@@ -109,11 +110,18 @@ contains
       type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
       type(contact_state_type), intent(in) :: state             !! contact state
       real(dp) :: omega(size(state%status))                     !! (m)
-      integer :: k
+      real(dp) :: pressure(size(state%status))
+      integer :: first, i, k, last
 
+      do i = 1, size(operators%interfaces)
+         first = operators%pairs%interface_start(i)
+         last = operators%pairs%interface_start(i + 1) - 1
+         pressure(first:last) = tractions(state%force(first:last), &
+            operators%interfaces(i)%weight, operators%interfaces(i)%position(1, :), even=.true.)
+      end do
       do k = 1, size(omega)
          omega(k) = conductance(operators%pairs%law(k), state%status(k) /= status_open, &
-            state%gap(k), state%force(k)/operators%pairs%weight(k))
+            state%gap(k), pressure(k))
       end do
    end function law_conductance
 
@@ -155,7 +163,7 @@ contains
 
       floor_value = 0.0_dp
       do k = 1, size(omega)
-         if (omega(k) <= 0.0_dp) cycle
+         if (omega(k) <= 0.0_dp .or. operators%pairs%weight(k) <= 0.0_dp) cycle
          associate (weight => operators%pairs%weight(k), place => operators%contact%normal(k))
             change = few*epsilon(1.0_dp)*max(data%displacement_scale, abs(state%gap(k)), &
                abs(operators%pairs%initial_gap(k) - state%gap(k)))

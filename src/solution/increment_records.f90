@@ -1,6 +1,7 @@
 !> The record of an accepted increment, made from its state.
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use axis_limits, only: tractions, with_axis_limit
    use balances, only: contact_violation, force_residual, heat_residual, imbalance, &
       scheme_pair_heat
    use contact_operator, only: kept_contact, thermal_forces
@@ -62,7 +63,7 @@ contains
       end if
       if (solves_heat(step%analysis)) then
          record%fields%heat_flux = recover_heat_flux(model%mesh, model%sections, &
-            model%materials, points, next%temperature)
+            model%materials, model%orientations, points, next%temperature)
          call balance_heat(operators, model, loads, step%scheme, carrying, previous, next, record)
       else
          record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -137,8 +138,10 @@ contains
          record%status = contact%status(first:last)
          record%gap = contact%gap(first:last)
          record%smallest_gap = next%smallest_gap(first:last)
-         record%pressure = contact%force(first:last)/pairs%weight
-         record%shear = contact%shear_force(first:last)/pairs%weight
+         record%pressure = tractions(contact%force(first:last), pairs%weight, &
+            pairs%position(1, :), even=.true.)
+         record%shear = tractions(contact%shear_force(first:last), pairs%weight, &
+            pairs%position(1, :), even=.false.)
          record%slip = contact%tangential(first:last) - next%closing(first:last)
          record%normal_force = sum(contact%force(first:last))
          record%shear_force = sum(contact%shear_force(first:last))
@@ -153,7 +156,8 @@ contains
          end if
          if (.not. with_heat) return
          record%conductance = carrying(first:last)
-         record%heat_flux = carrying(first:last)*next%jump(first:last)
+         record%heat_flux = with_axis_limit(carrying(first:last)*next%jump(first:last), &
+            pairs%weight, pairs%position(1, :), even=.true.)
          record%heat_rate = sum(pairs%weight*record%heat_flux)
       end associate
    end function contact_record
@@ -169,8 +173,8 @@ contains
       real(dp), allocatable :: internal(:), residual(:)
       real(dp) :: length, scale
 
-      next%stress = recover_stress(model%mesh, model%sections, model%materials, points, &
-         reshape(next%displacement, [2, size(next%temperature)]), &
+      next%stress = recover_stress(model%mesh, model%sections, model%materials, &
+         model%orientations, points, reshape(next%displacement, [2, size(next%temperature)]), &
          next%temperature - model%initial_temperature)
       length = max(maxval(abs(next%displacement)), tiny(1.0_dp))
       if (size(operators%pairs%initial_gap) > 0) then

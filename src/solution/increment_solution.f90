@@ -42,6 +42,7 @@ contains
       data%previous = previous%contact
       data%omega_old = previous%omega
       data%jump_old = previous%jump
+      next%omega_start = data%omega_old
       next%keeps_imbalance = .false.
       if (solves_heat(step%analysis)) then
          call load_heat(operators, loads, previous, data, next)
@@ -69,7 +70,6 @@ contains
          next%omega = law_conductance(operators, next%contact)
          next%omega_before = next%omega
       end if
-      next%omega_start = data%omega_old
       next%has_mechanics = .true.
    end subroutine solve_pairs
 

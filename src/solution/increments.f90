@@ -11,12 +11,13 @@ module increments
    use kinds, only: dp, long
    use load_courses, only: step_clock_type
    use loads, only: loads_type
-   use loose_bodies, only: bodies_held_by_no_pair
+   use loose_bodies, only: bodies_heated_by_no_pair, bodies_held_by_no_pair
    use model, only: model_type
    use records, only: increment_record_type, status_open
    use solution_state, only: solution_state_type
    use steps, only: load_temperature, solves_heat, solves_mechanics, step_type
    use text, only: to_text
+   use thermal_matrix, only: contact_diagonal
    implicit none
    private
    public :: simulation_type, run_seconds_type, run_size_type
@@ -194,6 +195,7 @@ contains
          since = wall_seconds()
          call solve_pairs(self%operators, self%loads, model, step, self%state, next, record, error)
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
+         if (self%with_heat) call check_heat(self, model, next, error)
          if (allocated(error)) then
             if (self%operators%contact%loose) error%message = error%message// &
                bodies_held_by_no_pair(model, self%operators%pairs, &
@@ -220,6 +222,25 @@ contains
          record%last_of_step = step_is_over(self, step)
       end associate
    end subroutine advance
+
+   !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
+   !> place of whatever error followed from it.
+   subroutine check_heat(self, model, next, error)
+      class(simulation_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(solution_state_type), intent(in) :: next
+      type(error_type), allocatable, intent(inout) :: error
+      character(:), allocatable :: words
+
+      associate (pairs => self%operators%pairs)
+         words = bodies_heated_by_no_pair(model, pairs, self%loads%temperature%active, self%step, &
+            contact_diagonal(model%steps(self%step)%scheme, pairs%weight, next%omega_start, &
+            next%omega) > 0.0_dp)
+      end associate
+      if (len(words) == 0) return
+      if (allocated(error)) deallocate (error)
+      call set_error(error, status_no_convergence, words)
+   end subroutine check_heat
 
    !> Assembles the bodies, where that is not done, and reduces the fields of the present step to
    !> their contact unknowns, where that is not done.

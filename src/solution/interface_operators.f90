@@ -14,7 +14,7 @@ module interface_operators
    use thermal_matrix, only: assemble_conduction
    implicit none
    private
-   public :: interface_operators_type, pair_row_type
+   public :: interface_operators_type, pair_row_type, pair_surfaces
 
    real(dp), parameter :: nearly_aligned = 0.99_dp !! cosine of a normal that counts as along an
    !! axis
@@ -55,24 +55,41 @@ module interface_operators
 
 contains
 
-   !> Pairs the surfaces.
+   !> Pairs the surfaces, unless the caller has already put the pairs in place.
    !> Error: as make_pairs.
    subroutine prepare(self, model, error)
       class(interface_operators_type), intent(inout) :: self !! empty
       type(model_type), intent(in) :: model                  !! the model
       type(error_type), allocatable, intent(out) :: error    !! see above
-      integer :: i, element
+      integer :: i
 
-      allocate (self%interfaces(size(model%contacts)))
-      do i = 1, size(model%contacts)
-         element = model%mesh%surfaces(model%contacts(i)%slave)%faces(1, 1)
-         call make_pairs(model%mesh, model%contacts(i), &
-            model%sections(model%mesh%element_section(element))%thickness, &
-            self%interfaces(i), error)
-         if (allocated(error)) return
-      end do
+      if (.not. allocated(self%interfaces)) then
+         allocate (self%interfaces(size(model%contacts)))
+         do i = 1, size(model%contacts)
+            call pair_surfaces(model, i, self%interfaces(i), error)
+            if (allocated(error)) return
+         end do
+      end if
       self%pairs = row_of(self%interfaces, model)
    end subroutine prepare
+
+   !> Pairs the surfaces of one *CONTACT PAIR, with the thickness of the slave's first element.
+   !> Error: as make_pairs.
+   subroutine pair_surfaces(model, i, pairs, error)
+      type(model_type), intent(in) :: model               !! the model
+      integer, intent(in) :: i                            !! index into model%contacts
+      type(contact_pairs_type), intent(out) :: pairs      !! the pairs
+      type(error_type), allocatable, intent(out) :: error !! see above
+      real(dp) :: thickness
+
+      thickness = 1.0_dp
+      associate (faces => model%mesh%surfaces(model%contacts(i)%slave)%faces)
+         if (size(faces, 2) > 0) then
+            thickness = model%sections(model%mesh%element_section(faces(1, 1)))%thickness
+         end if
+      end associate
+      call make_pairs(model%mesh, model%contacts(i), thickness, pairs, error)
+   end subroutine pair_surfaces
 
    !> Puts the pairs of all interfaces in one row.
    pure function row_of(interfaces, model) result(row)
@@ -208,11 +225,11 @@ contains
       logical, intent(in) :: with_strain !! whether temperatures strain the bodies in any step
 
       if (with_mechanics) self%mechanical%matrix = assemble_stiffness(model%mesh, &
-         model%sections, model%materials)
+         model%sections, model%materials, model%orientations)
       if (with_strain) self%thermal_load = assemble_thermal_load(model%mesh, model%sections, &
-         model%materials)
+         model%materials, model%orientations)
       if (with_heat) self%thermal%matrix = assemble_conduction(model%mesh, model%sections, &
-         model%materials)
+         model%materials, model%orientations)
    end subroutine assemble
 
    !> A pair that is held along one axis on both nodes, as on an axis of symmetry, moves along the

@@ -1,10 +1,11 @@
 !> All loads and supports of a model at the present instant.
 module loads
-   use element_elasticity, only: side_pressure_load
+   use element_kinds, only: axisymmetric
    use kinds, only: dp
    use load_courses, only: load_course_type, step_clock_type
    use mesh, only: face_nodes
    use model, only: model_type
+   use side_integrals, only: side_pressure
    use steps, only: dof_temperature, step_type
    implicit none
    private
@@ -100,8 +101,9 @@ contains
          if (.not. self%pressure%active(i)) cycle
          element = (i - 1)/4 + 1
          nodes = model%mesh%element_nodes(face_nodes(:, i - 4*(element - 1)), element)
-         side = self%pressure%value(i)*side_pressure_load(model%mesh%coordinates(:, nodes), &
-            model%sections(model%mesh%element_section(element))%thickness)
+         side = self%pressure%value(i)*side_pressure(model%mesh%coordinates(:, nodes), &
+            model%sections(model%mesh%element_section(element))%thickness, &
+            model%mesh%element_plane(element) == axisymmetric)
          do q = 1, 3
             forces(2*nodes(q) - 1:2*nodes(q)) = forces(2*nodes(q) - 1:2*nodes(q)) + side(:, q)
          end do
