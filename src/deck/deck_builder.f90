@@ -26,7 +26,7 @@ module deck_builder
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
    use model, only: model_type
    use refinement, only: refine
-   use steps, only: analysis_coupled, analysis_static
+   use steps, only: analysis_coupled, analysis_static, solves_heat
    use text, only: to_text
    implicit none
    private
@@ -113,7 +113,7 @@ contains
       else if (.not. all(model%materials%has_expansion)) then
          call context%note('a material without *EXPANSION: coefficient 0')
       end if
-      if (.not. any(model%steps%analysis == analysis_coupled)) return
+      if (.not. any(solves_heat(model%steps%analysis))) return
       if (card_count(cards, 'THERMAL SCHEME') == 0) then
          call context%note('no *THERMAL SCHEME: IMPLICIT')
       end if
@@ -126,6 +126,7 @@ contains
          end associate
       end do
       if (size(model%contacts) == 0) return
+      if (.not. any(model%steps%analysis == analysis_coupled)) return
       associate (fixed_point => model%steps(1)%fixed_point)
          method = 'ZAITSEV'
          if (fixed_point%method == method_picard) method = 'PICARD'

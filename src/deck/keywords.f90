@@ -94,7 +94,7 @@ module keywords
    type(known_keyword_type), parameter :: step_keywords(20) = [ &
       known_keyword_type('STEP', built, in_both, 0, 0, 'INC=/AMPLITUDE=/NLGEOM?'), &
       known_keyword_type('STATIC', built, in_step, 0, 1, 'DIRECT/~SOLVER='), &
-      known_keyword_type('HEAT TRANSFER', later, in_step, 0, many, ''), &
+      known_keyword_type('HEAT TRANSFER', built, in_step, 0, 1, 'STEADY STATE/DIRECT/~SOLVER='), &
       known_keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
       'STEADY STATE/DIRECT/~SOLVER='), &
       known_keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE='), &

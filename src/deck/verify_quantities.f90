@@ -15,14 +15,15 @@ module verify_quantities
 
    !> A quantity that *VERIFY may name.
    type :: quantity_type
-      character(18) :: name   !! dataset, or nodal quantity
+      character(24) :: name   !! dataset, or nodal quantity
       integer :: kind         !! one of the constants above
    end type quantity_type
 
-   type(quantity_type), parameter :: quantities(42) = [ &
+   type(quantity_type), parameter :: quantities(43) = [ &
       quantity_type('time', of_history), quantity_type('load', of_history), &
       quantity_type('iterations', of_history), quantity_type('heat_in', of_history), &
       quantity_type('heat_out', of_history), quantity_type('heat_imbalance', of_history), &
+      quantity_type('heat_imbalance_pointwise', of_history), &
       quantity_type('force_imbalance', of_history), &
       quantity_type('normal_force', of_interface), quantity_type('shear_force', of_interface), &
       quantity_type('heat_rate', of_interface), quantity_type('edge_contact', of_interface), &

@@ -21,7 +21,7 @@ module deck_run
    use records, only: increment_record_type, iteration_record_type
    use run_description, only: describe_run
    use run_output, only: run_output_type
-   use steps, only: analysis_heat, analysis_static
+   use steps, only: solves_heat, solves_mechanics
    use system_calls, only: make_folder
    use text, only: string_type, to_text
    implicit none
@@ -162,11 +162,11 @@ contains
          if (step > 1) call loads%begin_step(model%steps(step), simulation%state%displacement, &
             simulation%state%temperature)
          associate (analysis => model%steps(step)%analysis, pairs => simulation%operators%pairs)
-            if (analysis /= analysis_heat) then
+            if (solves_mechanics(analysis)) then
                call bodies_held_by_nothing(model, pairs, loads%displacement%active, messages)
                call report_all()
             end if
-            if (analysis /= analysis_static) then
+            if (solves_heat(analysis)) then
                call bodies_without_temperature(model, pairs, loads%temperature%active, step, &
                   messages)
                call report_all()
@@ -206,6 +206,7 @@ contains
             output%run%seconds_reduce = simulation%seconds%reduce
             output%run%seconds_iterate = simulation%seconds%iterate
             output%run%seconds_recover = simulation%seconds%recover
+            output%run%factor_bytes = simulation%sizes%factor_bytes
             if (allocated(error)) exit
             call output%accept(record, model, pairs, error)
             if (allocated(error)) return

@@ -9,12 +9,12 @@ module contact_operator
    use errors, only: error_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
-   use records, only: status_open, work_record_type
+   use records, only: status_open, status_slip, work_record_type
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
    private
    public :: increment_data_type, temperature_jumps, condensed_load, law_conductance
-   public :: contact_operator_pass, residual_floor
+   public :: contact_operator_pass, kept_contact, residual_floor, thermal_forces
 
    !> What stays fixed while the iteration of an increment runs.
    type :: increment_data_type
@@ -124,6 +124,30 @@ contains
             state%gap(k), pressure(k))
       end do
    end function law_conductance
+
+   !> Contact state that a step without mechanics finds. Before any mechanics pairs without a gap
+   !> touch: they are closed and carry no pressure.
+   pure function kept_contact(state, has_mechanics) result(kept)
+      type(contact_state_type), intent(in) :: state  !! contact state of the last increment
+      logical, intent(in) :: has_mechanics           !! whether mechanics was solved before
+      type(contact_state_type) :: kept
+
+      kept = state
+      if (has_mechanics) return
+      where (kept%gap <= 0.0_dp) kept%status = status_slip
+   end function kept_contact
+
+   !> Nodal forces of temperatures over the natural state; none where no temperature strains.
+   pure function thermal_forces(operators, temperature) result(forces)
+      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
+      real(dp) :: forces(2*size(temperature))                   !! (2 nodes) [force]
+
+      forces = 0.0_dp
+      if (allocated(operators%thermal_load%value)) then
+         forces = operators%thermal_load%multiply(temperature)
+      end if
+   end function thermal_forces
 
    !> What a few units in the last place of the displacements change in omega, relative: no residual
    !> can be smaller.
