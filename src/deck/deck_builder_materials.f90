@@ -130,6 +130,7 @@ contains
          end if
          call need_field(cards%data(place), mod(i - 1, per_card) + 1, trim(names(i)), report, &
             constants(i), valid)
+         if (.not. has_field(cards%data(place), mod(i - 1, per_card) + 1)) return
          if (place == last) cycle
          if (mod(i, per_card) == 0) call check_extra(cards%data(place), per_card, &
             'eight constants', report)
