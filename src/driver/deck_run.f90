@@ -22,6 +22,7 @@ module deck_run
    use steps, only: analysis_heat, analysis_static
    use system_calls, only: make_folder
    use text, only: string_type, to_text
+   use verify_places, only: check_arc_lengths
    implicit none
    private
    public :: run_deck, prepare_deck, base_name
@@ -86,7 +87,10 @@ contains
       if (.not. report%has_errors()) call check_pairs(model, report)
       if (.not. report%has_errors()) then
          call simulation%start(model, error)
-         if (.not. allocated(error)) call check_supports(cards%last, model, simulation, report)
+         if (.not. allocated(error)) then
+            call check_arc_lengths(model, simulation%operators%interfaces, report)
+            call check_supports(cards%last, model, simulation, report)
+         end if
       end if
       call report%print(error_unit)
       if (report%has_errors()) status = status_deck
