@@ -17,7 +17,7 @@ module deck_builder
    use deck_builder_sets, only: build_sets
    use deck_builder_steps, only: build_steps
    use deck_builder_surfaces, only: build_surfaces
-   use deck_builder_verify, only: build_verifications
+   use deck_builder_verify, only: build_verifications, check_heat_quantities
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -70,6 +70,7 @@ contains
       call check_model(context, model, report)
       if (.not. report%has_errors()) then
          call drop_idle_heat(context, model)
+         call check_heat_quantities(model, report)
          call apply_loads(context, model, report)
          deck_nodes = size(model%mesh%node_number)
          call apply_temperatures(context, deck_nodes, .true., model)
