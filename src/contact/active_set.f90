@@ -85,8 +85,9 @@ contains
             end do
             call solve_corrected(system, load, sound, next, chosen, state, error)
             if (.not. allocated(error)) then
-               if (count(chosen) == count(excess > 0.0_dp) .and. allocated(loosest)) &
+               if (allocated(loosest) .and. n == count(excess > 0.0_dp)) then
                   deallocate (loosest)
+               end if
                return
             end if
             if (.not. allocated(loosest)) loosest = state%status

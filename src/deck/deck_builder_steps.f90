@@ -67,7 +67,7 @@ contains
             case ('THERMAL SCHEME')
                call build_thermal_scheme(cards, card, report, scheme)
                if (n > 0) model%steps(n)%scheme = scheme
-            case ('BOUNDARY', 'CLOAD', 'DLOAD')
+            case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'FILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)
             case ('NODE FILE', 'EL FILE', 'CONTACT FILE')
                if (n > 0) call build_file_output(card, files, context, report, model%steps(n))

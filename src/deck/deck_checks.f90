@@ -7,10 +7,11 @@ module deck_checks
    use element_elasticity, only: has_mean_dilatation
    use element_kinds, only: axisymmetric, plane_stress, quad8_reduced
    use kinds, only: dp, long
+   use load_checks, only: check_loads
    use mesh, only: mesh_type
    use mesh_checks, only: check_jacobians, check_planes, check_sides
    use model, only: model_type
-   use steps, only: dof_temperature, solves_heat, solves_mechanics
+   use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
    private
@@ -37,8 +38,7 @@ contains
       call check_orientations(context, model, report)
       call check_jacobians(context, model%mesh, report)
       call check_sides(context, model%mesh, report)
-      call check_forces(context, model%mesh, report)
-      call check_temperatures(context, model, report)
+      call check_loads(context, model, report)
    end subroutine check_model
 
    !> The refined mesh, its matrices and the new numbers of its nodes fit into default integers.
@@ -150,44 +150,5 @@ contains
       end do
    end subroutine check_orientations
 
-   !> A force acts on an element.
-   subroutine check_forces(context, mesh, report)
-      type(deck_context_type), intent(in) :: context
-      type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
-      logical :: used(0:size(mesh%node_number))
-      integer :: i
-
-      used = .false.
-      used([mesh%element_nodes]) = .true.
-      do i = 1, context%forces%count
-         associate (request => context%forces%items(i))
-            if (request%set > 0) then
-               if (all(used(mesh%node_sets(request%set)%members))) cycle
-            else if (used(request%item)) then
-               cycle
-            end if
-            call report%error(request%place, 'a force on a node that no element has')
-         end associate
-      end do
-   end subroutine check_forces
-
-   !> Warns of temperatures that come after the last step that solves heat.
-   subroutine check_temperatures(context, model, report)
-      type(deck_context_type), intent(in) :: context
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      integer :: i
-
-      do i = 1, context%boundaries%count
-         associate (request => context%boundaries%items(i))
-            if (request%component /= dof_temperature) cycle
-            if (any(solves_heat(model%steps(max(1, request%step):)%analysis))) cycle
-            call report%warning(request%place, &
-               'a temperature without effect: no step from here '// &
-               'on solves heat')
-         end associate
-      end do
-   end subroutine check_temperatures
 
 end module deck_checks

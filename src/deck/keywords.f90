@@ -100,11 +100,11 @@ module keywords
       known_keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE='), &
       known_keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       known_keyword_type('DLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('DSLOAD', later, in_step, 0, many, ''), &
-      known_keyword_type('CFLUX', later, in_step, 0, many, ''), &
-      known_keyword_type('DFLUX', later, in_step, 0, many, ''), &
-      known_keyword_type('FILM', later, in_step, 0, many, ''), &
-      known_keyword_type('TEMPERATURE', later, in_step, 0, many, ''), &
+      known_keyword_type('DSLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('CFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('DFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('FILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
+      known_keyword_type('TEMPERATURE', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       known_keyword_type('NODE FILE', built, in_step, 0, many, &
       'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
       known_keyword_type('EL FILE', built, in_step, 0, many, &

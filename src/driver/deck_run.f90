@@ -24,6 +24,7 @@ module deck_run
    use steps, only: solves_heat, solves_mechanics
    use system_calls, only: make_folder
    use text, only: string_type, to_text
+   use verify_places, only: check_arc_lengths
    implicit none
    private
    public :: run_deck, prepare_deck, base_name
@@ -90,7 +91,10 @@ contains
       end if
       if (.not. report%has_errors()) then
          call simulation%start(model, error)
-         if (.not. allocated(error)) call check_supports(cards%last, model, simulation, report)
+         if (.not. allocated(error)) then
+            call check_arc_lengths(model, simulation%operators%interfaces, report)
+            call check_supports(cards%last, model, simulation, report)
+         end if
       end if
       call report%print(error_unit)
       if (report%has_errors()) status = status_deck
@@ -159,7 +163,8 @@ contains
 
       loads = simulation%loads
       do step = 1, size(model%steps)
-         if (step > 1) call loads%begin_step(model%steps(step))
+         if (step > 1) call loads%begin_step(model%steps(step), simulation%state%displacement, &
+            simulation%state%temperature)
          associate (analysis => model%steps(step)%analysis, pairs => simulation%operators%pairs)
             if (solves_mechanics(analysis)) then
                call bodies_held_by_nothing(model, pairs, loads%displacement%active, messages)

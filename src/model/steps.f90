@@ -4,7 +4,7 @@ module steps
    use kinds, only: dp
    implicit none
    private
-   public :: step_type, boundary_type, nodal_load_type, face_load_type
+   public :: step_type, boundary_type
    public :: load_type, load_kind_count
    public :: load_force, load_pressure, load_traction, load_body_force, load_gravity
    public :: load_centrifugal, load_nodal_heat, load_face_heat, load_body_heat
@@ -51,22 +51,6 @@ module steps
       integer :: card = 0           !! running number of the *BOUNDARY data card, over all steps
    end type boundary_type
 
-   !> A force on one node (*CLOAD).
-   type :: nodal_load_type
-      integer :: node = 0           !! node index
-      integer :: dof = 0            !! 1 or 2
-      real(dp) :: value = 0.0_dp    !! force [stress length thickness]
-      integer :: amplitude = 0      !! index into model%amplitudes, 0 for the step's own course
-   end type nodal_load_type
-
-   !> A pressure on one element face (*DLOAD, Pn).
-   type :: face_load_type
-      integer :: element = 0        !! element index
-      integer :: face = 0           !! 1..4
-      real(dp) :: value = 0.0_dp    !! pressure, positive towards the body [stress]
-      integer :: amplitude = 0      !! index into model%amplitudes, 0 for the step's own course
-   end type face_load_type
-
    !> One *STEP. Loads are those that its own cards give; what earlier steps gave stays (OP=MOD).
    type :: step_type
       integer :: analysis = analysis_static          !! one of the analysis_* constants
@@ -78,8 +62,6 @@ module steps
       real(dp) :: smallest_increment = 1.0e-5_dp     !! smallest increment [time]
       real(dp) :: largest_increment = 1.0_dp         !! largest increment [time]
       type(boundary_type), allocatable :: boundaries(:)      !! prescribed values
-      type(nodal_load_type), allocatable :: nodal_loads(:)   !! forces
-      type(face_load_type), allocatable :: face_loads(:)     !! pressures
       type(load_type), allocatable :: loads(:)               !! loads that the step gives
       !> Kinds of loads whose former ones end with this step (OP=NEW).
       logical :: ends_loads(load_kind_count) = .false.

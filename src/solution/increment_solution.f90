@@ -56,6 +56,7 @@ contains
       next%contact%reference = previous%contact%tangential
       operators%contact%closing = closing_law_type()
       call operators%contact%forget_factors()
+      if (.not. solves_heat(step%analysis)) call loads%set_temperatures(next%temperature)
       call load_mechanics(operators, loads, model, data, next)
       if (solves_heat(step%analysis) .and. size(next%omega) > 0) then
          if (is_explicit(step%scheme)) then

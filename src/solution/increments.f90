@@ -309,7 +309,8 @@ contains
       self%step = self%step + 1
       self%step_time = 0.0_dp
       self%increments_of_step = 0
-      call self%loads%begin_step(model%steps(self%step))
+      call self%loads%begin_step(model%steps(self%step), self%state%displacement, &
+         self%state%temperature)
       self%with_heat = solves_heat(model%steps(self%step)%analysis)
       self%with_mechanics = solves_mechanics(model%steps(self%step)%analysis)
       associate (held => self%loads%displacement%active, &
