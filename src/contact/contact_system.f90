@@ -13,25 +13,15 @@
 !> forces (closing_instant):
 !>
 !>    stick  d_n = h           (1 - f) (d_t - d_t,i) + f (c_n lambda_n + c_t lambda_t) = 0
-!>
-!> The roles are found by an active set: solve, correct every pair that violates its condition,
-!> solve again. A set that comes back is left by correcting only the last offending pair (Murty's
-!> least-index rule), which cannot cycle on the P-matrix of a frictionless problem.
-!>
-!> Where contact alone holds a body, a set may leave it loose. A first guess that does is given up
-!> for all pairs closed. A correction that does is taken back, and fewer pairs, the worst ones, are
-!> corrected; a body from which not even one pair can be taken is loose.
 module contact_system
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
-   use friction, only: next_status
    use kinds, only: dp
    use records, only: status_open, status_slip, status_stick
    implicit none
    private
-   public :: contact_system_type, contact_state_type, closing_law_type
+   public :: contact_system_type, contact_state_type, closing_law_type, condition_code
 
-   integer, parameter :: most_sets = 200   !! active sets tried before giving up
 
    !> Contact state of all pairs.
    type :: contact_state_type
@@ -70,7 +60,7 @@ module contact_system
       integer, allocatable :: factored(:)         !! (m) status*3 + direction of the factors
       logical :: loose = .false.                  !! the set factored last leaves a body loose
    contains
-      procedure :: solve
+      procedure :: solve_set
       procedure :: solve_free
       procedure :: stiffness
       procedure :: friction_rows
@@ -80,131 +70,6 @@ module contact_system
    end type contact_system_type
 
 contains
-
-   !> Contact state under a condensed load, the references of friction being given.
-   !> Errors: no active set satisfies all conditions; the bodies are not held, and then loose is set
-   !> and the state is the one that does not hold them.
-   subroutine solve(self, load, state, error)
-      class(contact_system_type), intent(inout) :: self   !! the reduced system
-      real(dp), intent(in) :: load(:)                     !! (tail) c [force]
-      type(contact_state_type), intent(inout) :: state    !! guess of the status in, solution out
-      type(error_type), allocatable, intent(out) :: error !! see above
-      integer :: visited(size(state%status), most_sets)
-      real(dp) :: excess(size(state%status))
-      integer :: next(2, size(state%status)), k, set
-      logical :: one_at_a_time
-
-      one_at_a_time = .false.
-      call solve_set(self, load, state, error)
-      if (allocated(error) .and. any(state%status == status_open)) then
-         state%status = merge(status_stick, status_slip, self%tangent > 0)
-         state%direction = 0
-         call solve_set(self, load, state, error)
-      end if
-      do set = 1, most_sets
-         if (allocated(error)) return
-         visited(:, set) = code(state)
-         do k = 1, set - 1
-            one_at_a_time = one_at_a_time .or. all(visited(:, k) == visited(:, set))
-         end do
-         call judge(self, load, state, next, excess)
-         if (all(excess <= 0.0_dp)) return
-         call correct(self, load, next, excess, one_at_a_time, state, error)
-      end do
-      if (allocated(error)) return
-      call set_error(error, status_no_convergence, 'the contact zones do not settle')
-   end subroutine solve
-
-   !> Corrects the offending pairs, all of them or one at a time, and solves; as few as it takes to
-   !> leave the bodies held.
-   !> Error: every correction leaves a body loose.
-   subroutine correct(self, load, next, excess, one_at_a_time, state, error)
-      class(contact_system_type), intent(inout) :: self
-      real(dp), intent(in) :: load(:)
-      integer, intent(in) :: next(:, :)
-      real(dp), intent(in) :: excess(:)
-      logical, intent(inout) :: one_at_a_time
-      type(contact_state_type), intent(inout) :: state
-      type(error_type), allocatable, intent(out) :: error
-      type(contact_state_type) :: sound
-      logical :: chosen(size(excess)), left(size(excess))
-      integer :: k, n
-
-      sound = state
-      if (.not. one_at_a_time) then
-         n = count(excess > 0.0_dp)
-         do while (n > 1)
-            left = excess > 0.0_dp
-            do k = n + 1, count(excess > 0.0_dp)
-               left(minloc(excess, dim=1, mask=left)) = .false.
-            end do
-            call take(left)
-            if (.not. allocated(error)) return
-            n = n/2
-         end do
-      end if
-      one_at_a_time = one_at_a_time .or. allocated(error)
-      do k = size(excess), 1, -1
-         if (excess(k) <= 0.0_dp) cycle
-         chosen = .false.
-         chosen(k) = .true.
-         call take(chosen)
-         if (.not. allocated(error)) return
-      end do
-   contains
-      subroutine take(pairs)
-         logical, intent(in) :: pairs(:)
-
-         state = sound
-         where (pairs)
-            state%status = next(1, :)
-            state%direction = next(2, :)
-         end where
-         call solve_set(self, load, state, error)
-      end subroutine take
-   end subroutine correct
-
-   !> What status each pair should have, and by how much it violates the present one.
-   subroutine judge(self, load, state, next, excess)
-      class(contact_system_type), intent(in) :: self
-      real(dp), intent(in) :: load(:)
-      type(contact_state_type), intent(in) :: state
-      integer, intent(out) :: next(:, :)
-      real(dp), intent(out) :: excess(:)
-      real(dp) :: gap_tolerance, force_tolerance
-      integer :: k
-
-      gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(self%initial_gap)), &
-         maxval(abs(state%tangential))) + tiny(1.0_dp)
-      force_tolerance = max(1.0e-12_dp*maxval(abs(state%force)), &
-         1.0e-13_dp*largest_term(self, load, state)) + tiny(1.0_dp)
-      next(1, :) = state%status
-      next(2, :) = state%direction
-      do k = 1, size(state%status)
-         call next_status(next(1, k), next(2, k), state%gap(k), state%force(k), &
-            state%shear_force(k), self%slip(state, k), self%friction(k), &
-            self%tangent(k) > 0, gap_tolerance, force_tolerance, excess(k))
-      end do
-   end subroutine judge
-
-   !> Largest sum of the terms of which a contact force is made, S d - c, without their signs: what
-   !> its rounding goes by where the terms cancel, as in a body that contact moves as a whole.
-   pure function largest_term(self, load, state) result(force)
-      class(contact_system_type), intent(in) :: self
-      real(dp), intent(in) :: load(:)
-      type(contact_state_type), intent(in) :: state
-      real(dp) :: force
-      real(dp) :: terms(size(load))
-      integer :: k
-
-      terms = abs(load)
-      do k = 1, size(state%status)
-         terms = terms + abs(self%schur(:, self%normal(k))*(self%initial_gap(k) - state%gap(k)))
-         if (self%tangent(k) == 0) cycle
-         terms = terms + abs(self%schur(:, self%tangent(k))*state%tangential(k))
-      end do
-      force = maxval(terms)
-   end function largest_term
 
    !> Tangential motion of a pair since friction acts on it in this increment.
    pure function slip(self, state, k)
@@ -223,12 +88,13 @@ contains
       end associate
    end function slip
 
-   !> Solution for one active set.
+   !> Solution for one active set. Where that leaves a body loose, the values stay as they are.
+   !> Error: as factor_set.
    subroutine solve_set(self, load, state, error)
-      class(contact_system_type), intent(inout) :: self
-      real(dp), intent(in) :: load(:)
-      type(contact_state_type), intent(inout) :: state
-      type(error_type), allocatable, intent(out) :: error
+      class(contact_system_type), intent(inout) :: self   !! the reduced system
+      real(dp), intent(in) :: load(:)                     !! (tail) c [force]
+      type(contact_state_type), intent(inout) :: state    !! its statuses in, the values out
+      type(error_type), allocatable, intent(out) :: error !! see above
       real(dp) :: d(size(load)), lambda(size(load)), residual(size(load), 1)
       integer :: k
 
@@ -276,9 +142,9 @@ contains
       integer :: i
 
       if (allocated(self%factored)) then
-         if (all(self%factored == code(state))) return
+         if (all(self%factored == condition_code(state))) return
       end if
-      self%factored = code(state)
+      self%factored = condition_code(state)
       call list_free(self, state)
       rows = self%friction_rows(self%schur(:, self%free))
       rows = rows(self%free, :)
@@ -383,12 +249,12 @@ contains
    end function stiffness
 
    !> One number per pair for its contact condition.
-   pure function code(state) result(codes)
-      type(contact_state_type), intent(in) :: state
-      integer :: codes(size(state%status))
+   pure function condition_code(state) result(codes)
+      type(contact_state_type), intent(in) :: state   !! statuses and directions
+      integer :: codes(size(state%status))            !! (m)
 
       codes = 3*state%status
       where (state%status == status_slip) codes = codes + state%direction
-   end function code
+   end function condition_code
 
 end module contact_system

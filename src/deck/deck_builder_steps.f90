@@ -13,7 +13,7 @@ module deck_builder_steps
    use keywords, only: refusal
    use kinds, only: dp
    use model, only: model_type
-   use steps, only: analysis_coupled, analysis_static, step_type
+   use steps, only: analysis_coupled, analysis_heat, analysis_static, solves_heat, step_type
    use text, only: to_text, to_upper
    implicit none
    private
@@ -54,20 +54,20 @@ contains
                call begin_step(card, before, context, report, model%steps(n))
                model%steps(n)%fixed_point = fixed_point
                model%steps(n)%scheme = scheme
-            case ('STATIC', 'COUPLED TEMPERATURE-DISPLACEMENT')
+            case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT')
                analyses = analyses + 1
                if (analyses > 1) call report%error(card%place, 'a second analysis in one step')
                if (n > 0) call build_analysis(cards, card, context, report, model%steps(n))
             case ('END STEP')
                if (analyses == 0) call report%error(card%place, &
-                  'the step has no *STATIC and no *COUPLED TEMPERATURE-DISPLACEMENT')
+                  'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
             case ('FIXED POINT')
                call build_fixed_point(card, report, fixed_point)
                if (n > 0) model%steps(n)%fixed_point = fixed_point
             case ('THERMAL SCHEME')
                call build_thermal_scheme(cards, card, report, scheme)
                if (n > 0) model%steps(n)%scheme = scheme
-            case ('BOUNDARY', 'CLOAD', 'DLOAD')
+            case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'FILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)
             case ('NODE FILE', 'EL FILE', 'CONTACT FILE')
                if (n > 0) call build_file_output(card, files, context, report, model%steps(n))
@@ -106,7 +106,7 @@ contains
          parameter_place(card, 'NLGEOM'), 'NLGEOM is refused on *STEP: '//refusal('STEP', 'NLGEOM'))
    end subroutine begin_step
 
-   !> Takes *STATIC or *COUPLED TEMPERATURE-DISPLACEMENT.
+   !> Takes *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
    subroutine build_analysis(cards, card, context, report, step)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
@@ -114,11 +114,16 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
 
-      step%analysis = analysis_static
-      if (card%name /= 'STATIC') then
+      select case (card%name)
+      case ('STATIC')
+         step%analysis = analysis_static
+      case ('HEAT TRANSFER')
+         step%analysis = analysis_heat
+      case default
          step%analysis = analysis_coupled
-         if (.not. has_parameter(card, 'STEADY STATE')) call report%error(card%place, '*'// &
-            card%name// &
+      end select
+      if (solves_heat(step%analysis) .and. .not. has_parameter(card, 'STEADY STATE')) then
+         call report%error(card%place, '*'//card%name// &
             ' needs STEADY STATE: heat capacity is not modelled')
       end if
       step%direct = has_parameter(card, 'DIRECT')

@@ -62,9 +62,9 @@ module keywords
       known_keyword_type('CONDUCTIVITY', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('DENSITY', built, in_model, 1, many, ''), &
       known_keyword_type('SPECIFIC HEAT', not_needed, in_model, 0, many, ''), &
-      known_keyword_type('ORIENTATION', later, in_model, 0, many, ''), &
+      known_keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
       known_keyword_type('SOLID SECTION', built, in_model, 0, 1, &
-      'ELSET=/MATERIAL=/+ORIENTATION='), &
+      'ELSET=/MATERIAL=/ORIENTATION='), &
       known_keyword_type('AMPLITUDE', built, in_model, 1, many, 'NAME=/TIME='), &
       known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 0, 'NAME='), &
@@ -76,7 +76,7 @@ module keywords
       'PRESSURE-OVERCLOSURE='), &
       known_keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
       'INTERACTION=/NAME=/~TYPE=/~SMALL SLIDING/!ADJUST=/!TIED'), &
-      known_keyword_type('CLEARANCE', later, in_model, 0, many, ''), &
+      known_keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
       known_keyword_type('TRANSFORM', refused, in_model, 0, many, '')]
 
    type(known_keyword_type), parameter :: control_keywords(9) = [ &
@@ -94,17 +94,17 @@ module keywords
    type(known_keyword_type), parameter :: step_keywords(20) = [ &
       known_keyword_type('STEP', built, in_both, 0, 0, 'INC=/AMPLITUDE=/NLGEOM?'), &
       known_keyword_type('STATIC', built, in_step, 0, 1, 'DIRECT/~SOLVER='), &
-      known_keyword_type('HEAT TRANSFER', later, in_step, 0, many, ''), &
+      known_keyword_type('HEAT TRANSFER', built, in_step, 0, 1, 'STEADY STATE/DIRECT/~SOLVER='), &
       known_keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
       'STEADY STATE/DIRECT/~SOLVER='), &
       known_keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE='), &
       known_keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       known_keyword_type('DLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('DSLOAD', later, in_step, 0, many, ''), &
-      known_keyword_type('CFLUX', later, in_step, 0, many, ''), &
-      known_keyword_type('DFLUX', later, in_step, 0, many, ''), &
-      known_keyword_type('FILM', later, in_step, 0, many, ''), &
-      known_keyword_type('TEMPERATURE', later, in_step, 0, many, ''), &
+      known_keyword_type('DSLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('CFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('DFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('FILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
+      known_keyword_type('TEMPERATURE', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       known_keyword_type('NODE FILE', built, in_step, 0, many, &
       'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
       known_keyword_type('EL FILE', built, in_step, 0, many, &

@@ -5,7 +5,7 @@ module load_refinement
    use kinds, only: dp
    use mesh, only: mesh_type
    use mesh_division, only: child_element, division_type, refined_members, refined_values
-   use steps, only: face_load_type, load_body_force, load_body_heat, load_centrifugal, &
+   use steps, only: load_body_force, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_film_sink, load_gravity, load_pressure, &
       load_temperature, load_traction, load_type, step_type
    implicit none
@@ -23,8 +23,6 @@ contains
       integer :: s
 
       do s = 1, size(steps)
-         if (allocated(steps(s)%face_loads)) call refine_face_loads(division, mesh, &
-            steps(s)%face_loads)
          if (.not. allocated(steps(s)%loads)) cycle
          call refine_step(division, mesh, steps(s)%loads, refined)
          call move_alloc(refined, steps(s)%loads)
@@ -127,24 +125,5 @@ contains
       more(before + 1:)%value = values(nodes)
       call move_alloc(more, loads)
    end subroutine append
-
-   subroutine refine_face_loads(division, mesh, loads)
-      type(division_type), intent(in) :: division
-      type(mesh_type), intent(in) :: mesh
-      type(face_load_type), allocatable, intent(inout) :: loads(:)
-      type(face_load_type), allocatable :: halves(:)
-      integer :: i
-
-      allocate(halves(2*size(loads)))
-      do i = 1, size(loads)
-         associate (parent => loads(i)%element, f => loads(i)%face)
-            halves(2*i - 1:2*i) = loads(i)
-            halves(2*i - 1)%element = child_element(division%elements, parent, f)
-            halves(2*i)%element = child_element(division%elements, parent, &
-               mod(f, element_corner_count(mesh%element_kind(parent))) + 1)
-         end associate
-      end do
-      call move_alloc(halves, loads)
-   end subroutine refine_face_loads
 
 end module load_refinement

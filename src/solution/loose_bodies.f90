@@ -12,12 +12,12 @@ module loose_bodies
    implicit none
    private
    public :: bodies_held_by_nothing, bodies_held_by_no_pair
-   public :: bodies_without_temperature, undetermined_bodies, conducting_pairs
+   public :: bodies_without_temperature, bodies_heated_by_no_pair
 
 contains
 
-   !> Bodies that neither supports nor contact could ever hold: all pairs count as closed, those with
-   !> friction as stuck.
+   !> Bodies that neither supports nor contact could ever hold: all pairs count as closed, those
+   !> with friction as stuck.
    subroutine bodies_held_by_nothing(model, pairs, held, messages)
       type(model_type), intent(in) :: model         !! the model
       type(pair_row_type), intent(in) :: pairs      !! all pairs
@@ -99,7 +99,8 @@ contains
       logical :: undetermined(model%mesh%body_count)
       integer :: body
 
-      undetermined = undetermined_bodies(model, pairs, held, step, conducting_pairs(pairs))
+      undetermined = undetermined_bodies(model, pairs, held, step, pairs%law%open_kind /= law_none &
+         .or. pairs%law%closed_kind /= law_none)
       allocate (messages(0))
       do body = 1, size(undetermined)
          if (undetermined(body)) call append(messages, 'the temperature of '// &
@@ -108,13 +109,27 @@ contains
       end do
    end subroutine bodies_without_temperature
 
-   !> Whether a pair can carry heat at all.
-   pure function conducting_pairs(pairs) result(conducts)
-      type(pair_row_type), intent(in) :: pairs              !! all pairs
-      logical :: conducts(size(pairs%slave))                !! (m)
+   !> Bodies whose temperature the conductances of an instant leave undetermined, as a message;
+   !> empty where there are none.
+   function bodies_heated_by_no_pair(model, pairs, held, step, conducts) result(words)
+      type(model_type), intent(in) :: model         !! the model
+      type(pair_row_type), intent(in) :: pairs      !! all pairs
+      logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
+      integer, intent(in) :: step                   !! the step, for its films
+      logical, intent(in) :: conducts(:)            !! (m) pairs that carry heat
+      character(:), allocatable :: words            !! the message
+      logical :: undetermined(model%mesh%body_count)
+      integer :: body
 
-      conducts = pairs%law%open_kind /= law_none .or. pairs%law%closed_kind /= law_none
-   end function conducting_pairs
+      undetermined = undetermined_bodies(model, pairs, held, step, conducts)
+      words = ''
+      do body = 1, size(undetermined)
+         if (.not. undetermined(body)) cycle
+         if (len(words) > 0) words = words//'; '
+         words = words//'the temperature of '//body_name(model, body)// &
+            ' is undetermined: all its pairs have conductance 0'
+      end do
+   end function bodies_heated_by_no_pair
 
    !> Bodies that neither a prescribed temperature nor a film supplies with heat, nor a way over
    !> conducting pairs to a body that one does.
@@ -174,18 +189,14 @@ contains
       integer, intent(in) :: body
       character(:), allocatable :: name
       character(:), allocatable :: materials
-      logical :: of_body(size(model%mesh%element_body)), seen
-      integer :: e, m
+      integer :: m
 
       associate (mesh => model%mesh)
-         of_body = mesh%element_body == body
          materials = ''
          do m = 1, size(model%materials)
-            seen = .false.
-            do e = 1, size(of_body)
-               if (of_body(e)) seen = seen .or. model%sections(mesh%element_section(e))%material == m
-            end do
-            if (.not. seen .or. .not. allocated(model%materials(m)%name)) cycle
+            if (.not. any(mesh%element_body == body .and. &
+               model%sections(mesh%element_section)%material == m)) cycle
+            if (.not. allocated(model%materials(m)%name)) cycle
             materials = materials//' and '//model%materials(m)%name
          end do
          name = 'body '//to_text(body)//' ('
