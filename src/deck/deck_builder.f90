@@ -12,6 +12,7 @@ module deck_builder
    use deck_builder_materials, only: build_materials
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_options, only: build_options
+   use deck_builder_orientations, only: build_orientations
    use deck_builder_sections, only: build_sections
    use deck_builder_sets, only: build_sets
    use deck_builder_steps, only: build_steps
@@ -57,6 +58,7 @@ contains
       context%sets_sound = report%error_count() == errors
       call build_surfaces(cards, context, model%mesh, report)
       call build_materials(cards, context, model, report)
+      call build_orientations(cards, model, report)
       call build_sections(cards, context, model, report)
       call build_amplitudes(cards, model, report)
       call build_temperatures(cards, context, model, report)

@@ -62,9 +62,9 @@ module keywords
       known_keyword_type('CONDUCTIVITY', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('DENSITY', built, in_model, 1, many, ''), &
       known_keyword_type('SPECIFIC HEAT', not_needed, in_model, 0, many, ''), &
-      known_keyword_type('ORIENTATION', later, in_model, 0, many, ''), &
+      known_keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
       known_keyword_type('SOLID SECTION', built, in_model, 0, 1, &
-      'ELSET=/MATERIAL=/+ORIENTATION='), &
+      'ELSET=/MATERIAL=/ORIENTATION='), &
       known_keyword_type('AMPLITUDE', built, in_model, 1, many, 'NAME=/TIME='), &
       known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 0, 'NAME='), &

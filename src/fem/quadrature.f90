@@ -5,7 +5,8 @@ module quadrature
    implicit none
    private
    public :: gauss_point_3, gauss_weight_3, gauss_coordinate_2
-   public :: point_count, integration_rule, load_point_count, load_rule
+   public :: point_count, most_points, integration_rule, load_point_count, load_rule
+   public :: recovery_count, recovery_points, recovery_weights
 
    real(dp), parameter :: gauss_point_3(3) = &
       [-0.774596669241483377_dp, 0.0_dp, 0.774596669241483377_dp]     !! roots of P3
@@ -15,6 +16,14 @@ module quadrature
 
    !> Points of integration_rule by the kind of the element.
    integer, parameter :: point_count(kind_count) = [9, 4, 4, 3, 3]
+
+   integer, parameter :: most_points = 9   !! largest of them
+
+   !> Points of recovery_points by the kind of the element.
+   integer, parameter :: recovery_count(kind_count) = [4, 4, 4, 3, 1]
+
+   real(dp), parameter :: square_corner(2, 4) = &
+      reshape([-1.0_dp, -1.0_dp, 1.0_dp, -1.0_dp, 1.0_dp, 1.0_dp, -1.0_dp, 1.0_dp], [2, 4])
 
    !> Points of load_rule by the kind of the element.
    integer, parameter :: load_point_count(kind_count) = [9, 9, 9, 6, 6]
@@ -37,7 +46,7 @@ contains
       case (quad8)
          call square_3(points, weights)
       case (quad8_reduced, quad4)
-         points = gauss_coordinate_2*reshape([-1, -1, 1, -1, 1, 1, -1, 1], [2, 4])
+         points = gauss_coordinate_2*square_corner
          weights = 1.0_dp
       case (triangle6, triangle3)
          points = orbit(1.0_dp/6.0_dp)
@@ -64,6 +73,41 @@ contains
          call square_3(points, weights)
       end if
    end subroutine load_rule
+
+   !> Points at which stress and flux are best taken: 2 x 2 on the square, the three of
+   !> integration_rule in the six-node triangle, the centre of the three-node one.
+   pure function recovery_points(kind) result(points)
+      integer, intent(in) :: kind                   !! kind of the element
+      real(dp) :: points(2, recovery_count(kind))   !! xi, eta of each point
+
+      select case (kind)
+      case (triangle6)
+         points = orbit(1.0_dp/6.0_dp)
+      case (triangle3)
+         points = 1.0_dp/3.0_dp
+      case default
+         points = gauss_coordinate_2*square_corner
+      end select
+   end function recovery_points
+
+   !> Weights of the values at recovery_points in the value at a point of the element: bilinear on
+   !> the square, linear in the six-node triangle, constant in the three-node one.
+   pure function recovery_weights(kind, point) result(weights)
+      integer, intent(in) :: kind                   !! kind of the element
+      real(dp), intent(in) :: point(2)              !! xi, eta
+      real(dp) :: weights(recovery_count(kind))     !! their sum is 1
+      real(dp) :: scaled(2)
+
+      select case (kind)
+      case (triangle6)
+         weights = 2*[1 - point(1) - point(2), point(1), point(2)] - 1.0_dp/3.0_dp
+      case (triangle3)
+         weights = 1.0_dp
+      case default
+         scaled = point/gauss_coordinate_2
+         weights = (1 + scaled(1)*square_corner(1, :))*(1 + scaled(2)*square_corner(2, :))/4
+      end select
+   end function recovery_weights
 
    !> The 3 x 3 rule, exact for products of polynomials of degree 5.
    pure subroutine square_3(points, weights)

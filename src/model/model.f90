@@ -6,6 +6,7 @@ module model
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
+   use orientations, only: orientation_type
    use steps, only: step_type
    use text, only: string_type
    implicit none
@@ -40,6 +41,7 @@ module model
       type(mesh_type) :: mesh                                    !! nodes, elements, sets, surfaces
       type(material_type), allocatable :: materials(:)           !! materials
       type(section_type), allocatable :: sections(:)             !! sections
+      type(orientation_type), allocatable :: orientations(:)     !! axes of materials
       type(amplitude_type), allocatable :: amplitudes(:)         !! load curves
       type(interaction_type), allocatable :: interactions(:)     !! surface interactions
       type(contact_definition_type), allocatable :: contacts(:)  !! contact pairs of surfaces

@@ -143,10 +143,10 @@ contains
       associate (fields => record%fields)
          fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
          fields%temperature = next%temperature
-         fields%stress = recover_stress(model%mesh, model%sections, model%materials, points, &
-            fields%displacement, next%temperature - model%initial_temperature)
+         fields%stress = recover_stress(model%mesh, model%sections, model%materials, &
+            model%orientations, points, fields%displacement, next%temperature - model%initial_temperature)
          if (with_heat) fields%heat_flux = recover_heat_flux(model%mesh, model%sections, &
-            model%materials, points, next%temperature)
+            model%materials, model%orientations, points, next%temperature)
       end associate
    end subroutine set_fields
 

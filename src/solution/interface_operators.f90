@@ -191,10 +191,13 @@ contains
       type(model_type), intent(in) :: model                  !! the model
       logical, intent(in) :: with_heat                       !! whether any step solves heat
 
-      self%mechanical%matrix = assemble_stiffness(model%mesh, model%sections, model%materials)
-      self%thermal_load = assemble_thermal_load(model%mesh, model%sections, model%materials)
+      self%mechanical%matrix = assemble_stiffness(model%mesh, model%sections, &
+         model%materials, model%orientations)
+      self%thermal_load = assemble_thermal_load(model%mesh, model%sections, &
+         model%materials, model%orientations)
       if (with_heat) then
-         self%thermal%matrix = assemble_conduction(model%mesh, model%sections, model%materials)
+         self%thermal%matrix = assemble_conduction(model%mesh, model%sections, &
+            model%materials, model%orientations)
       end if
    end subroutine assemble
 
