@@ -17,7 +17,7 @@ module deck_builder
    use deck_builder_sets, only: build_sets
    use deck_builder_steps, only: build_steps
    use deck_builder_surfaces, only: build_surfaces
-   use deck_builder_verify, only: build_verifications
+   use deck_builder_verify, only: build_verifications, check_heat_quantities
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -26,7 +26,7 @@ module deck_builder
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
    use model, only: model_type
    use refinement, only: refine
-   use steps, only: analysis_coupled, analysis_static
+   use steps, only: analysis_coupled, analysis_static, solves_heat
    use text, only: to_text
    implicit none
    private
@@ -70,6 +70,7 @@ contains
       call check_model(context, model, report)
       if (.not. report%has_errors()) then
          call drop_idle_heat(context, model)
+         call check_heat_quantities(model, report)
          call apply_loads(context, model, report)
          deck_nodes = size(model%mesh%node_number)
          call apply_temperatures(context, deck_nodes, .true., model)
@@ -113,7 +114,7 @@ contains
       else if (.not. all(model%materials%has_expansion)) then
          call context%note('a material without *EXPANSION: coefficient 0')
       end if
-      if (.not. any(model%steps%analysis == analysis_coupled)) return
+      if (.not. any(solves_heat(model%steps%analysis))) return
       if (card_count(cards, 'THERMAL SCHEME') == 0) then
          call context%note('no *THERMAL SCHEME: IMPLICIT')
       end if
@@ -122,10 +123,11 @@ contains
             if (interaction%law%open_kind /= law_none) cycle
             if (interaction%law%closed_kind /= law_none) cycle
             call context%note('surface interaction '//interaction%name// &
-               ' without *GAP LAW: no heat crosses')
+               ' without *GAP LAW and *GAP CONDUCTANCE: no heat crosses')
          end associate
       end do
       if (size(model%contacts) == 0) return
+      if (.not. any(model%steps%analysis == analysis_coupled)) return
       associate (fixed_point => model%steps(1)%fixed_point)
          method = 'ZAITSEV'
          if (fixed_point%method == method_picard) method = 'PICARD'

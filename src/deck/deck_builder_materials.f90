@@ -72,7 +72,7 @@ contains
 
       if (meant == 'ELASTIC') material%has_elasticity = .true.
       if (meant == 'CONDUCTIVITY') material%has_conductivity = .true.
-      if (meant == 'DENSITY') material%density = 1.0_dp
+      if (meant == 'DENSITY') material%has_density = .true.
    end subroutine presume_property
 
    !> Index of a material by its name; 0 for an unknown one.
@@ -130,6 +130,7 @@ contains
          end if
          call need_field(cards%data(place), mod(i - 1, per_card) + 1, trim(names(i)), report, &
             constants(i), valid)
+         if (.not. has_field(cards%data(place), mod(i - 1, per_card) + 1)) return
          if (place == last) cycle
          if (mod(i, per_card) == 0) call check_extra(cards%data(place), per_card, &
             'eight constants', report)
@@ -318,6 +319,7 @@ contains
       call read_constants(cards, card, names, context, report, constants, valid)
       if (valid) call refuse_not_positive(cards, card, names, constants, [1], report)
       material%density = constants(1)
+      material%has_density = .true.
    end subroutine build_density
 
 end module deck_builder_materials

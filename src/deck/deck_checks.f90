@@ -11,7 +11,7 @@ module deck_checks
    use mesh, only: mesh_type
    use mesh_checks, only: check_jacobians, check_planes, check_sides
    use model, only: model_type
-   use steps, only: analysis_coupled, analysis_heat, analysis_static
+   use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
    private
@@ -87,10 +87,8 @@ contains
       logical :: mechanics, heat
       integer :: m
 
-      mechanics = any(model%steps%analysis == analysis_static .or. &
-         model%steps%analysis == analysis_coupled)
-      heat = any(model%steps%analysis == analysis_coupled .or. &
-         model%steps%analysis == analysis_heat)
+      mechanics = any(solves_mechanics(model%steps%analysis))
+      heat = any(solves_heat(model%steps%analysis))
       do m = 1, size(model%materials)
          if (.not. any(model%sections%material == m)) cycle
          associate (material => model%materials(m))
@@ -151,5 +149,6 @@ contains
          end associate
       end do
    end subroutine check_orientations
+
 
 end module deck_checks

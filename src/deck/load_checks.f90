@@ -4,7 +4,6 @@ module load_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_kinds, only: axisymmetric
-   use kinds, only: dp
    use load_requests, only: request_type
    use model, only: model_type
    use steps, only: analysis_static, dof_temperature, load_body_heat, load_centrifugal, &
@@ -117,7 +116,7 @@ contains
          if (section == 0) cycle
          m = model%sections(section)%material
          if (m == 0) cycle
-         if (abs(model%materials(m)%density) > 0.0_dp) cycle
+         if (model%materials(m)%has_density) cycle
          call report%error(request%place, 'material '//model%materials(m)%name// &
             ' has no *DENSITY, which '//label//' needs')
          return

@@ -17,6 +17,7 @@ module materials
       logical :: has_elasticity = .false.             !! *ELASTIC was given
       logical :: has_expansion = .false.              !! *EXPANSION was given
       logical :: has_conductivity = .false.           !! *CONDUCTIVITY was given
+      logical :: has_density = .false.                !! *DENSITY was given
    end type material_type
 
    !> One *SOLID SECTION.

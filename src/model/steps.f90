@@ -10,6 +10,7 @@ module steps
    public :: load_centrifugal, load_nodal_heat, load_face_heat, load_body_heat
    public :: load_film_coefficient, load_film_sink, load_temperature
    public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
+   public :: solves_heat, solves_mechanics
 
    integer, parameter :: analysis_static = 1    !! *STATIC: mechanics at given temperatures
    integer, parameter :: analysis_coupled = 2   !! *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
@@ -70,5 +71,23 @@ module steps
       integer :: field_frequency = 1                 !! fields at every n-th increment and the last
       integer :: contact_print_frequency = 0         !! *CONTACT PRINT likewise; 0 never
    end type step_type
+
+contains
+
+   !> Whether an analysis solves heat.
+   elemental function solves_heat(analysis) result(heat)
+      integer, intent(in) :: analysis   !! one of the analysis_* constants
+      logical :: heat                   !! temperatures are unknown
+
+      heat = analysis /= analysis_static
+   end function solves_heat
+
+   !> Whether an analysis solves mechanics.
+   elemental function solves_mechanics(analysis) result(mechanics)
+      integer, intent(in) :: analysis   !! one of the analysis_* constants
+      logical :: mechanics              !! displacements are unknown
+
+      mechanics = analysis /= analysis_heat
+   end function solves_mechanics
 
 end module steps

@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""Steady heat conduction in closed form, to check thercon against: numpy only."""
+import numpy as np
+
+
+def wall(thickness, conductivity, hot, cold, film_hot=np.inf, film_cold=np.inf, contacts=()):
+    """Flux through a wall between two fluids, and the temperatures of its faces.
+
+    The wall may be of layers (sequences of thicknesses and conductivities) with conductances between them; the
+    temperatures are those of both faces of every layer.
+    """
+    layers = np.atleast_1d(np.asarray(thickness, float) / np.asarray(conductivity, float))
+    resistances = [1 / film_hot]
+    for k, layer in enumerate(layers):
+        resistances += [layer, 1 / contacts[k] if k < len(contacts) else 0.0]
+    resistances[-1] = 1 / film_cold
+    flux = (hot - cold) / sum(resistances)
+    return flux, hot - flux * np.cumsum(resistances)[:-1]
+
+
+def heated_wall(x, thickness, conductivity, source, left, right):
+    """Temperature in a wall with a uniform source W and its faces at two temperatures: a parabola."""
+    x = np.asarray(x, float)
+    return left + (right - left) * x / thickness + source * x * (thickness - x) / (2 * conductivity)
+
+
+def heated_wall_with_film(x, thickness, conductivity, source, film, sink):
+    """The same, insulated at x = 0 and with a film at x = thickness."""
+    x = np.asarray(x, float)
+    return sink + source * thickness / film + source * (thickness**2 - x**2) / (2 * conductivity)
+
+
+def tube(r, inner, outer, inside, outside):
+    """Temperature in a tube with its faces at two temperatures."""
+    return inside + (outside - inside) * np.log(np.asarray(r, float) / inner) / np.log(outer / inner)
+
+
+def tube_rate(inner, outer, conductivity, inside, outside):
+    """Heat that flows outward through a tube, per unit of its length."""
+    return 2 * np.pi * conductivity * (inside - outside) / np.log(outer / inner)
+
+
+def rod(r, radius, conductivity, source, surface):
+    """Temperature in a solid cylinder with a uniform source and a surface temperature."""
+    return surface + source * (radius**2 - np.asarray(r, float) ** 2) / (4 * conductivity)
+
+
+def conductivity_tensor(along, across, degrees):
+    """K_xx, K_yy, K_xy of a material whose first axis is turned anticlockwise from x."""
+    c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
+    return np.array([[along * c * c + across * s * s, (along - across) * c * s],
+                     [(along - across) * c * s, along * s * s + across * c * c]])
+
+
+def amplification(scheme):
+    """What a step of eq. (3.4) at constant omega makes of the error of the last temperature: -b1/a1, where the
+    weights of the start and of the end are (1 - theta) and theta."""
+    theta = {"IMPLICIT": 1.0, "GALERKIN": 2 / 3, "CRANK-NICOLSON": 1 / 2, "EXPLICIT": 1.0}[scheme]
+    return -(1 - theta) / theta
