@@ -8,6 +8,7 @@ module increment_records
    use contact_system, only: contact_state_type, contact_system_type
    use controls, only: thermal_scheme_type
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
+   use heat_balance, only: balance_heat
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -194,52 +195,5 @@ contains
          next%reaction = reshape(merge(residual, 0.0_dp, held), [2, size(next%temperature)])
       end associate
    end subroutine balance_forces
-
-   !> Heat that enters at prescribed temperatures at the end of the increment, and the heat balances
-   !> of (3.4) and, at that instant, of (3.3).
-   subroutine balance_heat(operators, model, loads, scheme, carrying, previous, next, record)
-      type(interface_operators_type), intent(in) :: operators
-      type(model_type), intent(in) :: model
-      type(loads_type), intent(in) :: loads
-      type(thermal_scheme_type), intent(in) :: scheme
-      real(dp), intent(in) :: carrying(:)
-      type(solution_state_type), intent(in) :: previous
-      type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
-      real(dp), allocatable :: conducted(:), residual(:), pair_heat(:)
-      real(dp) :: net(0:maxval(loads%temperature%card)), scale
-      integer :: i
-
-      pair_heat = operators%pairs%weight*carrying*next%jump
-      conducted = operators%thermal%matrix%multiply(next%temperature)
-      residual = heat_residual(conducted, next%heat_load, operators%pairs, pair_heat)
-      net = 0.0_dp
-      associate (held => loads%temperature%active, card => loads%temperature%card, &
-         weight => operators%pairs%weight, body => model%mesh%node_body)
-         do i = 1, size(residual)
-            if (held(i)) net(card(i)) = net(card(i)) + residual(i)
-         end do
-         record%heat_in = sum(net, mask=net > 0.0_dp)
-         record%heat_out = -sum(net, mask=net < 0.0_dp)
-         scale = max(record%heat_in, record%heat_out, abs(sum(pair_heat)), &
-            maxval(abs(residual), mask=held), maxval(abs(next%heat_load)), &
-            noise*maxval(abs(operators%thermal%matrix%value))*maxval(abs(next%temperature)), &
-            tiny(1.0_dp))
-         record%fields%reaction_heat = merge(residual, 0.0_dp, held)
-         residual = heat_residual(conducted, next%heat_load, operators%pairs, &
-            weight*next%omega*next%jump)
-         record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, scale)
-         associate (whole => scheme%a(1) + scheme%b(1))
-            conducted = (scheme%a(1)*conducted + scheme%b(1)* &
-               operators%thermal%matrix%multiply(previous%temperature))/whole
-            pair_heat = scheme_pair_heat(scheme, weight, next%omega_start, next%omega, &
-               previous%jump, next%jump)/whole
-            residual = heat_residual(conducted, &
-               (scheme%c(1)*previous%heat_load + scheme%c(2)*next%heat_load)/whole, &
-               operators%pairs, pair_heat)
-         end associate
-         record%heat_imbalance = imbalance(conducted, residual, held, body, scale)
-      end associate
-   end subroutine balance_heat
 
 end module increment_records

@@ -5,6 +5,7 @@ module increment_solution
       law_conductance, residual_floor, temperature_jumps, thermal_forces
    use contact_system, only: closing_law_type
    use errors, only: error_type, set_error, status_no_convergence
+   use films, only: film_history
    use fixed_point, only: accelerator_type, fixed_point_residual, make_accelerator, &
       predicted_conductance
    use interface_operators, only: interface_operators_type
@@ -120,6 +121,7 @@ contains
 
       associate (given => loads%temperature%value)
          forces = field_history(data%scheme, operators%thermal%matrix, previous%temperature) + &
+            film_history(data%scheme, previous%film, next%film, previous%temperature) + &
             scheme_load(data%scheme, previous%heat_load, next%heat_load)
          call operators%thermal%set_load(forces, given)
          call operators%thermal%condense_load()

@@ -7,6 +7,7 @@ module increments
    use field_recovery, only: make_points, point_map_type
    use increment_records, only: make_record
    use increment_solution, only: recover_fields, solve_pairs
+   use films, only: left_films
    use interface_operators, only: interface_operators_type
    use kinds, only: dp, long
    use load_courses, only: step_clock_type
@@ -15,6 +16,7 @@ module increments
    use model, only: model_type
    use records, only: increment_record_type, status_open
    use solution_state, only: solution_state_type
+   use sparse_matrix, only: sparse_matrix_type
    use steps, only: load_temperature, solves_heat, solves_mechanics, step_type
    use text, only: to_text
    use thermal_matrix, only: contact_diagonal
@@ -176,21 +178,27 @@ contains
          call enter_step(self, model, error)
          if (allocated(error)) return
       end if
+      clock = next_instant(self, model, model%steps(self%step))
+      call self%loads%move_to(clock, model)
       call self%reduce(model, error)
       if (allocated(error)) return
+      next = self%state
+      if (self%with_heat) then
+         call take_heat(self, model, next)
+         call self%operators%set_film(left_films(model%steps(self%step)%scheme, &
+            self%state%film, next%film), model, error)
+         if (allocated(error)) return
+      end if
       associate (step => model%steps(self%step))
          record%increment = self%increments + 1
          record%step = self%step
-         clock = next_instant(self, model, step)
          record%time = clock%total_time
-         call self%loads%move_to(clock, model)
          record%load = self%loads%axis_value(model, record%time)
          if (self%increments_of_step == step%max_increments) then
             call set_error(error, status_no_convergence, 'step '//to_text(self%step)// &
                ' is not over after INC='//to_text(step%max_increments)//' increments')
             return
          end if
-         next = self%state
          next%increment_size = clock%step_time - self%step_time
          since = wall_seconds()
          call solve_pairs(self%operators, self%loads, model, step, self%state, next, record, error)
@@ -223,6 +231,20 @@ contains
       end associate
    end subroutine advance
 
+   !> Heat loads and films at the end of the increment that the loads stand at.
+   subroutine take_heat(self, model, next)
+      class(simulation_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(solution_state_type), intent(inout) :: next
+
+      next%heat_load = self%loads%heat_load(model)
+      if (self%loads%has_film()) then
+         next%film = self%loads%film_matrix(model)
+      else
+         next%film = sparse_matrix_type()
+      end if
+   end subroutine take_heat
+
    !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
    !> place of whatever error followed from it.
    subroutine check_heat(self, model, next, error)
@@ -249,6 +271,7 @@ contains
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model               !! the model
       type(error_type), allocatable, intent(out) :: error !! see above
+      type(solution_state_type) :: next
       logical :: heat, mechanics
       real(dp) :: since
 
@@ -262,6 +285,13 @@ contains
       end if
       self%seconds%assemble = self%seconds%assemble + (wall_seconds() - since)
       since = wall_seconds()
+      if (heat) then
+         next = self%state
+         call self%loads%move_to(next_instant(self, model, model%steps(self%step)), model)
+         call take_heat(self, model, next)
+         self%operators%thermal%added = left_films(model%steps(self%step)%scheme, &
+            self%state%film, next%film)
+      end if
       call self%operators%reduce(model, mechanics, heat, self%with_heat .and. &
          self%with_mechanics, error)
       self%mechanics_is_reduced = self%mechanics_is_reduced .or. (mechanics .and. &

@@ -3,6 +3,7 @@ module scheme_start
    use balances, only: heat_residual
    use contact_operator, only: increment_data_type
    use interface_operators, only: interface_operators_type
+   use films, only: net_heat
    use kinds, only: dp
    use loads, only: loads_type
    use records, only: increment_record_type
@@ -54,7 +55,8 @@ contains
 
       conducted = operators%thermal%matrix%multiply(previous%temperature)
       pair_heat = operators%pairs%weight*data%omega_old*data%jump_old
-      residual = heat_residual(conducted, previous%heat_load, operators%pairs, pair_heat)
+      residual = heat_residual(conducted, net_heat(previous%heat_load, previous%film, &
+         previous%temperature), operators%pairs, pair_heat)
       scale = max(maxval(abs(conducted)), maxval(abs(previous%heat_load)), &
          maxval([0.0_dp, abs(pair_heat)]), noise*maxval(abs(operators%thermal%matrix%value))* &
          maxval(abs(previous%temperature)), tiny(1.0_dp))

@@ -2,6 +2,7 @@
 module solution_state
    use contact_system, only: contact_state_type
    use kinds, only: dp
+   use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
    public :: solution_state_type
@@ -21,6 +22,7 @@ module solution_state
       real(dp), allocatable :: stress(:, :)
       real(dp), allocatable :: reaction(:, :)       !! (2, nodes) likewise [force]
       real(dp), allocatable :: heat_load(:)         !! (nodes) Q of (3.3) [power]
+      type(sparse_matrix_type) :: film !! (nodes, nodes) F, films beside K [power/temperature]
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
       real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]
       logical :: has_mechanics = .false.            !! whether mechanics was ever solved
