@@ -144,7 +144,8 @@ contains
          fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
          fields%temperature = next%temperature
          fields%stress = recover_stress(model%mesh, model%sections, model%materials, &
-            model%orientations, points, fields%displacement, next%temperature - model%initial_temperature)
+            model%orientations, points, fields%displacement, &
+            next%temperature - model%initial_temperature)
          if (with_heat) fields%heat_flux = recover_heat_flux(model%mesh, model%sections, &
             model%materials, model%orientations, points, next%temperature)
       end associate
