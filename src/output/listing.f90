@@ -9,7 +9,8 @@ module listing
    use listing_tables, only: print_contact_table, print_iterations, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
-   use records, only: contact_record_type, increment_record_type, iteration_record_type
+   use records, only: contact_record_type, edges_kept, increment_record_type, &
+      iteration_record_type, status_open, status_stick
    use run_summaries, only: or_blank, run_summary_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: append, string_type, to_text
@@ -195,7 +196,26 @@ contains
          write (unit, '(a, es14.6)', advance='no') '   heat rate', contact%heat_rate
       end if
       write (unit, '()')
+      call print_surplus(unit, 'contact', edge_count(contact%status /= status_open))
+      call print_surplus(unit, 'stick', edge_count(contact%status == status_stick))
    end subroutine print_interface
+
+   !> Ends of zones between two pairs.
+   pure integer function edge_count(in_zone)
+      logical, intent(in) :: in_zone(:)
+
+      edge_count = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
+   end function edge_count
+
+   subroutine print_surplus(unit, zone, edges)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: zone
+      integer, intent(in) :: edges
+
+      if (edges > edges_kept) write (unit, '(6x, 3a, i0, 3a, i0)') 'warning: the zones of ', &
+         zone, ' have ', edges, ' edges; edges_', zone, ' of the result file holds the first ', &
+         edges_kept
+   end subroutine print_surplus
 
    function edge_text(edge) result(string)
       real(dp), intent(in) :: edge
