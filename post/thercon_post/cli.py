@@ -10,8 +10,8 @@ from .result import FIELD_SOURCES, Result
 
 SUMMARY = """Pictures of a thercon result: each call writes PNG and SVG, and what was drawn as CSV.
 
-Files are DIR/NAME.PICTURE.png and so on, RESULT being NAME.vtkhdf; loads, quantities and figures
-laid over stand in the name. Axes have the units of `*OPTIONS, UNITS=`, or none."""
+Files are DIR/NAME.PICTURE.png and so on, RESULT being NAME.vtkhdf; what was chosen by options
+stands in the name. Axes have the units of `*OPTIONS, UNITS=`, or none."""
 
 WITH_PROFILES = """A digitised figure is a CSV file with a heading. Columns: x (or s, with --along
 s) and any of pressure, shear, heat_flux; one called load separates curves of several loads. Empty

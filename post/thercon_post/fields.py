@@ -78,9 +78,11 @@ def name_of(result, row, options):
     """Return the file name: what was chosen by options stands in it."""
     parts = list(options.quantity or ())
     if options.load or options.increment:
-        parts.append(float(result.history["load"][row]))
+        parts += result.row_words(row)
     if options.region == "contact":
         parts.append("contact")
+    if options.scale != 1.0:
+        parts += ["scale", options.scale]
     return style.file_name(result, "fields", *parts)
 
 

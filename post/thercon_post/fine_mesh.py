@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cells import CORNERS
+from .cells import CORNERS, QUADRATIC
 
 
 def shape_functions(kind, r, s):
@@ -52,11 +52,17 @@ class FineMesh:
         return fine
 
 
+def edge_keys(first, last, middle, nodes):
+    """Return numbers that tell edges apart: the two faces of a crack may share both ends."""
+    straight = np.minimum(first, last) * nodes + np.maximum(first, last)
+    return np.where(middle < 0, straight, nodes * nodes + middle)
+
+
 def refine(cells, pieces):
     """Cut every element of `cells` into pieces x pieces parts of two triangles each."""
     nodes = len(cells.points)
     edges, _ = cells.edges()
-    keys = np.unique(edges[:, 0] * nodes + edges[:, 1])
+    keys = np.unique(edge_keys(*edges.T, nodes))
     count = nodes + len(keys) * (pieces - 1)
     sources, triangles = [], []
     for kind, group in cells.groups.items():
@@ -66,7 +72,8 @@ def refine(cells, pieces):
         numbers[:, grid.corners] = group[:, :corners]
         for k, side in enumerate(grid.sides):
             first, last = group[:, k], group[:, (k + 1) % corners]
-            key = np.minimum(first, last) * nodes + np.maximum(first, last)
+            middle = group[:, corners + k] if kind in QUADRATIC else np.full(len(group), -1)
+            key = edge_keys(first, last, middle, nodes)
             start = nodes + np.searchsorted(keys, key) * (pieces - 1)
             along = np.arange(pieces - 1)
             along = np.where((first > last)[:, None], along[::-1], along)

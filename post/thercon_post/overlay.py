@@ -56,6 +56,11 @@ def file_parts(paths):
     return ["with", *(Path(path).stem for path in paths)] if paths else []
 
 
+def axis_words(along):
+    """Return what stands in a file name for the axis asked for, if one was."""
+    return ["along", along] if along else []
+
+
 def read_overlays(paths, abscissa, curves, others):
     """Read digitised figures; the arguments are those of `read_figure`."""
     return [Overlay(p, read_figure(p, abscissa, curves, others), k) for k, p in enumerate(paths)]

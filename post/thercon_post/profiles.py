@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import profile_legends, style
-from .overlay import file_parts, read_overlays
+from .overlay import axis_words, file_parts, read_overlays
 from .profile_legends import EDGES, QUANTITY_LINES
 from .result import OPEN
 from .style import plt
@@ -25,7 +25,10 @@ def draw(result, options):
         figure = Picture(result, contact, rows, options).draw(overlays)
         parts = [contact.name] if len(result.contact_names) > 1 else []
         if options.load or options.increment:
-            parts += [float(result.history["load"][row]) for row in rows]
+            parts += [word for row in rows for word in result.row_words(row)]
+        parts += axis_words(options.along)
+        if options.range:
+            parts += ["range", *options.range]
         name = style.file_name(result, "profiles", *parts, *file_parts(options.figures))
         written += style.write(figure, table(result, contact, rows), options.out, name)
     return written

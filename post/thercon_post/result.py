@@ -151,6 +151,13 @@ class Result:
             rows.append(number - 1)
         return rows or [self.increments - 1]
 
+    def row_words(self, row):
+        """Return what stands in a file name for a row of /history: its load, and its increment
+        where other increments have that load too."""
+        load = float(self.history["load"][row])
+        words = [f"{each:g}" for each in self.history["load"]]
+        return [load, "increment", row + 1] if words.count(f"{load:g}") > 1 else [load]
+
     @cached_property
     def cells(self):
         """Mesh as written: points, cells and what bounds them."""

@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from . import style
 from .errors import UserError
-from .overlay import file_parts, read_overlays
+from .overlay import axis_words, file_parts, read_overlays
 from .result import OPEN, SLIP, STICK
 from .style import plt
 from .tables import write_table
@@ -33,7 +33,7 @@ def draw(result, options):
         picture = Picture(result, contact, along, coordinate)
         figure = picture.draw(overlays)
         parts = [contact.name] if len(result.contact_names) > 1 else []
-        parts += file_parts(options.figures)
+        parts += axis_words(options.along) + file_parts(options.figures)
         name = style.file_name(result, "zones", *parts)
         written += style.write(figure, picture.table(), options.out, name)
         pairs = Path(options.out) / f"{style.file_name(result, 'zones', *parts, 'pairs')}.csv"

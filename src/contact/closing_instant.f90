@@ -16,6 +16,7 @@
 !> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
 !> to slip, and each value could call for the other condition: then there is no solution.
 module closing_instant
+   use active_set, only: solve_contact
    use contact_system, only: closing_law_type, contact_state_type, contact_system_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
@@ -30,7 +31,7 @@ module closing_instant
 contains
 
    !> Contact state at the end of an increment, with the references of the pairs that close in it.
-   !> Error: as contact_system's solve, or closing laws that do not settle.
+   !> Error: as solve_contact, or closing laws that do not settle.
    subroutine solve_increment(system, previous, load, state, error)
       type(contact_system_type), intent(inout) :: system  !! the reduced system
       type(contact_state_type), intent(in) :: previous    !! state at the start of the increment
@@ -41,7 +42,7 @@ contains
       integer :: k, pass
 
       do pass = 1, most_passes
-         call system%solve(load, state, error)
+         call solve_contact(system, load, state, error)
          if (allocated(error)) return
          call update_laws(system, previous, state, change, error)
          if (allocated(error)) return

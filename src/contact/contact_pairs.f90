@@ -1,25 +1,34 @@
-!> Contact node pairs: geometry, normals and tributary lengths, taken once from the undeformed mesh.
+!> Contact node pairs: geometry, normals and tributary areas, taken once from the undeformed mesh.
 module contact_pairs
+   use chain_geometry, only: arc_lengths, chain_tangents, edge_lengths, tributary_lengths, &
+      tributary_rings
    use contact_definitions, only: contact_definition_type
-   use errors, only: error_type, set_error, status_deck
+   use element_kinds, only: axisymmetric
+   use errors, only: error_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use quadrature, only: gauss_point_3, gauss_weight_3
-   use shape_functions, only: side_shape, side_slope
-   use surface_chains, only: chain_faces
-   use text, only: to_text
+   use pair_checks, only: check_lines, check_opposite, check_sides, check_weights
+   use surface_chains, only: chain_faces, precedes, surface_chain_type
    implicit none
    private
-   public :: contact_pairs_type, make_pairs
+   public :: contact_pairs_type, make_pairs, never_approached
 
-   !> The pairs of one interface, ordered along the slave from the end with the smaller x (then y).
+   real(dp), parameter :: on_axis = 1.0e-9_dp    !! part of the largest radius that counts as 0
+   real(dp), parameter :: weightless = 0.01_dp   !! part of its neighbour's weight below which the
+   !! corner on the axis has none
+   real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
+
+   !> The pairs of one interface, ordered along the slave from the end with the smaller x (then y);
+   !> in a ring from the corner with the smallest x (then y), with the slave on the left.
    type :: contact_pairs_type
       character(:), allocatable :: name        !! name of the *CONTACT PAIR
       integer, allocatable :: slave_node(:)    !! (m) node indexes
       integer, allocatable :: master_node(:)   !! (m) node indexes
       real(dp), allocatable :: position(:, :)  !! (2, m) undeformed slave [length]
       real(dp), allocatable :: arc_length(:)   !! (m) s from the first pair [length]
-      real(dp), allocatable :: weight(:)       !! (m) tributary length times thickness [length^2]
+      !> (m) tributary length times thickness, axisymmetric times 2 pi r; 0 where three-node sides
+      !> give the axis none [length^2]
+      real(dp), allocatable :: weight(:)
       real(dp), allocatable :: normal(:, :)    !! (2, m) common unit normal, outward from the slave
       real(dp), allocatable :: tangent(:, :)   !! (2, m) unit tangent towards growing s
       real(dp), allocatable :: initial_gap(:)  !! (m) h [length]
@@ -27,163 +36,168 @@ module contact_pairs
 
 contains
 
-   !> The pairs of one *CONTACT PAIR: the k-th nodes along its two surfaces.
-   !> Errors: surfaces that do not form one open line, unequal numbers of nodes, nodes that are not
-   !> opposite.
+   !> The pairs of one *CONTACT PAIR: the k-th nodes along its two surfaces. A node that both
+   !> surfaces end in, the tip of a crack, is no pair.
+   !> Errors: surfaces that do not form one line each or that do not fit, unequal numbers of nodes,
+   !> nodes that are not opposite, bodies on the wrong side, sides without tributary length.
    subroutine make_pairs(mesh, definition, thickness, pairs, error)
       type(mesh_type), intent(in) :: mesh                     !! the mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
-      real(dp), intent(in) :: thickness                       !! thickness of the slave [length]
+      real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
       type(contact_pairs_type), intent(out) :: pairs          !! the pairs
       type(error_type), allocatable, intent(out) :: error     !! see above
-      integer, allocatable :: slave(:), master(:)
-      logical :: turned
+      type(surface_chain_type) :: slave, master
+      logical :: about_axis, turned_slave, turned_master
+      integer :: first, last
 
       pairs%name = definition%name
-      call chain_faces(mesh, mesh%surfaces(definition%slave), slave, error)
-      if (allocated(error)) return
-      call chain_faces(mesh, mesh%surfaces(definition%master), master, error)
-      if (allocated(error)) return
-      if (size(slave) /= size(master)) then
-         call set_error(error, status_deck, 'contact pair '//pairs%name//': '// &
-            to_text(size(slave))//' slave nodes but '//to_text(size(master))//' master nodes')
-         return
-      end if
-      call start_at_smaller_x(mesh, slave, turned)
-      associate (x => mesh%coordinates)
-         if (norm2(x(:, master(1)) - x(:, slave(1))) > &
-            norm2(x(:, master(size(master))) - x(:, slave(1)))) master = master(size(master):1:-1)
-         pairs%slave_node = slave
-         pairs%master_node = master
-         pairs%position = x(:, slave)
-         pairs%arc_length = arc_lengths(x(:, slave))
-         pairs%weight = thickness*tributary_lengths(0.5_dp*(x(:, slave) + x(:, master)))
-         pairs%tangent = face_tangents(x(:, slave)) + face_tangents(x(:, master))
-         call set_directions(turned, pairs)
-         pairs%initial_gap = sum((x(:, master) - x(:, slave))*pairs%normal, dim=1)
+      associate (slave_surface => mesh%surfaces(definition%slave), &
+         master_surface => mesh%surfaces(definition%master))
+         call chain_faces(mesh, slave_surface, slave, error)
+         if (allocated(error)) return
+         call chain_faces(mesh, master_surface, master, error)
+         if (allocated(error)) return
+         call align(mesh, slave, master, turned_slave, turned_master)
+         call check_lines(mesh, definition, slave, master, error)
+         if (allocated(error)) return
+         pairs%slave_node = slave%nodes
+         pairs%master_node = master%nodes
+         about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
+         call set_weights(mesh, slave, master, thickness, about_axis, pairs%weight)
       end associate
-      if (any(pairs%weight <= 0.0_dp)) then
-         call set_error(error, status_deck, 'contact pair '//pairs%name// &
-            ': no length of the face belongs to slave node '// &
-            to_text(mesh%node_number(slave(minloc(pairs%weight, dim=1))))// &
-            '; its midside nodes are too far from the middle')
-         return
-      end if
-      call check_opposite(mesh, pairs, error)
+      first = 1
+      last = size(slave%nodes)
+      if (slave%nodes(1) == master%nodes(1)) first = 2
+      if (slave%nodes(last) == master%nodes(last)) last = last - 1
+      call set_geometry(mesh, slave, master, [turned_slave, turned_master], pairs)
+      call check_sides(mesh, pairs%name, slave, master, [turned_slave, turned_master], first, &
+         last, error)
+      if (allocated(error)) return
+      call cut_ends(first, last, pairs)
+      call check_weights(mesh, pairs%name, pairs%slave_node, pairs%weight, about_axis, error)
+      if (allocated(error)) return
+      associate (edge => edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, &
+         slave%closed))
+         call check_opposite(mesh, pairs%name, pairs%slave_node, pairs%master_node, &
+            pairs%tangent, max(edge(first:last), abs(pairs%initial_gap)), error)
+         if (allocated(error)) return
+      end associate
+      if (definition%has_clearance) pairs%initial_gap = definition%clearance
    end subroutine make_pairs
 
-   !> Turns a line of nodes so that it starts at the end with the smaller x, then y.
-   subroutine start_at_smaller_x(mesh, nodes, turned)
+   !> Whether a pair neither closed nor came nearer than it was.
+   elemental function never_approached(initial_gap, smallest_gap) result(never)
+      real(dp), intent(in) :: initial_gap    !! h [length]
+      real(dp), intent(in) :: smallest_gap   !! smallest gap of all increments [length]
+      logical :: never                       !! to be reported
+
+      never = smallest_gap > 0.0_dp .and. smallest_gap >= initial_gap*(1.0_dp - unmoved)
+   end function never_approached
+
+   !> Turns both lines to run from the slave's first pair on: an open one if its ends so lie
+   !> nearer, a ring of the master always, for it runs against the slave.
+   subroutine align(mesh, slave, master, turned_slave, turned_master)
       type(mesh_type), intent(in) :: mesh
-      integer, intent(inout) :: nodes(:)
-      logical, intent(out) :: turned
-      real(dp) :: first(2), last(2)
+      type(surface_chain_type), intent(inout) :: slave, master
+      logical, intent(out) :: turned_slave, turned_master
+      real(dp) :: distance(size(master%nodes)), end_distance(size(master%nodes))
+      integer :: n, start
 
-      first = mesh%coordinates(:, nodes(1))
-      last = mesh%coordinates(:, nodes(size(nodes)))
-      turned = last(1) < first(1) .or. (last(1) <= first(1) .and. last(2) < first(2))
-      if (turned) nodes = nodes(size(nodes):1:-1)
-   end subroutine start_at_smaller_x
+      turned_slave = .false.
+      associate (x => mesh%coordinates)
+         if (.not. slave%closed) then
+            n = size(slave%nodes)
+            associate (first => x(:, slave%nodes(1)), last => x(:, slave%nodes(n)))
+               turned_slave = precedes(last, first, norm2(last - first))
+            end associate
+            if (turned_slave) slave%nodes = slave%nodes(n:1:-1)
+         end if
+         n = size(master%nodes)
+         distance = norm2(x(:, master%nodes) - spread(x(:, slave%nodes(1)), 2, n), dim=1)
+         end_distance = norm2(x(:, master%nodes) - &
+            spread(x(:, slave%nodes(size(slave%nodes))), 2, n), dim=1)
+         if (master%closed) then
+            start = 1 + (master%side_nodes - 1)*(minloc(distance(::master%side_nodes - 1), dim=1) &
+               - 1)
+            master%nodes = cshift(master%nodes, start - 1)
+            master%nodes(2:) = master%nodes(n:2:-1)
+            turned_master = .true.
+         else
+            turned_master = distance(1) + end_distance(n) > distance(n) + end_distance(1)
+            if (turned_master) master%nodes = master%nodes(n:1:-1)
+         end if
+      end associate
+   end subroutine align
 
-   !> Unit tangents and normals from the summed tangents of both faces. An unturned line has the
-   !> slave on its left.
-   subroutine set_directions(turned, pairs)
-      logical, intent(in) :: turned
+   !> Weights on the line midway between the faces. On three-node sides the integral for a corner on
+   !> the axis vanishes but for the curvature of the side; what that leaves goes to its neighbour.
+   subroutine set_weights(mesh, slave, master, thickness, about_axis, weight)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: slave, master
+      real(dp), intent(in) :: thickness
+      logical, intent(in) :: about_axis
+      real(dp), allocatable, intent(out) :: weight(:)
+      real(dp) :: middle(2, size(slave%nodes))
+      integer :: finish, k, neighbour, n
+
+      n = size(slave%nodes)
+      middle = 0.5_dp*(mesh%coordinates(:, slave%nodes) + mesh%coordinates(:, master%nodes))
+      if (.not. about_axis) then
+         weight = thickness*tributary_lengths(middle, slave%side_nodes, slave%closed)
+         return
+      end if
+      weight = tributary_rings(middle, slave%side_nodes, slave%closed)
+      if (slave%closed .or. slave%side_nodes == 2) return
+      do finish = 1, 2
+         k = merge(1, n, finish == 1)
+         neighbour = merge(2, n - 1, finish == 1)
+         if (maxval(abs(mesh%coordinates(1, [slave%nodes(k), master%nodes(k)]))) > &
+            on_axis*maxval(abs(middle(1, :)))) cycle
+         if (abs(weight(k)) >= weightless*abs(weight(neighbour))) cycle
+         weight(neighbour) = weight(neighbour) + weight(k)
+         weight(k) = 0.0_dp
+      end do
+   end subroutine set_weights
+
+   !> Positions, arc length, common tangents and normals, and gaps. An unturned line has its body on
+   !> the left.
+   subroutine set_geometry(mesh, slave, master, turned, pairs)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: slave, master
+      logical, intent(in) :: turned(2)
       type(contact_pairs_type), intent(inout) :: pairs
       real(dp) :: side
       integer :: k
 
-      side = merge(-1.0_dp, 1.0_dp, turned)
-      allocate (pairs%normal, mold=pairs%tangent)
-      do k = 1, size(pairs%slave_node)
-         pairs%tangent(:, k) = pairs%tangent(:, k)/norm2(pairs%tangent(:, k))
-         pairs%normal(:, k) = side*[pairs%tangent(2, k), -pairs%tangent(1, k)]
-      end do
-   end subroutine set_directions
-
-   !> Arc length of each node along a line of three-node sides, from the first.
-   pure function arc_lengths(x) result(s)
-      real(dp), intent(in) :: x(:, :)
-      real(dp) :: s(size(x, 2))
-      real(dp) :: mid, half(2)
-      integer :: first, g, part
-
-      s(1) = 0.0_dp
-      do first = 1, size(x, 2) - 2, 2
-         half = 0.0_dp
-         do part = 1, 2
-            mid = part - 1.5_dp
-            do g = 1, 3
-               half(part) = half(part) + 0.5_dp*gauss_weight_3(g)* &
-                  norm2(matmul(x(:, first:first + 2), side_slope(3, mid + 0.5_dp*gauss_point_3(g))))
-            end do
+      associate (x => mesh%coordinates, n => slave%side_nodes, closed => slave%closed)
+         pairs%position = x(:, slave%nodes)
+         pairs%arc_length = arc_lengths(pairs%position, n, closed)
+         pairs%tangent = chain_tangents(pairs%position, n, closed) + &
+            chain_tangents(x(:, master%nodes), n, closed)
+         side = merge(-1.0_dp, 1.0_dp, turned(1))
+         allocate (pairs%normal, mold=pairs%tangent)
+         do k = 1, size(slave%nodes)
+            pairs%tangent(:, k) = pairs%tangent(:, k)/max(norm2(pairs%tangent(:, k)), &
+               tiny(1.0_dp))
+            pairs%normal(:, k) = side*[pairs%tangent(2, k), -pairs%tangent(1, k)]
          end do
-         s(first + 1) = s(first) + half(1)
-         s(first + 2) = s(first + 1) + half(2)
-      end do
-   end function arc_lengths
+         pairs%initial_gap = sum((x(:, master%nodes) - pairs%position)*pairs%normal, dim=1)
+      end associate
+   end subroutine set_geometry
 
-   !> Integral of each node's shape function along a line of three-node sides. A constant pressure
-   !> so has constant nodal force over weight, which is what makes the lumped recovery pass the
-   !> patch test.
-   pure function tributary_lengths(x) result(weight)
-      real(dp), intent(in) :: x(:, :)
-      real(dp) :: weight(size(x, 2))
-      integer :: first, g
+   !> Keeps the pairs first..last; s begins there.
+   pure subroutine cut_ends(first, last, pairs)
+      integer, intent(in) :: first, last
+      type(contact_pairs_type), intent(inout) :: pairs
 
-      weight = 0.0_dp
-      do first = 1, size(x, 2) - 2, 2
-         do g = 1, 3
-            weight(first:first + 2) = weight(first:first + 2) + gauss_weight_3(g)* &
-               side_shape(3, gauss_point_3(g))* &
-               norm2(matmul(x(:, first:first + 2), side_slope(3, gauss_point_3(g))))
-         end do
-      end do
-   end function tributary_lengths
-
-   !> Unit tangents at the nodes of a line of three-node sides; at a shared corner the direction
-   !> midway.
-   pure function face_tangents(x) result(tangent)
-      real(dp), intent(in) :: x(:, :)
-      real(dp) :: tangent(2, size(x, 2))
-      real(dp) :: along(2)
-      integer :: first, node
-
-      tangent = 0.0_dp
-      do first = 1, size(x, 2) - 2, 2
-         do node = 0, 2
-            along = matmul(x(:, first:first + 2), side_slope(3, node - 1.0_dp))
-            tangent(:, first + node) = tangent(:, first + node) + along/norm2(along)
-         end do
-      end do
-      do node = 1, size(x, 2)
-         tangent(:, node) = tangent(:, node)/norm2(tangent(:, node))
-      end do
-   end function face_tangents
-
-   !> Refuses a pair whose tangential offset exceeds both half the local element edge and half its
-   !> gap.
-   subroutine check_opposite(mesh, pairs, error)
-      type(mesh_type), intent(in) :: mesh
-      type(contact_pairs_type), intent(in) :: pairs
-      type(error_type), allocatable, intent(out) :: error
-      real(dp) :: offset, edge
-      integer :: first, k, m
-
-      m = size(pairs%slave_node)
-      do k = 1, m
-         first = min(2*((k - 1)/2) + 1, m - 2)
-         edge = pairs%arc_length(first + 2) - pairs%arc_length(first)
-         offset = abs(dot_product(pairs%tangent(:, k), &
-            mesh%coordinates(:, pairs%master_node(k)) - pairs%position(:, k)))
-         if (offset > 0.5_dp*max(edge, abs(pairs%initial_gap(k)))) then
-            call set_error(error, status_deck, 'contact pair '//pairs%name//': slave node '// &
-               to_text(mesh%node_number(pairs%slave_node(k)))//' and master node '// &
-               to_text(mesh%node_number(pairs%master_node(k)))// &
-               ' are not opposite each other; mesh both surfaces with nodes that face')
-            return
-         end if
-      end do
-   end subroutine check_opposite
+      pairs%slave_node = pairs%slave_node(first:last)
+      pairs%master_node = pairs%master_node(first:last)
+      pairs%position = pairs%position(:, first:last)
+      pairs%arc_length = pairs%arc_length(first:last) - pairs%arc_length(first)
+      pairs%weight = pairs%weight(first:last)
+      pairs%normal = pairs%normal(:, first:last)
+      pairs%tangent = pairs%tangent(:, first:last)
+      pairs%initial_gap = pairs%initial_gap(first:last)
+   end subroutine cut_ends
 
 end module contact_pairs

@@ -13,22 +13,15 @@
 !> forces (closing_instant):
 !>
 !>    stick  d_n = h           (1 - f) (d_t - d_t,i) + f (c_n lambda_n + c_t lambda_t) = 0
-!>
-!> The roles are found by an active set: solve, correct every pair that violates its condition,
-!> solve again. A set that comes back is left by correcting only the last offending pair (Murty's
-!> least-index rule), which cannot cycle on the P-matrix of a frictionless problem. Where contact
-!> alone holds a body and the first guess leaves it loose, all pairs are taken for closed.
 module contact_system
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
-   use friction, only: next_status
    use kinds, only: dp
    use records, only: status_open, status_slip, status_stick
    implicit none
    private
-   public :: contact_system_type, contact_state_type, closing_law_type
+   public :: contact_system_type, contact_state_type, closing_law_type, condition_code
 
-   integer, parameter :: most_sets = 200   !! active sets tried before giving up
 
    !> Contact state of all pairs.
    type :: contact_state_type
@@ -65,8 +58,9 @@ module contact_system
       real(dp), allocatable :: spring(:)          !! (tail) factor of the row's displacement
       type(lu_type) :: lu                         !! factors on the free places
       integer, allocatable :: factored(:)         !! (m) status*3 + direction of the factors
+      logical :: loose = .false.                  !! the set factored last leaves a body loose
    contains
-      procedure :: solve
+      procedure :: solve_set
       procedure :: solve_free
       procedure :: stiffness
       procedure :: friction_rows
@@ -76,66 +70,6 @@ module contact_system
    end type contact_system_type
 
 contains
-
-   !> Contact state under a condensed load, the references of friction being given.
-   !> Error: no active set satisfies all conditions, or the bodies are not held.
-   subroutine solve(self, load, state, error)
-      class(contact_system_type), intent(inout) :: self   !! the reduced system
-      real(dp), intent(in) :: load(:)                     !! (tail) c [force]
-      type(contact_state_type), intent(inout) :: state    !! guess of the status in, solution out
-      type(error_type), allocatable, intent(out) :: error !! see above
-      integer :: visited(size(state%status), most_sets)
-      real(dp) :: excess(size(state%status))
-      integer :: next(2, size(state%status)), k, set
-      logical :: one_at_a_time
-
-      one_at_a_time = .false.
-      do set = 1, most_sets
-         visited(:, set) = code(state)
-         do k = 1, set - 1
-            one_at_a_time = one_at_a_time .or. all(visited(:, k) == visited(:, set))
-         end do
-         call solve_set(self, load, state, error)
-         if (allocated(error) .and. set == 1 .and. any(state%status == status_open)) then
-            state%status = merge(status_stick, status_slip, self%tangent > 0)
-            state%direction = 0
-            call solve_set(self, load, state, error)
-         end if
-         if (allocated(error)) return
-         call judge(self, state, next, excess)
-         if (all(excess <= 0.0_dp)) return
-         if (one_at_a_time) then
-            k = maxval(pack([(k, k=1, size(excess))], excess > 0.0_dp))
-            state%status(k) = next(1, k)
-            state%direction(k) = next(2, k)
-         else
-            state%status = next(1, :)
-            state%direction = next(2, :)
-         end if
-      end do
-      call set_error(error, status_no_convergence, 'the contact zones do not settle')
-   end subroutine solve
-
-   !> What status each pair should have, and by how much it violates the present one.
-   subroutine judge(self, state, next, excess)
-      class(contact_system_type), intent(in) :: self
-      type(contact_state_type), intent(in) :: state
-      integer, intent(out) :: next(:, :)
-      real(dp), intent(out) :: excess(:)
-      real(dp) :: gap_tolerance, force_tolerance
-      integer :: k
-
-      gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(self%initial_gap)), &
-         maxval(abs(state%tangential))) + tiny(1.0_dp)
-      force_tolerance = 1.0e-12_dp*maxval(abs(state%force)) + tiny(1.0_dp)
-      next(1, :) = state%status
-      next(2, :) = state%direction
-      do k = 1, size(state%status)
-         call next_status(next(1, k), next(2, k), state%gap(k), state%force(k), &
-            state%shear_force(k), self%slip(state, k), self%friction(k), &
-            self%tangent(k) > 0, gap_tolerance, force_tolerance, excess(k))
-      end do
-   end subroutine judge
 
    !> Tangential motion of a pair since friction acts on it in this increment.
    pure function slip(self, state, k)
@@ -154,12 +88,13 @@ contains
       end associate
    end function slip
 
-   !> Solution for one active set.
+   !> Solution for one active set. Where that leaves a body loose, the values stay as they are.
+   !> Error: as factor_set.
    subroutine solve_set(self, load, state, error)
-      class(contact_system_type), intent(inout) :: self
-      real(dp), intent(in) :: load(:)
-      type(contact_state_type), intent(inout) :: state
-      type(error_type), allocatable, intent(out) :: error
+      class(contact_system_type), intent(inout) :: self   !! the reduced system
+      real(dp), intent(in) :: load(:)                     !! (tail) c [force]
+      type(contact_state_type), intent(inout) :: state    !! its statuses in, the values out
+      type(error_type), allocatable, intent(out) :: error !! see above
       real(dp) :: d(size(load)), lambda(size(load)), residual(size(load), 1)
       integer :: k
 
@@ -204,21 +139,20 @@ contains
       type(contact_state_type), intent(in) :: state       !! statuses and directions
       type(error_type), allocatable, intent(out) :: error !! see above
       real(dp), allocatable :: rows(:, :)
-      logical :: singular
       integer :: i
 
       if (allocated(self%factored)) then
-         if (all(self%factored == code(state))) return
+         if (all(self%factored == condition_code(state))) return
       end if
-      self%factored = code(state)
+      self%factored = condition_code(state)
       call list_free(self, state)
       rows = self%friction_rows(self%schur(:, self%free))
       rows = rows(self%free, :)
       do i = 1, size(self%free)
          rows(i, i) = rows(i, i) + self%spring(self%free(i))
       end do
-      call self%lu%factor(rows, singular)
-      if (.not. singular) return
+      call self%lu%factor(rows, self%loose)
+      if (.not. self%loose) return
       call self%forget_factors()
       call set_error(error, status_no_convergence, &
          'the bodies are not held by their supports and the pairs that are in contact')
@@ -315,12 +249,12 @@ contains
    end function stiffness
 
    !> One number per pair for its contact condition.
-   pure function code(state) result(codes)
-      type(contact_state_type), intent(in) :: state
-      integer :: codes(size(state%status))
+   pure function condition_code(state) result(codes)
+      type(contact_state_type), intent(in) :: state   !! statuses and directions
+      integer :: codes(size(state%status))            !! (m)
 
       codes = 3*state%status
       where (state%status == status_slip) codes = codes + state%direction
-   end function code
+   end function condition_code
 
 end module contact_system

@@ -1,10 +1,12 @@
 !> Unknowns of a field problem with contact: nodal values on one side, the pairs' relative values
 !> last.
 !>
-!> At a pair the slave's values are written as the master's plus the relative value theta in the
-!> pair's own frame (normal, tangent; one component for temperature). The relative values that
-!> contact acts on form the tail of the system: with them zero the bodies are welded, and the
-!> reduced problem on the tail is eq. (2.4) solved partially.
+!> At a pair the slave's values are the master's plus the relative value theta in the pair's own
+!> frame (normal, tangent; one component for temperature). Nodes that pairs tie together, a node may
+!> be in several, form a tree: each degree of freedom on it is written by the next one on the way to
+!> the root, which is a prescribed one if there is any. The relative values that contact acts on
+!> form the tail of the system: with them zero the bodies are welded, and the reduced problem on the
+!> tail is eq. (2.4) solved partially.
 module equation_map
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
@@ -13,7 +15,6 @@ module equation_map
    private
    public :: equation_map_type, make_map
 
-   integer, parameter :: most_terms = 3                 !! own value, two relative ones
    real(dp), parameter :: aligned = 1.0_dp - 1.0e-9_dp !! cosine of an aligned frame
 
    !> Every degree of freedom as base value + sum of coefficient*unknown.
@@ -21,8 +22,8 @@ module equation_map
       integer :: equations = 0                       !! unknowns
       integer :: tail = 0 !! relative unknowns that contact acts on, the last ones
       integer, allocatable :: term_count(:)          !! (dofs) terms of a degree of freedom
-      integer, allocatable :: term(:, :)             !! (3, dofs) its unknowns
-      real(dp), allocatable :: coefficient(:, :)     !! (3, dofs) their coefficients
+      integer, allocatable :: term(:, :)             !! (most, dofs) its unknowns
+      real(dp), allocatable :: coefficient(:, :)     !! (most, dofs) their coefficients
       integer, allocatable :: base(:) !! (dofs) degree whose prescribed value it is based on, or 0
       integer, allocatable :: relative(:, :) !! (components, m) its unknowns, 0 if prescribed
    contains
@@ -36,7 +37,8 @@ contains
 
    !> Numbers the unknowns. Degree of freedom c of node i is components*(i - 1) + c.
    !> Error: a pair whose normal motion, component 1, is prescribed on both nodes, or whose motion
-   !> is prescribed on both nodes along a direction that is neither normal nor tangent.
+   !> is prescribed on both nodes along a direction that is neither normal nor tangent; pairs that
+   !> tie two prescribed nodes together over a third one; pairs that form a ring of nodes.
    subroutine make_map(used, prescribed, slave, master, frame, on_tail, map, error)
       logical, intent(in) :: used(:)                      !! (nodes) whether a node carries unknowns
       logical, intent(in) :: prescribed(:)                !! (dofs) prescribed values
@@ -46,22 +48,24 @@ contains
       logical, intent(in) :: on_tail(:, :) !! (components, m) relative values that contact acts on
       type(equation_map_type), intent(out) :: map         !! the numbering
       type(error_type), allocatable, intent(out) :: error !! see above
-      logical, allocatable :: follows(:)
-      integer :: components, c, dof, k, node
+      integer :: order(size(slave), size(frame, 1)), length(size(prescribed))
+      logical :: from_slave(size(slave), size(frame, 1)), follows(size(prescribed))
+      integer :: c, components, dof, node
 
       components = size(frame, 1)
-      associate (dofs => size(prescribed))
-         allocate (map%term(most_terms, dofs), map%term_count(dofs), map%base(dofs), source=0)
+      follows = prescribed
+      length = 0
+      do c = 1, components
+         call order_pairs(components, c, prescribed, slave, master, order(:, c), &
+            from_slave(:, c), follows, length, error)
+         if (allocated(error)) return
+      end do
+      associate (dofs => size(prescribed), most_terms => 1 + components*maxval([0, length]))
+         allocate (map%term_count(dofs), map%base(dofs), source=0)
+         allocate (map%term(most_terms, dofs), source=0)
          allocate (map%coefficient(most_terms, dofs), source=0.0_dp)
          allocate (map%relative(components, size(slave)), source=0)
-         allocate (follows(dofs))
       end associate
-      follows = prescribed
-      do k = 1, size(slave)
-         do c = 1, components
-            call lead(components*(slave(k) - 1) + c, components*(master(k) - 1) + c)
-         end do
-      end do
       do node = 1, size(used)
          do dof = components*(node - 1) + 1, components*node
             if (prescribed(dof)) map%base(dof) = dof
@@ -70,25 +74,80 @@ contains
       end do
       call number_relative(map, prescribed, slave, master, frame, on_tail, error)
       if (allocated(error)) return
-      do k = 1, size(slave)
-         do c = 1, components
-            call relate(map, components*(slave(k) - 1) + c, components*(master(k) - 1) + c, &
-               prescribed, frame(c, :, k), map%relative(:, k))
-         end do
+      do c = 1, components
+         call relate_all(map, components, c, slave, master, frame, order(:, c), from_slave(:, c))
       end do
-   contains
-      !> Of the two nodes of a pair the slave follows the master, unless only the slave is
-      !> prescribed.
-      subroutine lead(slave_dof, master_dof)
-         integer, intent(in) :: slave_dof, master_dof
-
-         if (prescribed(slave_dof)) then
-            follows(master_dof) = .true.
-         else
-            follows(slave_dof) = .true.
-         end if
-      end subroutine lead
    end subroutine make_map
+
+   !> Puts the pairs in an order in which each one's leading node, of one component, comes before the
+   !> following one. Prescribed nodes lead; where there is none, the master that comes first. Pairs
+   !> that are prescribed on both nodes come last, as order 0.
+   subroutine order_pairs(components, c, prescribed, slave, master, order, from_slave, follows, &
+      length, error)
+      integer, intent(in) :: components, c
+      logical, intent(in) :: prescribed(:)
+      integer, intent(in) :: slave(:), master(:)
+      integer, intent(out) :: order(:)
+      logical, intent(out) :: from_slave(:)
+      logical, intent(inout) :: follows(:)
+      integer, intent(inout) :: length(:)
+      type(error_type), allocatable, intent(out) :: error
+      logical :: placed(size(slave)), reached(size(prescribed)/components)
+      integer :: first, found, k, leader, follower, s, m
+
+      reached = prescribed(c::components)
+      placed = reached(slave) .and. reached(master)
+      from_slave = .false.
+      order = 0
+      found = 0
+      do while (.not. all(placed))
+         first = found
+         do k = 1, size(slave)
+            if (placed(k)) cycle
+            s = slave(k)
+            m = master(k)
+            if (reached(s) .and. reached(m)) then
+               call set_error(error, status_deck, 'contact pairs tie two prescribed nodes '// &
+                  'together over a third one, or form a ring of nodes')
+               return
+            end if
+            if (.not. (reached(s) .or. reached(m))) cycle
+            from_slave(k) = reached(s)
+            leader = merge(s, m, reached(s))
+            follower = merge(m, s, reached(s))
+            reached(follower) = .true.
+            found = found + 1
+            order(found) = k
+            placed(k) = .true.
+            follows(components*(follower - 1) + c) = .true.
+            length(components*(follower - 1) + c) = length(components*(leader - 1) + c) + 1
+         end do
+         if (found == first) reached(master(findloc(placed, .false., dim=1))) = .true.
+      end do
+   end subroutine order_pairs
+
+   !> Writes one component of all following nodes by the leading ones.
+   subroutine relate_all(map, components, c, slave, master, frame, order, from_slave)
+      type(equation_map_type), intent(inout) :: map
+      integer, intent(in) :: components, c
+      integer, intent(in) :: slave(:), master(:)
+      real(dp), intent(in) :: frame(:, :, :)
+      integer, intent(in) :: order(:)
+      logical, intent(in) :: from_slave(:)
+      integer :: i, k, slave_dof, master_dof
+
+      do i = 1, size(order)
+         k = order(i)
+         if (k == 0) return
+         slave_dof = components*(slave(k) - 1) + c
+         master_dof = components*(master(k) - 1) + c
+         if (from_slave(k)) then
+            call relate(map, slave_dof, master_dof, -frame(c, :, k), map%relative(:, k))
+         else
+            call relate(map, master_dof, slave_dof, frame(c, :, k), map%relative(:, k))
+         end if
+      end do
+   end subroutine relate_all
 
    subroutine own_unknown(map, dof)
       type(equation_map_type), intent(inout) :: map
@@ -138,19 +197,13 @@ contains
    end subroutine number_relative
 
    !> Writes the following degree of freedom of a pair by the leading one and the relative values.
-   subroutine relate(map, slave_dof, master_dof, prescribed, direction, relative)
+   subroutine relate(map, leader, follower, direction, relative)
       type(equation_map_type), intent(inout) :: map
-      integer, intent(in) :: slave_dof, master_dof
-      logical, intent(in) :: prescribed(:)
+      integer, intent(in) :: leader, follower
       real(dp), intent(in) :: direction(:)
       integer, intent(in) :: relative(:)
-      integer :: c, leader, follower, n
-      real(dp) :: side
+      integer :: c, n
 
-      if (prescribed(slave_dof) .and. prescribed(master_dof)) return
-      leader = merge(slave_dof, master_dof, prescribed(slave_dof))
-      follower = merge(master_dof, slave_dof, prescribed(slave_dof))
-      side = merge(-1.0_dp, 1.0_dp, prescribed(slave_dof))
       map%base(follower) = map%base(leader)
       n = map%term_count(leader)
       map%term(:n, follower) = map%term(:n, leader)
@@ -159,7 +212,7 @@ contains
          if (relative(c) == 0 .or. abs(direction(c)) <= 0.0_dp) cycle
          n = n + 1
          map%term(n, follower) = relative(c)
-         map%coefficient(n, follower) = side*direction(c)
+         map%coefficient(n, follower) = direction(c)
       end do
       map%term_count(follower) = n
    end subroutine relate

@@ -1,51 +1,119 @@
-!> Element faces of a surface as one line of nodes.
+!> Element sides of a surface as one line of nodes, open or closed to a ring.
 module surface_chains
+   use element_kinds, only: side_node_count, side_nodes
    use errors, only: error_type, set_error, status_deck
-   use mesh, only: face_nodes, mesh_type, surface_type
+   use kinds, only: dp
+   use mesh, only: mesh_type, surface_type
    implicit none
    private
-   public :: chain_faces
+   public :: surface_chain_type, chain_faces, precedes
+
+   !> Part of the length of a line by which coordinates count as different.
+   real(dp), parameter :: distinct = 1.0e-9_dp
+
+   !> The nodes along a surface, with the body on the left.
+   type :: surface_chain_type
+      integer, allocatable :: nodes(:)   !! node indexes, corner first; in a ring each once
+      integer :: side_nodes = 0          !! nodes of a side, 2 or 3
+      logical :: closed = .false.        !! a ring: the last side leads back to the first node
+   end type surface_chain_type
 
 contains
 
-   !> Nodes along a surface: corner, midside, corner, ..., corner. Each face is followed by the one
-   !> that begins at its second corner, so the line runs with the body on its left.
-   !> Error: the faces do not form one open line.
-   subroutine chain_faces(mesh, surface, nodes, error)
+   !> Nodes along a surface: corner, midside if there is one, corner, ... Each side is followed by
+   !> the one that begins at its second corner, so the line runs with the body on its left. A ring
+   !> begins at the corner that precedes all others.
+   !> Errors: no sides, sides of 2 and of 3 nodes, sides that do not form one line.
+   subroutine chain_faces(mesh, surface, chain, error)
       type(mesh_type), intent(in) :: mesh                 !! the mesh
       type(surface_type), intent(in) :: surface           !! the surface
-      integer, allocatable, intent(out) :: nodes(:)       !! (2 faces + 1) node indexes
+      type(surface_chain_type), intent(out) :: chain      !! the line
       type(error_type), allocatable, intent(out) :: error !! see above
-      integer, allocatable :: leaving(:), corners(:, :)
+      integer, allocatable :: leaving(:), sides(:, :)
+      integer :: count_sides, first, i, n, side
+
+      count_sides = size(surface%faces, 2)
+      if (count_sides == 0) then
+         call set_error(error, status_deck, 'surface '//surface%name//' has no faces')
+         return
+      end if
+      associate (counts => side_node_count(mesh%element_kind(surface%faces(1, :))))
+         n = counts(1)
+         if (any(counts /= n)) then
+            call set_error(error, status_deck, 'surface '//surface%name// &
+               ' has sides with and without midside nodes; make a surface of each')
+            return
+         end if
+      end associate
+      allocate (sides(n, count_sides))
+      do i = 1, count_sides
+         associate (element => surface%faces(1, i), face => surface%faces(2, i))
+            sides(:, i) = mesh%element_nodes(side_nodes(mesh%element_kind(element), face), element)
+         end associate
+      end do
+      call find_first(mesh, sides, leaving, first)
+      chain%side_nodes = n
+      allocate (chain%nodes((n - 1)*count_sides + 1))
+      side = first
+      do i = 1, count_sides
+         if (side == 0) exit
+         chain%nodes((n - 1)*(i - 1) + 1:(n - 1)*i + 1) = sides(:, side)
+         side = leaving(sides(n, side))
+         if (side == first .and. i < count_sides) exit
+      end do
+      if (i <= count_sides) then
+         call set_error(error, status_deck, 'surface '//surface%name// &
+            ' is not one line of faces, each beginning where another one ends; '// &
+            'name the pieces as surfaces of their own')
+         return
+      end if
+      chain%closed = side == first
+      if (chain%closed) chain%nodes = chain%nodes(:size(chain%nodes) - 1)
+   end subroutine chain_faces
+
+   !> The side that leaves each node, and the side to begin with: that whose first corner no other
+   !> side reaches, in a ring that of the preceding corner, 0 where the line branches.
+   subroutine find_first(mesh, sides, leaving, first)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: sides(:, :)
+      integer, allocatable, intent(out) :: leaving(:)
+      integer, intent(out) :: first
       logical, allocatable :: entered(:)
-      integer :: count_faces, face, i
+      real(dp) :: extent
+      integer :: i, n
       logical :: branched
 
+      n = size(sides, 1)
       branched = .false.
-      count_faces = size(surface%faces, 2)
       allocate (leaving(size(mesh%node_number)), source=0)
       allocate (entered(size(mesh%node_number)), source=.false.)
-      allocate (corners(3, count_faces))
-      do i = 1, count_faces
-         corners(:, i) = mesh%element_nodes(face_nodes(:, surface%faces(2, i)), surface%faces(1, i))
-         branched = branched .or. leaving(corners(1, i)) /= 0 .or. entered(corners(3, i))
-         leaving(corners(1, i)) = i
-         entered(corners(3, i)) = .true.
+      do i = 1, size(sides, 2)
+         branched = branched .or. leaving(sides(1, i)) /= 0 .or. entered(sides(n, i))
+         leaving(sides(1, i)) = i
+         entered(sides(n, i)) = .true.
       end do
-      face = 0
-      do i = 1, count_faces
-         if (.not. entered(corners(1, i))) face = i
+      first = 0
+      if (branched) return
+      do i = 1, size(sides, 2)
+         if (.not. entered(sides(1, i))) first = i
       end do
-      allocate (nodes(2*count_faces + 1))
-      do i = 1, count_faces
-         if (face == 0) exit
-         nodes(2*i - 1:2*i + 1) = corners(:, face)
-         face = leaving(corners(3, face))
-      end do
-      if (branched .or. i <= count_faces) then
-         call set_error(error, status_deck, 'surface '//surface%name// &
-            ' is not one line of faces with two ends')
-      end if
-   end subroutine chain_faces
+      if (first > 0) return
+      associate (x => mesh%coordinates(:, sides(1, :)))
+         extent = maxval(maxval(x, dim=2) - minval(x, dim=2))
+         first = 1
+         do i = 2, size(sides, 2)
+            if (precedes(x(:, i), x(:, first), extent)) first = i
+         end do
+      end associate
+   end subroutine find_first
+
+   !> Whether a point comes before another one: by the smaller x, then by the smaller y.
+   pure logical function precedes(a, b, extent)
+      real(dp), intent(in) :: a(2), b(2)   !! points [length]
+      real(dp), intent(in) :: extent       !! length of the line, by which rounding is judged
+
+      precedes = a(1) < b(1)
+      if (abs(a(1) - b(1)) <= distinct*extent) precedes = a(2) < b(2)
+   end function precedes
 
 end module surface_chains

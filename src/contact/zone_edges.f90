@@ -11,7 +11,7 @@
 !> themselves.
 !>
 !> Edges are looked for towards growing s; an edge on the other side is the same with the arrays
-!> turned round.
+!> turned round. In a ring none is looked for between the last pair and the first.
 module zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
@@ -157,7 +157,7 @@ contains
       n = last - start + 1
       edge = 0.5_dp*(s(last) + limit)
       total = sum(weight(start:last))
-      if (n == 1 .or. total <= 0.0_dp) return
+      if (count(weight(start:last) > 0.0_dp) < 2) return
       excess(:n) = friction*pressure(start:last) - sign(1.0_dp, merge(shear(last + 1), &
          shear(last), status(last + 1) == status_slip))*shear(start:last)
       mean_s = sum(weight(start:last)*s(start:last))/total

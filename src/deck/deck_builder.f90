@@ -12,19 +12,21 @@ module deck_builder
    use deck_builder_materials, only: build_materials
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_options, only: build_options
+   use deck_builder_orientations, only: build_orientations
    use deck_builder_sections, only: build_sections
    use deck_builder_sets, only: build_sets
    use deck_builder_steps, only: build_steps
    use deck_builder_surfaces, only: build_surfaces
-   use deck_builder_verify, only: build_verifications
+   use deck_builder_verify, only: build_verifications, check_heat_quantities
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
+   use load_checks, only: first_heat
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
    use model, only: model_type
    use refinement, only: refine
-   use steps, only: analysis_coupled, analysis_static, dof_temperature
+   use steps, only: analysis_coupled, analysis_static, solves_heat
    use text, only: to_text
    implicit none
    private
@@ -56,6 +58,7 @@ contains
       context%sets_sound = report%error_count() == errors
       call build_surfaces(cards, context, model%mesh, report)
       call build_materials(cards, context, model, report)
+      call build_orientations(cards, model, report)
       call build_sections(cards, context, model, report)
       call build_amplitudes(cards, model, report)
       call build_temperatures(cards, context, model, report)
@@ -67,6 +70,7 @@ contains
       call check_model(context, model, report)
       if (.not. report%has_errors()) then
          call drop_idle_heat(context, model)
+         call check_heat_quantities(model, report)
          call apply_loads(context, model, report)
          deck_nodes = size(model%mesh%node_number)
          call apply_temperatures(context, deck_nodes, .true., model)
@@ -80,22 +84,16 @@ contains
       model%warnings = report%warnings()
    end subroutine build_model
 
-   !> A step in which no temperature has been prescribed solves no heat.
+   !> A step in which, and before which, no temperature is prescribed and no heat loaded solves none.
    subroutine drop_idle_heat(context, model)
       type(deck_context_type), intent(inout) :: context
       type(model_type), intent(inout) :: model
-      integer :: first, i, s
+      integer :: s
 
-      first = size(model%steps) + 1
-      do i = 1, context%boundaries%count
-         if (context%boundaries%items(i)%component == dof_temperature) then
-            first = min(first, max(1, context%boundaries%items(i)%step))
-         end if
-      end do
-      do s = 1, first - 1
+      do s = 1, first_heat(context, model) - 1
          if (model%steps(s)%analysis /= analysis_coupled) cycle
          model%steps(s)%analysis = analysis_static
-         call context%note('step '//to_text(s)//' solves no heat: no temperature is prescribed')
+         call context%note('step '//to_text(s)//' solves no heat: no temperature is prescribed, no heat loaded')
       end do
    end subroutine drop_idle_heat
 
@@ -116,7 +114,7 @@ contains
       else if (.not. all(model%materials%has_expansion)) then
          call context%note('a material without *EXPANSION: coefficient 0')
       end if
-      if (.not. any(model%steps%analysis == analysis_coupled)) return
+      if (.not. any(solves_heat(model%steps%analysis))) return
       if (card_count(cards, 'THERMAL SCHEME') == 0) then
          call context%note('no *THERMAL SCHEME: IMPLICIT')
       end if
@@ -125,10 +123,11 @@ contains
             if (interaction%law%open_kind /= law_none) cycle
             if (interaction%law%closed_kind /= law_none) cycle
             call context%note('surface interaction '//interaction%name// &
-               ' without *GAP LAW: no heat crosses')
+               ' without *GAP LAW and *GAP CONDUCTANCE: no heat crosses')
          end associate
       end do
       if (size(model%contacts) == 0) return
+      if (.not. any(model%steps%analysis == analysis_coupled)) return
       associate (fixed_point => model%steps(1)%fixed_point)
          method = 'ZAITSEV'
          if (fixed_point%method == method_picard) method = 'PICARD'

@@ -1,13 +1,16 @@
-!> *CONTACT PAIR -> contact between surfaces.
+!> *CONTACT PAIR and *CLEARANCE -> contact between surfaces.
 module deck_builder_contact
-   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
+   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text, &
+      take_parameter
    use card_values, only: check_extra, field_place, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use contact_definitions, only: contact_definition_type
    use deck_builder_interactions, only: find_interaction
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use deck_structure, only: card_count
+   use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
    use text, only: nearest_known, string_type, to_upper
@@ -17,7 +20,7 @@ module deck_builder_contact
 
 contains
 
-   !> Takes all contact pairs.
+   !> Takes all contact pairs and their clearances.
    subroutine build_contacts(cards, context, model, report)
       type(cards_type), intent(in) :: cards                !! the cards
       type(deck_context_type), intent(inout) :: context    !! receives notes
@@ -33,7 +36,58 @@ contains
          call build_contact(cards, cards%keywords(k), context, model, report, model%contacts(n))
          call check_name(cards%keywords(k), model%contacts(:n), report)
       end do
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name == 'CLEARANCE') then
+            call build_clearance(cards%keywords(k), model%mesh, report, model%contacts)
+         end if
+      end do
    end subroutine build_contacts
+
+   !> Takes one clearance, for the contact pair of the two surfaces that it names.
+   subroutine build_clearance(card, mesh, report, contacts)
+      type(keyword_card_type), intent(in) :: card
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      type(contact_definition_type), intent(inout) :: contacts(:)
+      character(:), allocatable :: text
+      real(dp) :: value
+      integer :: i, master, slave
+
+      call named_surface(card, 'MASTER', mesh, report, master)
+      call named_surface(card, 'SLAVE', mesh, report, slave)
+      call need_parameter(card, 'VALUE', report, text)
+      value = 0.0_dp
+      call take_parameter(card, 'VALUE', report, value)
+      if (master == 0 .or. slave == 0) return
+      do i = 1, size(contacts)
+         if (contacts(i)%slave == slave .and. contacts(i)%master == master) exit
+      end do
+      if (i > size(contacts)) then
+         call report%error(card%place, 'no *CONTACT PAIR has the slave surface '// &
+            mesh%surfaces(slave)%name//' and the master surface '//mesh%surfaces(master)%name)
+      else if (contacts(i)%has_clearance) then
+         call report%error(card%place, 'the clearance of contact pair '//contacts(i)%name// &
+            ' is given twice')
+      else
+         contacts(i)%has_clearance = .true.
+         contacts(i)%clearance = value
+      end if
+   end subroutine build_clearance
+
+   !> Index of the surface that a parameter names; 0 after an error.
+   subroutine named_surface(card, parameter, mesh, report, surface)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: parameter
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: surface
+      character(:), allocatable :: name
+
+      surface = 0
+      call need_parameter(card, parameter, report, name)
+      if (len(name) > 0) surface = find_surface(mesh, name, parameter_place(card, parameter), &
+         report)
+   end subroutine named_surface
 
    subroutine build_contact(cards, card, context, model, report, contact)
       type(cards_type), intent(in) :: cards
@@ -80,21 +134,31 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: surface
       character(:), allocatable :: name
-      type(string_type), allocatable :: names(:)
-      integer :: i
       logical :: valid
 
       valid = .true.
       call need_field(data, position, what, report, name, valid)
-      if (.not. valid) return
+      if (valid) surface = find_surface(mesh, to_upper(name), field_place(data, position), report)
+   end subroutine read_surface
+
+   !> Index of a surface by its name in upper case; 0 with an error for an unknown one.
+   integer function find_surface(mesh, name, place, report)
+      type(mesh_type), intent(in) :: mesh
+      character(*), intent(in) :: name
+      type(place_type), intent(in) :: place
+      type(deck_report_type), intent(inout) :: report
+      type(string_type), allocatable :: names(:)
+      integer :: i
+
+      find_surface = 0
       allocate(names(size(mesh%surfaces)))
       do i = 1, size(names)
          names(i)%value = mesh%surfaces(i)%name
-         if (names(i)%value == to_upper(name)) surface = i
+         if (names(i)%value == name) find_surface = i
       end do
-      if (surface == 0) call report%error(field_place(data, position), 'unknown surface '// &
-         to_upper(name)//nearest_known(name, names))
-   end subroutine read_surface
+      if (find_surface == 0) call report%error(place, 'unknown surface '//name// &
+         nearest_known(name, names))
+   end function find_surface
 
    !> A name stands for a group of the result file: it is used once, and holds no slash.
    subroutine check_name(card, contacts, report)

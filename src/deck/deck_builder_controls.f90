@@ -1,13 +1,20 @@
 !> *FIXED POINT and *THERMAL SCHEME.
 module deck_builder_controls
    use card_parameters, only: choose, has_parameter, parameter_place, take_parameter
-   use cards, only: keyword_card_type
-   use controls, only: fixed_point_type, method_picard, method_zaitsev
+   use card_values, only: check_extra, field_place, need_field
+   use cards, only: cards_type, data_card_type, keyword_card_type
+   use controls, only: crank_nicolson_scheme, explicit_scheme, fixed_point_type, galerkin_scheme, &
+      implicit_scheme, method_picard, method_zaitsev, thermal_scheme_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
+   use text, only: to_text
    implicit none
    private
-   public :: build_fixed_point, check_thermal_scheme
+   public :: build_fixed_point, build_thermal_scheme
+
+   real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
+   character(2), parameter :: coefficient_names(8) = &
+      ['a1', 'a2', 'a3', 'b1', 'b2', 'b3', 'c1', 'c2']   !! of eq. (3.4), in the order of the card
 
 contains
 
@@ -46,17 +53,79 @@ contains
       end if
    end subroutine build_fixed_point
 
-   !> Checks one *THERMAL SCHEME; the implicit scheme is the one that is built.
-   subroutine check_thermal_scheme(card, report)
+   !> Takes one *THERMAL SCHEME; after an error the scheme stays as it was.
+   subroutine build_thermal_scheme(cards, card, report, scheme)
+      type(cards_type), intent(in) :: cards                   !! the cards
       type(keyword_card_type), intent(in) :: card             !! the card
       type(deck_report_type), intent(inout) :: report         !! receives errors
+      type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
       character(:), allocatable :: kind
 
       kind = ''
       if (.not. has_parameter(card, 'TYPE')) then
          call report%error(card%place, '*THERMAL SCHEME needs TYPE=')
       end if
-      call choose(card, 'TYPE', 'IMPLICIT', 'GALERKIN/CRANK-NICOLSON/EXPLICIT', report, kind)
-   end subroutine check_thermal_scheme
+      call choose(card, 'TYPE', 'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/FREE', '', report, kind)
+      if (kind == 'FREE') then
+         if (card%last_data < card%first_data) then
+            call report%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
+         else
+            call build_free_scheme(cards%data(card%first_data), report, scheme)
+         end if
+         return
+      else if (card%last_data >= card%first_data .and. kind /= '') then
+         call report%error(field_place(cards%data(card%first_data), 1), &
+            'extra data card; *THERMAL SCHEME has one with TYPE=FREE only')
+      end if
+      select case (kind)
+      case ('IMPLICIT')
+         scheme = implicit_scheme
+      case ('GALERKIN')
+         scheme = galerkin_scheme
+      case ('CRANK-NICOLSON')
+         scheme = crank_nicolson_scheme
+      case ('EXPLICIT')
+         scheme = explicit_scheme
+      case default
+         return
+      end select
+   end subroutine build_thermal_scheme
+
+   !> Coefficients of eq. (3.4) as the card gives them; multiples of them are the same scheme.
+   subroutine build_free_scheme(data, report, scheme)
+      type(data_card_type), intent(in) :: data
+      type(deck_report_type), intent(inout) :: report
+      type(thermal_scheme_type), intent(inout) :: scheme
+      real(dp) :: given(8), sums(3)
+      integer :: i
+      logical :: valid
+
+      valid = .true.
+      given = 0.0_dp
+      do i = 1, 8
+         call need_field(data, i, coefficient_names(i), report, given(i), valid)
+      end do
+      call check_extra(data, 8, 'a1, a2, a3, b1, b2, b3, c1, c2', report)
+      if (.not. valid) return
+      do i = 1, 3
+         if (given(i) > 0.0_dp .or. (i > 1 .and. given(i) >= 0.0_dp)) cycle
+         call report%error(field_place(data, i), coefficient_names(i)// &
+            trim(merge(' must be positive    ', ' must not be negative', i == 1)))
+         valid = .false.
+      end do
+      if (.not. valid) return
+      sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
+      if (given(2) + given(3) <= 0.0_dp) then
+         call report%error(field_place(data, 2), 'a2 + a3 must be positive')
+      else if (sums(1) <= 0.0_dp) then
+         call report%error(field_place(data, 4), 'a1 + b1 must be positive')
+      else if (any(abs(sums - sums(1)) > consistent*sums(1))) then
+         call report%error(field_place(data, 1), 'a steady state would not stay: a1 + b1 = '// &
+            to_text(sums(1))//', c1 + c2 = '//to_text(sums(2))//', a2 + a3 + b2 + b3 = '// &
+            to_text(sums(3))//' must be equal')
+      else
+         scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), given(7:8)/sums(1))
+      end if
+   end subroutine build_free_scheme
 
 end module deck_builder_controls

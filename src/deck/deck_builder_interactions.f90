@@ -1,12 +1,11 @@
-!> *SURFACE INTERACTION with *FRICTION, *GAP LAW and *SURFACE BEHAVIOR.
+!> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
-   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, &
-      parameter_text
+   use card_parameters, only: choose, need_parameter, parameter_place, parameter_text
    use card_values, only: check_extra, field_place, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use conductance_laws, only: conductance, conductance_law_type, law_gas, law_jump, law_none, &
-      law_power
+   use conductance_laws, only: conductance, conductance_law_type, law_jump
    use contact_definitions, only: interaction_type
+   use deck_builder_gap_laws, only: build_gap_conductance, build_gap_law, join_gap_conductance
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
@@ -27,43 +26,33 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(model_type), intent(inout) :: model             !! receives the interactions
       type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
-      integer :: k, n, last, errors
+      integer :: k, n, errors
 
       allocate(model%interactions(card_count(cards, 'SURFACE INTERACTION')))
       n = 0
-      last = 0
-      errors = 0
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             select case (card%name)
             case ('SURFACE INTERACTION')
-               if (n > 0 .and. report%error_count() == errors) then
-                  call check_law(cards%keywords(last), model%interactions(n), report)
-               end if
                errors = report%error_count()
                n = n + 1
-               last = k
                call need_parameter(card, 'NAME', report, model%interactions(n)%name)
                if (find_interaction(model%interactions(:n - 1), &
                   model%interactions(n)%name) > 0) then
                   call report%error(parameter_place(card, 'NAME'), &
                      'surface interaction '//model%interactions(n)%name//' is defined twice')
                end if
-            case ('FRICTION', 'GAP LAW', 'SURFACE BEHAVIOR')
-               if (n == 0) then
-                  call report%error(card%place, '*'//card%name// &
-                     ' has no *SURFACE INTERACTION before it')
-               else
-                  call build_law(cards, card, context, report, model%interactions(n))
-               end if
+               call build_laws(cards, k, context, report, model%interactions(n))
+               if (report%error_count() > errors) cycle
+               call check_law(card, model%interactions(n), report)
+            case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'SURFACE BEHAVIOR')
+               if (n == 0) call report%error(card%place, '*'//card%name// &
+                  ' has no *SURFACE INTERACTION before it')
             case default
                cycle
             end select
          end associate
       end do
-      if (n > 0 .and. report%error_count() == errors) then
-         call check_law(cards%keywords(last), model%interactions(n), report)
-      end if
    end subroutine build_interactions
 
    !> Index of a surface interaction by its name; 0 for an unknown one.
@@ -76,23 +65,36 @@ contains
       end do
    end function find_interaction
 
-   subroutine build_law(cards, card, context, report, interaction)
+   !> Takes the laws behind one *SURFACE INTERACTION.
+   subroutine build_laws(cards, place, context, report, interaction)
       type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: place
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(interaction_type), intent(inout) :: interaction
+      type(conductance_law_type) :: table
+      integer :: k
 
-      if (card%name == 'SURFACE BEHAVIOR') then
-         call check_behavior(card, context, report)
-      else if (card%last_data >= card%first_data) then
-         if (card%name == 'FRICTION') then
-            call build_friction(cards%data(card%first_data), context, report, interaction%friction)
-         else
-            call build_gap_law(card, cards%data(card%first_data), report, interaction%law)
-         end if
-      end if
-   end subroutine build_law
+      do k = place + 1, size(cards%keywords)
+         associate (card => cards%keywords(k))
+            if (card%name == 'SURFACE INTERACTION') exit
+            if (card%name == 'SURFACE BEHAVIOR') call check_behavior(card, context, report)
+            if (card%last_data < card%first_data) cycle
+            select case (card%name)
+            case ('FRICTION')
+               call build_friction(cards%data(card%first_data), context, report, &
+                  interaction%friction)
+            case ('GAP LAW')
+               call build_gap_law(cards, card, interaction%name, context, report, interaction%law)
+            case ('GAP CONDUCTANCE')
+               call build_gap_conductance(cards, card, interaction%name, context, report, table)
+            case default
+               cycle
+            end select
+         end associate
+      end do
+      call join_gap_conductance(table, interaction%name, context, interaction%law)
+   end subroutine build_laws
 
    !> What tunes a penalty means nothing here; laws of pressure and overclosure that are no penalty
    !> are refused.
@@ -137,67 +139,6 @@ contains
          call context%note('*FRICTION: the stick slope is read and not needed')
       end if
    end subroutine build_friction
-
-   subroutine build_gap_law(card, data, report, law)
-      type(keyword_card_type), intent(in) :: card
-      type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
-      type(conductance_law_type), intent(inout) :: law
-      character(:), allocatable :: kind
-
-      kind = ''
-      if (.not. has_parameter(card, 'TYPE')) call report%error(card%place, '*GAP LAW needs TYPE=')
-      call choose(card, 'TYPE', 'GAS/POWER', 'CLEARANCE', report, kind)
-      if (kind == 'GAS') then
-         if (law%open_kind /= law_none) then
-            call report%error(card%place, 'a second open law in one surface interaction')
-         end if
-         law%open_kind = law_gas
-         call build_gas_law(data, report, law)
-      else if (kind == 'POWER') then
-         if (law%closed_kind /= law_none) then
-            call report%error(card%place, 'a second closed law in one surface interaction')
-         end if
-         law%closed_kind = law_power
-         call build_power_law(data, report, law)
-      end if
-   end subroutine build_gap_law
-
-   !> omega = A/(B + gamma).
-   subroutine build_gas_law(data, report, law)
-      type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
-      type(conductance_law_type), intent(inout) :: law
-      logical :: valid
-
-      valid = .true.
-      call need_field(data, 1, 'A', report, law%gas_a, valid)
-      call need_field(data, 2, 'B', report, law%gas_b, valid)
-      call check_extra(data, 2, 'A, B of A/(B + gap)', report)
-      if (law%gas_a < 0.0_dp) call report%error(field_place(data, 1), 'A must not be negative')
-      if (law%gas_b > 0.0_dp) return
-      call report%error(field_place(data, 2), 'B must be positive')
-      law%gas_b = 1.0_dp
-   end subroutine build_gas_law
-
-   !> omega = C0 + C1 p^n.
-   subroutine build_power_law(data, report, law)
-      type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
-      type(conductance_law_type), intent(inout) :: law
-      logical :: valid
-
-      valid = .true.
-      call need_field(data, 1, 'C0', report, law%power_c0, valid)
-      call need_field(data, 2, 'C1', report, law%power_c1, valid)
-      call need_field(data, 3, 'n', report, law%power_n, valid)
-      call check_extra(data, 3, 'C0, C1, n of C0 + C1 pressure^n', report)
-      if (law%power_c0 < 0.0_dp) call report%error(field_place(data, 1), 'C0 must not be negative')
-      if (law%power_c1 < 0.0_dp) call report%error(field_place(data, 2), 'C1 must not be negative')
-      if (law%power_n > 0.0_dp) return
-      call report%error(field_place(data, 3), 'n must be positive')
-      law%power_n = 1.0_dp
-   end subroutine build_power_law
 
    !> Warns of a law that jumps where the gap closes.
    subroutine check_law(card, interaction, report)

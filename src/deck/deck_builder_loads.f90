@@ -1,16 +1,19 @@
-!> *BOUNDARY, *CLOAD and *DLOAD -> requests, applied when the mesh is final.
+!> *BOUNDARY, *CLOAD, *DLOAD, ... -> requests, applied when all is read.
 module deck_builder_loads
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text
-   use card_values, only: check_extra, field_place, has_field, need_field, take_field
+   use card_values, only: check_extra, field_place, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_builder_courses, only: find_amplitude
-   use deck_builder_surfaces, only: read_face
+   use deck_builder_element_loads, only: build_element_load
+   use deck_builder_surface_loads, only: build_surface_load
    use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use load_requests, only: request_type
    use model, only: model_type
-   use steps, only: dof_temperature
+   use steps, only: dof_temperature, load_body_force, load_body_heat, load_centrifugal, &
+      load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
+      load_pressure, load_temperature, load_traction, step_type
    use text, only: nearest_known, string_type, to_text, to_upper
    implicit none
    private
@@ -18,34 +21,40 @@ module deck_builder_loads
 
 contains
 
-   !> Takes one *BOUNDARY, *CLOAD or *DLOAD.
+   !> Takes one card of loads or prescribed values.
    subroutine build_load_card(cards, card, step, model, context, report)
       type(cards_type), intent(in) :: cards                !! the cards
       type(keyword_card_type), intent(in) :: card          !! the keyword card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
-      type(model_type), intent(in) :: model                !! mesh, sets and amplitudes
+      type(model_type), intent(inout) :: model   !! mesh, sets, amplitudes; the step takes OP=NEW
       type(deck_context_type), intent(inout) :: context    !! receives the requests
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(request_type) :: request
-      character(:), allocatable :: operation
-      integer :: j, errors
+      integer :: j, errors, film_amplitude
 
+      if (step == 0 .and. card%name /= 'BOUNDARY') return
       errors = report%error_count()
       request%step = step
-      operation = 'MOD'
-      call choose(card, 'OP', 'MOD', 'NEW', report, operation)
-      call read_amplitude(card, model, report, request%amplitude)
+      film_amplitude = 0
+      call read_operation(card, step, model, context, report)
+      call read_amplitude(card, 'AMPLITUDE', model, report, request%amplitude)
+      call read_amplitude(card, 'FILM AMPLITUDE', model, report, film_amplitude)
       do j = card%first_data, card%last_data
          request%place = field_place(cards%data(j), 1)
-         select case (card%name)
-         case ('BOUNDARY')
+         if (card%name == 'BOUNDARY') then
             call build_boundary(cards%data(j), request, model, context, report)
-         case ('CLOAD')
-            call build_force(cards%data(j), request, model, context, report)
-         case ('DLOAD')
-            call build_pressure(cards, j, request, model, context, report)
+            cycle
+         end if
+         context%load_cards = context%load_cards + 1
+         request%card = context%load_cards
+         select case (card%name)
+         case ('DSLOAD')
+            call build_surface_load(cards%data(j), request, model, context, report)
+         case ('DLOAD', 'DFLUX', 'FILM')
+            call build_element_load(card%name, cards%data(j), request, film_amplitude, model, &
+               context, report)
          case default
-            return
+            call build_nodal_load(card%name, cards%data(j), request, model, context, report)
          end select
       end do
       if (card%name == 'BOUNDARY' .and. report%error_count() > errors) then
@@ -53,8 +62,59 @@ contains
       end if
    end subroutine build_load_card
 
-   subroutine read_amplitude(card, model, report, amplitude)
+   !> OP=NEW on the first card of its keyword in a step ends what former steps gave by it.
+   subroutine read_operation(card, step, model, context, report)
       type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: step
+      type(model_type), intent(inout) :: model
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: operation
+      logical :: first
+
+      operation = 'MOD'
+      call choose(card, 'OP', 'MOD/NEW', '', report, operation)
+      first = context%load_step(card%known) < step
+      context%load_step(card%known) = step
+      if (operation /= 'NEW' .or. step == 0) return
+      if (.not. first) then
+         call report%warning(parameter_place(card, 'OP'), 'OP=NEW is passed over: it counts on '// &
+            'the first *'//card%name//' of a step')
+         return
+      end if
+      call end_loads(card%name, model%steps(step))
+   end subroutine read_operation
+
+   pure subroutine end_loads(keyword, step)
+      character(*), intent(in) :: keyword
+      type(step_type), intent(inout) :: step
+
+      associate (ends => step%ends_loads)
+         select case (keyword)
+         case ('BOUNDARY')
+            step%ends_boundaries = .true.
+         case ('CLOAD')
+            ends(load_force) = .true.
+         case ('DLOAD')
+            ends([load_pressure, load_traction, load_body_force, load_gravity, &
+               load_centrifugal]) = .true.
+         case ('DSLOAD')
+            ends([load_pressure, load_traction]) = .true.
+         case ('CFLUX')
+            ends(load_nodal_heat) = .true.
+         case ('DFLUX')
+            ends([load_face_heat, load_body_heat]) = .true.
+         case ('FILM')
+            ends(load_film_coefficient) = .true.
+         case ('TEMPERATURE')
+            ends(load_temperature) = .true.
+         end select
+      end associate
+   end subroutine end_loads
+
+   subroutine read_amplitude(card, parameter, model, report, amplitude)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: parameter
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: amplitude
@@ -62,15 +122,15 @@ contains
       character(:), allocatable :: name
       integer :: i
 
-      if (.not. has_parameter(card, 'AMPLITUDE')) return
-      name = to_upper(parameter_text(card, 'AMPLITUDE'))
+      if (.not. has_parameter(card, parameter)) return
+      name = to_upper(parameter_text(card, parameter))
       amplitude = find_amplitude(model%amplitudes, name)
       if (amplitude > 0) return
       allocate(names(size(model%amplitudes)))
       do i = 1, size(names)
          names(i)%value = model%amplitudes(i)%name
       end do
-      call report%error(parameter_place(card, 'AMPLITUDE'), 'unknown amplitude '//name// &
+      call report%error(parameter_place(card, parameter), 'unknown amplitude '//name// &
          nearest_known(name, names))
    end subroutine read_amplitude
 
@@ -131,53 +191,44 @@ contains
       end if
    end function request_card
 
-   subroutine build_force(data, request, model, context, report)
+   !> *CLOAD, *CFLUX: node or set, degree of freedom, value; *TEMPERATURE: node or set, value.
+   subroutine build_nodal_load(keyword, data, request, model, context, report)
+      character(*), intent(in) :: keyword
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
       type(model_type), intent(in) :: model
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
+      integer :: dof
       logical :: valid
 
       valid = .true.
+      dof = 1
       call read_target(data, 1, 'node', context%node_index, model%mesh%node_sets, report, &
          request%item, request%set, valid)
-      call need_field(data, 2, 'degree of freedom', report, request%component, valid)
-      call need_field(data, 3, 'force', report, request%value, valid)
-      call check_extra(data, 3, 'node or set, degree of freedom, force', report)
-      if (.not. valid) return
-      if (any(request%component == [1, 2])) then
-         call context%forces%add(request)
+      if (keyword == 'TEMPERATURE') then
+         request%kind = load_temperature
+         call need_field(data, 2, 'temperature', report, request%value, valid)
+         call check_extra(data, 2, 'node or set, temperature', report)
       else
-         call report%error(field_place(data, 2), 'a force acts on degree of freedom 1 or 2')
+         request%kind = load_force
+         if (keyword == 'CFLUX') request%kind = load_nodal_heat
+         call need_field(data, 2, 'degree of freedom', report, dof, valid)
+         call need_field(data, 3, merge('force', 'power', keyword == 'CLOAD'), report, &
+            request%value, valid)
+         call check_extra(data, 3, 'node or set, degree of freedom, '// &
+            merge('force', 'power', keyword == 'CLOAD'), report)
       end if
-   end subroutine build_force
-
-   subroutine build_pressure(cards, j, request, model, context, report)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: j
-      type(request_type), intent(inout) :: request
-      type(model_type), intent(in) :: model
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: label
-      logical :: valid
-
-      valid = .true.
-      associate (data => cards%data(j))
-         call read_target(data, 1, 'element', context%element_index, model%mesh%element_sets, &
-            report, request%item, request%set, valid)
-         label = ''
-         if (has_field(data, 2)) label = to_upper(data%fields(2)%text)
-         if (any(label == [character(7) :: 'BX', 'BY', 'GRAV', 'CENTRIF'])) then
-            call report%error(field_place(data, 2), 'the load '//label//' is not built yet')
-            return
-         end if
-         call read_face(cards, j, 'P', report, request%component, valid)
-         call need_field(data, 3, 'pressure', report, request%value, valid)
-         call check_extra(data, 3, 'element or set, face, pressure', report)
-         if (valid) call context%pressures%add(request)
-      end associate
-   end subroutine build_pressure
+      if (.not. valid) return
+      request%component = dof
+      if (keyword == 'CLOAD' .and. all(dof /= [1, 2])) then
+         call report%error(field_place(data, 2), 'a force acts on degree of freedom 1 or 2')
+      else if (keyword == 'CFLUX' .and. dof /= dof_temperature) then
+         call report%error(field_place(data, 2), 'heat acts on degree of freedom 11')
+      else
+         if (keyword == 'CFLUX') request%component = 1
+         call context%loads%add(request)
+      end if
+   end subroutine build_nodal_load
 
 end module deck_builder_loads

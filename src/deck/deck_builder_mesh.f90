@@ -3,10 +3,10 @@ module deck_builder_mesh
    use card_parameters, only: need_parameter, parameter_place
    use card_values, only: check_extra, field_place, has_field, need_field, take_field
    use cards, only: cards_type, data_card_type
-   use deck_context, only: deck_context_type
+   use deck_context, only: deck_context_type, plane_by_element
    use deck_report, only: deck_report_type
-   use element_kinds, only: plane_strain, quad8
-   use element_types, only: check_element_type
+   use element_kinds, only: element_corner_count, element_node_count, plane_strain, quad8
+   use element_types, only: take_element_type
    use kinds, only: dp
    use mesh, only: mesh_type, nodes_per_element
    use sorting, only: repeated
@@ -121,7 +121,7 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, message
       integer, allocatable :: card(:)
-      integer :: k, j, n
+      integer :: k, j, kind, n, plane
 
       n = data_card_count(cards, 'ELEMENT')
       allocate(mesh%element_number(n), mesh%element_section(n), card(n))
@@ -136,7 +136,8 @@ contains
          if (cards%keywords(k)%name /= 'ELEMENT') cycle
          call need_parameter(cards%keywords(k), 'TYPE', report, name)
          message = ''
-         if (len(name) > 0) message = check_element_type(name, context%plane == plane_strain)
+         if (len(name) > 0) call take_element_type(name, kind, plane, message)
+         if (context%plane /= plane_by_element) plane = context%plane
          if (len(message) > 0) call report%error(parameter_place(cards%keywords(k), 'TYPE'), &
             message)
          do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
@@ -145,16 +146,19 @@ contains
             context%element_place(n) = field_place(cards%data(j), 1)
             call read_number(cards%data(j), 'element number', report, mesh%element_number(n))
             if (len(name) == 0 .or. len(message) > 0) cycle
-            call read_element_nodes(cards%data(j), context, report, mesh%element_nodes(:, n), &
-               context%element_valid(n))
+            mesh%element_kind(n) = kind
+            mesh%element_plane(n) = plane
+            call read_element_nodes(cards%data(j), kind, context, report, &
+               mesh%element_nodes(:element_node_count(kind), n), context%element_valid(n))
          end do
       end do
       call check_repeated('element', cards, card, mesh%element_number, report)
       call context%element_index%build(mesh%element_number)
    end subroutine build_elements
 
-   subroutine read_element_nodes(data, context, report, nodes, valid)
+   subroutine read_element_nodes(data, kind, context, report, nodes, valid)
       type(data_card_type), intent(in) :: data
+      integer, intent(in) :: kind
       type(deck_context_type), intent(in) :: context
       type(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: nodes(:)
@@ -177,7 +181,25 @@ contains
             call report%error(field_place(data, q + 1), 'there is no node '//to_text(number))
          end if
       end do
-      call check_extra(data, size(nodes) + 1, 'element, 4 corners, 4 midside nodes', report)
+      call check_extra(data, size(nodes) + 1, layout_of(kind), report)
+      if (.not. valid) return
+      do q = 2, size(nodes)
+         if (all(nodes(:q - 1) /= nodes(q))) cycle
+         call report%error(field_place(data, q + 1), 'a node stands twice in this element')
+         valid = .false.
+      end do
    end subroutine read_element_nodes
+
+   !> What the data card of an element holds.
+   pure function layout_of(kind) result(layout)
+      integer, intent(in) :: kind
+      character(:), allocatable :: layout
+      integer :: corners
+
+      corners = element_corner_count(kind)
+      layout = 'element, '//to_text(corners)//' corners'
+      if (element_node_count(kind) > corners) layout = layout//', '//to_text(corners)// &
+         ' midside nodes'
+   end function layout_of
 
 end module deck_builder_mesh

@@ -6,7 +6,7 @@ module deck_builder_options
    use controls, only: solver_mumps, solver_skyline
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use element_kinds, only: plane_strain
+   use element_kinds, only: axisymmetric, plane_strain, plane_stress
    use model, only: model_type
    use text, only: to_text, to_upper
    implicit none
@@ -59,8 +59,10 @@ contains
       character(:), allocatable :: plane
 
       plane = ''
-      call choose(card, 'PLANE', 'STRAIN', 'STRESS/AXISYMMETRIC', report, plane)
+      call choose(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', '', report, plane)
       if (plane == 'STRAIN') context%plane = plane_strain
+      if (plane == 'STRESS') context%plane = plane_stress
+      if (plane == 'AXISYMMETRIC') context%plane = axisymmetric
       if (has_parameter(card, 'UNITS')) call build_units(card, model, report)
       if (.not. has_parameter(card, 'LOAD')) return
       context%load_set = to_upper(parameter_text(card, 'LOAD'))

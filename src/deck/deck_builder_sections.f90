@@ -4,6 +4,7 @@ module deck_builder_sections
    use card_values, only: check_extra, field_place, take_field
    use cards, only: cards_type, keyword_card_type
    use deck_builder_materials, only: find_material
+   use deck_builder_orientations, only: find_orientation
    use deck_context, only: deck_context_type, find_set, set_names
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, is_misspelt
@@ -61,6 +62,7 @@ contains
          call report%error(parameter_place(card, 'MATERIAL'), 'unknown material '//name// &
             nearest_known(name, names))
       end if
+      call take_orientation(card, model, report, section)
       if (card%last_data < card%first_data) then
          call context%note('*SOLID SECTION without a thickness: '//to_text(section%thickness))
          return
@@ -74,6 +76,27 @@ contains
          end if
       end associate
    end subroutine build_section
+
+   subroutine take_orientation(card, model, report, section)
+      type(keyword_card_type), intent(in) :: card
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(section_type), intent(inout) :: section
+      character(:), allocatable :: name
+      type(string_type), allocatable :: names(:)
+      integer :: i
+
+      if (.not. has_parameter(card, 'ORIENTATION')) return
+      name = to_upper(parameter_text(card, 'ORIENTATION'))
+      section%orientation = find_orientation(model%orientations, name)
+      if (section%orientation > 0) return
+      allocate(names(size(model%orientations)))
+      do i = 1, size(names)
+         names(i)%value = model%orientations(i)%name
+      end do
+      call report%error(parameter_place(card, 'ORIENTATION'), 'unknown orientation '//name// &
+         nearest_known(name, names))
+   end subroutine take_orientation
 
    subroutine give_section(card, section, mesh, report)
       type(keyword_card_type), intent(in) :: card

@@ -4,8 +4,8 @@ module deck_builder_steps
       take_parameter
    use card_values, only: check_extra, field_place, has_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use controls, only: fixed_point_type
-   use deck_builder_controls, only: build_fixed_point, check_thermal_scheme
+   use controls, only: fixed_point_type, implicit_scheme, thermal_scheme_type
+   use deck_builder_controls, only: build_fixed_point, build_thermal_scheme
    use deck_builder_loads, only: build_load_card
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -13,7 +13,7 @@ module deck_builder_steps
    use keywords, only: refusal
    use kinds, only: dp
    use model, only: model_type
-   use steps, only: analysis_coupled, analysis_static, step_type
+   use steps, only: analysis_coupled, analysis_heat, analysis_static, solves_heat, step_type
    use text, only: to_text, to_upper
    implicit none
    private
@@ -31,12 +31,14 @@ contains
       type(model_type), intent(inout) :: model             !! receives the steps
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(fixed_point_type) :: fixed_point
+      type(thermal_scheme_type) :: scheme
       type(step_type) :: before
       integer :: k, n, analyses, files
 
       n = card_count(cards, 'STEP')
       allocate(model%steps(n), context%step_place(n))
       n = 0
+      scheme = implicit_scheme
       analyses = 0
       files = 0
       context%boundaries_sound = .not. is_misspelt(cards, 'BOUNDARY')
@@ -51,19 +53,21 @@ contains
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
                model%steps(n)%fixed_point = fixed_point
-            case ('STATIC', 'COUPLED TEMPERATURE-DISPLACEMENT')
+               model%steps(n)%scheme = scheme
+            case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT')
                analyses = analyses + 1
                if (analyses > 1) call report%error(card%place, 'a second analysis in one step')
                if (n > 0) call build_analysis(cards, card, context, report, model%steps(n))
             case ('END STEP')
                if (analyses == 0) call report%error(card%place, &
-                  'the step has no *STATIC and no *COUPLED TEMPERATURE-DISPLACEMENT')
+                  'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
             case ('FIXED POINT')
                call build_fixed_point(card, report, fixed_point)
                if (n > 0) model%steps(n)%fixed_point = fixed_point
             case ('THERMAL SCHEME')
-               call check_thermal_scheme(card, report)
-            case ('BOUNDARY', 'CLOAD', 'DLOAD')
+               call build_thermal_scheme(cards, card, report, scheme)
+               if (n > 0) model%steps(n)%scheme = scheme
+            case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'FILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)
             case ('NODE FILE', 'EL FILE', 'CONTACT FILE')
                if (n > 0) call build_file_output(card, files, context, report, model%steps(n))
@@ -102,7 +106,7 @@ contains
          parameter_place(card, 'NLGEOM'), 'NLGEOM is refused on *STEP: '//refusal('STEP', 'NLGEOM'))
    end subroutine begin_step
 
-   !> Takes *STATIC or *COUPLED TEMPERATURE-DISPLACEMENT.
+   !> Takes *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
    subroutine build_analysis(cards, card, context, report, step)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
@@ -110,11 +114,16 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
 
-      step%analysis = analysis_static
-      if (card%name /= 'STATIC') then
+      select case (card%name)
+      case ('STATIC')
+         step%analysis = analysis_static
+      case ('HEAT TRANSFER')
+         step%analysis = analysis_heat
+      case default
          step%analysis = analysis_coupled
-         if (.not. has_parameter(card, 'STEADY STATE')) call report%error(card%place, '*'// &
-            card%name// &
+      end select
+      if (solves_heat(step%analysis) .and. .not. has_parameter(card, 'STEADY STATE')) then
+         call report%error(card%place, '*'//card%name// &
             ' needs STEADY STATE: heat capacity is not modelled')
       end if
       step%direct = has_parameter(card, 'DIRECT')

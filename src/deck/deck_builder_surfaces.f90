@@ -6,9 +6,10 @@ module deck_builder_surfaces
    use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
+   use element_kinds, only: element_corner_count
    use mesh, only: mesh_type, surface_type
    use sorting, only: unique_sorted
-   use text, only: to_upper
+   use text, only: to_text, to_upper
    implicit none
    private
    public :: build_surfaces, read_face
@@ -72,6 +73,8 @@ contains
          call read_face(cards, j, 'S', report, face, valid)
          call check_extra(cards%data(j), 2, 'element or set, face', report)
          if (.not. valid) cycle
+         call check_face(cards, j, mesh, element, set, face, report, valid)
+         if (.not. valid) cycle
          if (set > 0) then
             keys = [keys, 4*mesh%element_sets(set)%members + face - 1]
          else
@@ -84,6 +87,28 @@ contains
          surface%faces(:, i) = [keys(i)/4, mod(keys(i), 4) + 1]
       end do
    end subroutine build_surface
+
+   !> Every element of a data card has the face.
+   subroutine check_face(cards, data, mesh, element, set, face, report, valid)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: data, element, set, face
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      integer, allocatable :: elements(:)
+      integer :: i
+
+      elements = [element]
+      if (set > 0) elements = mesh%element_sets(set)%members
+      do i = 1, size(elements)
+         if (face <= element_corner_count(mesh%element_kind(elements(i)))) cycle
+         call report%error(field_place(cards%data(data), 2), 'element '// &
+            to_text(mesh%element_number(elements(i)))//' is a triangle and has no face S'// &
+            to_text(face))
+         valid = .false.
+         return
+      end do
+   end subroutine check_face
 
    !> Reads the second field of a card as a letter and the number of a face.
    subroutine read_face(cards, data, letter, report, face, valid)

@@ -7,14 +7,16 @@ module deck_builder_verify
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use kinds, only: dp
    use model, only: model_type, verify_type
+   use steps, only: analysis_static
    use text, only: nearest_known, read_real, string_type, to_text, to_upper
-   use verify_quantities, only: of_history, of_interface, of_nodes, of_pairs, quantities, &
-      read_quantity
+   use verify_quantities, only: find_quantity, of_history, of_interface, of_nodes, of_pairs, &
+      quantities, read_quantity
    implicit none
    private
-   public :: build_verifications
+   public :: build_verifications, check_heat_quantities
 
 contains
 
@@ -45,7 +47,25 @@ contains
             end do
          end associate
       end do
+      call check_heat_quantities(model, report)
    end subroutine build_verifications
+
+   !> Reports quantities of heat in a deck none of whose steps solves heat.
+   subroutine check_heat_quantities(model, report)
+      type(model_type), intent(in) :: model                !! steps and checks
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: i, quantity
+
+      if (size(model%steps) == 0 .or. any(model%steps%analysis /= analysis_static)) return
+      do i = 1, size(model%verifications)
+         associate (check => model%verifications(i))
+            quantity = find_quantity(check%quantity)
+            if (quantity == 0) cycle
+            if (quantities(quantity)%is_heat) call report%error(place_type(check%line, &
+               check%columns(1)), 'no step of this deck solves heat: there is no '//check%quantity)
+         end associate
+      end do
+   end subroutine check_heat_quantities
 
    !> quantity, where, when, value, tolerance, REL|ABS.
    subroutine build_check(data, context, model, report, check)
@@ -61,6 +81,7 @@ contains
       check%line = data%end%image
       check%quantity = ''
       check%where = field_text(data, 2)
+      check%columns = [field_column(data, 1), field_column(data, 2)]
       call read_quantity(data, report, quantity)
       if (quantity > 0) then
          check%quantity = trim(quantities(quantity)%name)
@@ -85,6 +106,15 @@ contains
       end select
    end subroutine build_check
 
+   integer function field_column(data, position)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position
+      type(place_type) :: place
+
+      place = field_place(data, position)
+      field_column = place%column
+   end function field_column
+
    !> Checks where a quantity is judged; the only interface of a deck need not be named.
    subroutine check_where(data, kind, context, model, report, check)
       type(data_card_type), intent(in) :: data
@@ -93,25 +123,50 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(verify_type), intent(inout) :: check
-      integer :: node, set
-      logical :: valid
-
       if (kind == of_history) then
          if (has_field(data, 2)) call report%error(field_place(data, 2), &
             check%quantity//' has no place: leave this field empty')
          return
       end if
+      if ((kind == of_interface .or. kind == of_pairs) .and. size(model%contacts) == 0) then
+         call report%error(field_place(data, 1), 'the deck has no *CONTACT PAIR: there is no '// &
+            check%quantity)
+         return
+      end if
       if (any(to_upper(check%where) == ['MIN', 'MAX'])) return
       if (kind == of_nodes) then
-         valid = .true.
-         call read_target(data, 2, 'node', context%node_index, model%mesh%node_sets, report, &
-            node, set, valid)
+         call check_nodes(data, context, model, report)
       else if (kind == of_interface .and. check%where == '' .and. size(model%contacts) == 1) then
          check%where = model%contacts(1)%name
       else
          call check_interface(data, kind, model, report)
       end if
    end subroutine check_where
+
+   !> A node or a node set, one of whose nodes at least has values.
+   subroutine check_nodes(data, context, model, report)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      logical :: used(0:size(model%mesh%node_number))
+      integer :: node, set
+      logical :: valid
+
+      valid = .true.
+      call read_target(data, 2, 'node', context%node_index, model%mesh%node_sets, report, &
+         node, set, valid)
+      if (.not. valid) return
+      used = .false.
+      used([model%mesh%element_nodes]) = .true.
+      if (set > 0) then
+         valid = any(used(model%mesh%node_sets(set)%members))
+      else
+         valid = used(node)
+      end if
+      if (.not. valid) call report%error(field_place(data, 2), &
+         'no element has a node of '//field_text(data, 2)//': it has no values')
+   end subroutine check_nodes
 
    !> name or, for a profile, name@s.
    subroutine check_interface(data, kind, model, report)
@@ -131,6 +186,7 @@ contains
       at = index(name, '@')
       if (at > 0) then
          call read_real(trim(adjustl(name(at + 1:))), s, valid)
+         if (valid) valid = s >= 0.0_dp
          if (kind /= of_pairs .or. .not. valid) then
             call report%error(field_place(data, 2), ''''//name//''' is no place of this quantity')
             return

@@ -3,12 +3,15 @@
 module deck_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use elasticity, only: equivalent_poisson
+   use element_elasticity, only: has_mean_dilatation
+   use element_kinds, only: axisymmetric, plane_stress, quad8_reduced
    use kinds, only: dp, long
-   use mesh, only: face_nodes, mesh_type
+   use load_checks, only: check_loads
+   use mesh, only: mesh_type
+   use mesh_checks, only: check_jacobians, check_planes, check_sides
    use model, only: model_type
-   use quadrature, only: square_points
-   use shape_functions, only: element_shape
-   use steps, only: analysis_coupled, dof_temperature
+   use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
    private
@@ -16,6 +19,9 @@ module deck_checks
 
    !> The entries of all elements' 16 x 16 matrices are numbered in default integers.
    integer, parameter :: most_elements = 2**23 - 1
+
+   !> Largest equivalent Poisson's ratio that fully integrated elements follow without locking.
+   real(dp), parameter :: most_compressible = 0.49_dp
 
 contains
 
@@ -28,10 +34,11 @@ contains
       call check_size(context, model%mesh, report)
       call check_sections(context, model, report)
       call check_materials(context, model, report)
+      call check_planes(context, model%mesh, report)
+      call check_orientations(context, model, report)
       call check_jacobians(context, model%mesh, report)
       call check_sides(context, model%mesh, report)
-      call check_forces(context, model%mesh, report)
-      call check_temperatures(context, model, report)
+      call check_loads(context, model, report)
    end subroutine check_model
 
    !> The refined mesh, its matrices and the new numbers of its nodes fit into default integers.
@@ -77,143 +84,71 @@ contains
       type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
-      logical :: coupled
+      logical :: mechanics, heat
       integer :: m
 
-      coupled = any(model%steps%analysis == analysis_coupled)
+      mechanics = any(solves_mechanics(model%steps%analysis))
+      heat = any(solves_heat(model%steps%analysis))
       do m = 1, size(model%materials)
          if (.not. any(model%sections%material == m)) cycle
          associate (material => model%materials(m))
-            if (.not. material%has_elasticity) call report%error(context%material_place(m), &
-               'material '//material%name//' has no *ELASTIC')
-            if (coupled .and. .not. material%has_conductivity) call report%error( &
+            if (mechanics .and. .not. material%has_elasticity) call report%error( &
+               context%material_place(m), 'material '//material%name//' has no *ELASTIC')
+            if (heat .and. .not. material%has_conductivity) call report%error( &
                context%material_place(m), 'material '//material%name// &
-               ' has no *CONDUCTIVITY, which *COUPLED TEMPERATURE-DISPLACEMENT needs')
+               ' has no *CONDUCTIVITY, which a step with heat needs')
+            if (mechanics .and. material%has_elasticity) call check_locking(context, model, m, &
+               report)
          end associate
       end do
    end subroutine check_materials
 
-   !> The Jacobian is positive at the Gauss points of every element.
-   subroutine check_jacobians(context, mesh, report)
+   !> Warns of a nearly incompressible material in elements that cannot follow it.
+   subroutine check_locking(context, model, m, report)
       type(deck_context_type), intent(in) :: context
-      type(mesh_type), intent(in) :: mesh
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: m
       type(deck_report_type), intent(inout) :: report
-      real(dp) :: points(2, 9), weights(9), slope(8, 2, 9), map(2, 2)
-      integer :: e, g
+      integer :: e
 
-      call square_points(points, weights)
-      do g = 1, 9
-         ! Along xi, and along eta, each shape function is a parabola: its difference over
-         ! a distance of 2 is its slope.
-         slope(:, 1, g) = (element_shape(points(:, g) + [1.0_dp, 0.0_dp]) - &
-            element_shape(points(:, g) - [1.0_dp, 0.0_dp]))/2
-         slope(:, 2, g) = (element_shape(points(:, g) + [0.0_dp, 1.0_dp]) - &
-            element_shape(points(:, g) - [0.0_dp, 1.0_dp]))/2
-      end do
-      do e = 1, size(mesh%element_number)
-         if (.not. context%element_valid(e)) cycle
-         do g = 1, 9
-            map = matmul(mesh%coordinates(:, mesh%element_nodes(:, e)), slope(:, :, g))
-            if (map(1, 1)*map(2, 2) - map(1, 2)*map(2, 1) > 0.0_dp) cycle
-            call report%error(context%element_place(e), 'the Jacobian of element '// &
-               to_text(mesh%element_number(e))//' is not positive: its corners must go round '// &
-               'anticlockwise, its midside nodes lie near the middle')
-            exit
+      associate (mesh => model%mesh)
+         if (maxval(abs(model%materials(m)%elasticity)) <= 0.0_dp) return
+         if (equivalent_poisson(model%materials(m)%elasticity) <= most_compressible) return
+         do e = 1, size(mesh%element_number)
+            if (mesh%element_section(e) == 0 .or. .not. context%element_valid(e)) cycle
+            if (model%sections(mesh%element_section(e))%material /= m) cycle
+            if (mesh%element_plane(e) == plane_stress) cycle
+            if (mesh%element_kind(e) == quad8_reduced) cycle
+            if (has_mean_dilatation(mesh%element_kind(e), mesh%element_plane(e))) cycle
+            call report%warning(context%material_place(m), 'material '//model%materials(m)%name// &
+               ' is nearly incompressible: elements such as '//to_text(mesh%element_number(e))// &
+               ' are too stiff with it; take '//trim(merge('CAX8R', 'CPE8R', &
+               mesh%element_plane(e) == axisymmetric)))
+            return
          end do
-      end do
-   end subroutine check_jacobians
+      end associate
+   end subroutine check_locking
 
-   !> Elements meet along whole sides, and surfaces are faces of which one side is free.
-   subroutine check_sides(context, mesh, report)
-      type(deck_context_type), intent(in) :: context
-      type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
-      integer :: first(size(mesh%node_number)), uses(size(mesh%node_number))
-      logical :: corner(size(mesh%node_number))
-      integer :: e, f, node, s, i
-
-      corner = .false.
-      uses = 0
-      do e = 1, size(mesh%element_number)
-         if (context%element_valid(e)) corner(mesh%element_nodes(1:4, e)) = .true.
-      end do
-      first = 0
-      do e = 1, size(mesh%element_number)
-         if (.not. context%element_valid(e)) cycle
-         do f = 1, 4
-            node = mesh%element_nodes(face_nodes(2, f), e)
-            uses(node) = uses(node) + 1
-            if (first(node) == 0) first(node) = 4*e + f - 1
-            if (corner(node) .or. uses(node) > 2 .or. .not. is_same_side(mesh, first(node), e, &
-               f)) then
-               call report%error(context%element_place(e), 'element '// &
-                  to_text(mesh%element_number(e))//' does not share the side with midside node '// &
-                  to_text(mesh%node_number(node))//' with its neighbour')
-            end if
-         end do
-      end do
-      do s = 1, size(mesh%surfaces)
-         do i = 1, size(mesh%surfaces(s)%faces, 2)
-            e = mesh%surfaces(s)%faces(1, i)
-            f = mesh%surfaces(s)%faces(2, i)
-            if (.not. context%element_valid(e)) cycle
-            if (uses(mesh%element_nodes(face_nodes(2, f), e)) > 1) call report%error( &
-               context%surface_place(s), 'face S'//to_text(f)//' of element '// &
-               to_text(mesh%element_number(e))//' in surface '//mesh%surfaces(s)%name// &
-               ' lies inside a body')
-         end do
-      end do
-   end subroutine check_sides
-
-   !> A force acts on an element.
-   subroutine check_forces(context, mesh, report)
-      type(deck_context_type), intent(in) :: context
-      type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
-      logical :: used(0:size(mesh%node_number))
-      integer :: i
-
-      used = .false.
-      used([mesh%element_nodes]) = .true.
-      do i = 1, context%forces%count
-         associate (request => context%forces%items(i))
-            if (request%set > 0) then
-               if (all(used(mesh%node_sets(request%set)%members))) cycle
-            else if (used(request%item)) then
-               cycle
-            end if
-            call report%error(request%place, 'a force on a node that no element has')
-         end associate
-      end do
-   end subroutine check_forces
-
-   !> Warns of temperatures that come after the last step that solves heat.
-   subroutine check_temperatures(context, model, report)
+   !> The axis of a cylindrical orientation is parallel to z, where an axisymmetric model has none.
+   subroutine check_orientations(context, model, report)
       type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
-      integer :: i
+      integer :: e
 
-      do i = 1, context%boundaries%count
-         associate (request => context%boundaries%items(i))
-            if (request%component /= dof_temperature) cycle
-            if (any(model%steps(max(1, request%step):)%analysis == analysis_coupled)) cycle
-            call report%warning(request%place, &
-               'a temperature without effect: no step from here '// &
-               'on solves heat')
+      do e = 1, size(model%mesh%element_number)
+         if (model%mesh%element_section(e) == 0) cycle
+         if (model%mesh%element_plane(e) /= axisymmetric) cycle
+         associate (index => model%sections(model%mesh%element_section(e))%orientation)
+            if (index == 0) cycle
+            if (.not. model%orientations(index)%cylindrical) cycle
+            call report%error(context%element_place(e), 'element '// &
+               to_text(model%mesh%element_number(e))//' is axisymmetric: the cylindrical '// &
+               'orientation '//model%orientations(index)%name//' has its axis along z')
+            return
          end associate
       end do
-   end subroutine check_temperatures
+   end subroutine check_orientations
 
-   !> Whether a side has the corners of the one that was met first with its midside node.
-   pure logical function is_same_side(mesh, first, e, f)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: first, e, f
-      integer :: known(3), side(3)
-
-      known = mesh%element_nodes(face_nodes(:, mod(first, 4) + 1), first/4)
-      side = mesh%element_nodes(face_nodes(:, f), e)
-      is_same_side = all(known == side) .or. all(known == side(3:1:-1))
-   end function is_same_side
 
 end module deck_checks

@@ -5,6 +5,7 @@ module deck_context
    use cards, only: add_note, data_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
+   use keywords, only: known_keywords
    use load_requests, only: request_list_type
    use mesh, only: set_type
    use sorting, only: number_index_type
@@ -15,6 +16,8 @@ module deck_context
    public :: plane_by_element
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
+
+   integer, parameter :: known_count = size(known_keywords)
 
    !> State of the builder.
    type :: deck_context_type
@@ -32,8 +35,9 @@ module deck_context
       character(:), allocatable :: load_set   !! LOAD=: node set; unallocated when not given
       type(place_type) :: load_place                      !! where it stands
       type(request_list_type) :: boundaries               !! *BOUNDARY
-      type(request_list_type) :: forces                   !! *CLOAD
-      type(request_list_type) :: pressures                !! *DLOAD
+      type(request_list_type) :: loads                    !! all other loads
+      integer :: load_cards = 0                           !! data cards of these loads
+      integer :: load_step(known_count) = -1              !! last step with a card of each keyword
       type(request_list_type) :: temperatures             !! *INITIAL CONDITIONS
       logical :: sets_sound = .true.         !! whether all *NSET and *ELSET could be taken
       logical :: sections_sound = .true.     !! whether all elements of *SOLID SECTION are known

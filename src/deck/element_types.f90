@@ -1,52 +1,52 @@
-!> Element types of the dialect: which are built, which come later, which are refused.
+!> Element types of the dialect: which are built, which are refused.
 module element_types
+   use element_kinds, only: axisymmetric, plane_strain, plane_stress, quad4, quad8, quad8_reduced, &
+      triangle3, triangle6
    use text, only: nearest_known, string_type
    implicit none
    private
-   public :: check_element_type
+   public :: take_element_type
 
-   character(5), parameter :: built_types(1) = ['CPE8 ']              !! plane strain, eight nodes
-   character(5), parameter :: other_planes(2) = ['CPS8 ', 'CAX8 ']  !! the same nodes, another plane
-   character(5), parameter :: later_types(12) = ['CPE8R', 'CPS8R', 'CAX8R', &
-      'CPE4 ', 'CPS4 ', 'CAX4 ', 'CPE3 ', 'CPS3 ', 'CAX3 ', 'CPE6 ', 'CPS6 ', 'CAX6 ']
-   character(5), parameter :: hourglass_types(3) = ['CPE4R', 'CPS4R', 'CAX4R']
+   character(3), parameter :: plane_names(3) = ['CPE', 'CPS', 'CAX']
+   integer, parameter :: planes(3) = [plane_strain, plane_stress, axisymmetric]
+
+   character(2), parameter :: kind_names(5) = ['8 ', '8R', '4 ', '6 ', '3 ']
+   integer, parameter :: element_kinds_named(5) = &
+      [quad8, quad8_reduced, quad4, triangle6, triangle3]
 
 contains
 
-   !> Why an element type cannot be used; empty where it can.
-   pure function check_element_type(name, strain) result(message)
+   !> Kind and plane that an element type names, or why it cannot be used.
+   pure subroutine take_element_type(name, kind, plane, message)
       character(*), intent(in) :: name           !! TYPE= in upper case
-      logical, intent(in) :: strain              !! whether PLANE=STRAIN overrides the names
-      character(:), allocatable :: message       !! what is wrong, or empty
-      type(string_type) :: names(size(built_types) + size(other_planes) + size(later_types))
-      integer :: i
+      integer, intent(out) :: kind               !! quad8, ...; quad8 after an error
+      integer, intent(out) :: plane              !! plane_strain, ...; plane_strain after an error
+      character(:), allocatable, intent(out) :: message   !! what is wrong, or empty
+      type(string_type) :: names(size(plane_names)*size(kind_names))
+      integer :: i, k, n
 
+      kind = quad8
+      plane = plane_strain
       message = ''
-      if (any(built_types == name)) return
-      if (any(other_planes == name)) then
-         if (.not. strain) message = 'element type '//name// &
-            ' is not built yet; *OPTIONS, PLANE=STRAIN takes it as CPE8'
-      else if (any(later_types == name)) then
-         message = 'element type '//name//' is not built yet'
-      else if (any(hourglass_types == name)) then
+      n = 0
+      do i = 1, size(plane_names)
+         do k = 1, size(kind_names)
+            n = n + 1
+            names(n)%value = trim(plane_names(i)//kind_names(k))
+            if (name /= names(n)%value) cycle
+            kind = element_kinds_named(k)
+            plane = planes(i)
+            return
+         end do
+      end do
+      if (any(plane_names//'4R' == name)) then
          message = 'element type '//name// &
             ' is refused: linear elements with reduced integration need hourglass control'
       else if (index(name, 'C3D') == 1) then
          message = 'element type '//name//' is refused: models are two-dimensional'
       else
-         do i = 1, size(names)
-            names(i)%value = type_name(i)
-         end do
          message = 'unknown element type '//name//nearest_known(name, names)
       end if
-   end function check_element_type
-
-   pure function type_name(i) result(name)
-      integer, intent(in) :: i
-      character(:), allocatable :: name
-      character(5), parameter :: all_types(15) = [built_types, other_planes, later_types]
-
-      name = trim(all_types(i))
-   end function type_name
+   end subroutine take_element_type
 
 end module element_types

@@ -62,26 +62,27 @@ module keywords
       known_keyword_type('CONDUCTIVITY', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('DENSITY', built, in_model, 1, many, ''), &
       known_keyword_type('SPECIFIC HEAT', not_needed, in_model, 0, many, ''), &
-      known_keyword_type('ORIENTATION', later, in_model, 0, many, ''), &
+      known_keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
       known_keyword_type('SOLID SECTION', built, in_model, 0, 1, &
-      'ELSET=/MATERIAL=/+ORIENTATION='), &
+      'ELSET=/MATERIAL=/ORIENTATION='), &
       known_keyword_type('AMPLITUDE', built, in_model, 1, many, 'NAME=/TIME='), &
       known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 0, 'NAME='), &
       known_keyword_type('FRICTION', built, in_model, 1, 1, ''), &
-      known_keyword_type('GAP CONDUCTANCE', later, in_model, 0, many, ''), &
-      known_keyword_type('GAP LAW', built, in_model, 1, 1, 'TYPE='), &
+      known_keyword_type('GAP CONDUCTANCE', built, in_model, 1, many, &
+      '!USER/!PRESSURE/!DEPENDENCIES='), &
+      known_keyword_type('GAP LAW', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
       'PRESSURE-OVERCLOSURE='), &
       known_keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
       'INTERACTION=/NAME=/~TYPE=/~SMALL SLIDING/!ADJUST=/!TIED'), &
-      known_keyword_type('CLEARANCE', later, in_model, 0, many, ''), &
+      known_keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
       known_keyword_type('TRANSFORM', refused, in_model, 0, many, '')]
 
    type(known_keyword_type), parameter :: control_keywords(9) = [ &
       known_keyword_type('FIXED POINT', built, in_both, 0, 0, &
       'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
-      known_keyword_type('THERMAL SCHEME', built, in_both, 0, 0, 'TYPE='), &
+      known_keyword_type('THERMAL SCHEME', built, in_both, 0, 1, 'TYPE='), &
       known_keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
       known_keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS='), &
       known_keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &
@@ -93,17 +94,17 @@ module keywords
    type(known_keyword_type), parameter :: step_keywords(20) = [ &
       known_keyword_type('STEP', built, in_both, 0, 0, 'INC=/AMPLITUDE=/NLGEOM?'), &
       known_keyword_type('STATIC', built, in_step, 0, 1, 'DIRECT/~SOLVER='), &
-      known_keyword_type('HEAT TRANSFER', later, in_step, 0, many, ''), &
+      known_keyword_type('HEAT TRANSFER', built, in_step, 0, 1, 'STEADY STATE/DIRECT/~SOLVER='), &
       known_keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
       'STEADY STATE/DIRECT/~SOLVER='), &
       known_keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE='), &
       known_keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       known_keyword_type('DLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('DSLOAD', later, in_step, 0, many, ''), &
-      known_keyword_type('CFLUX', later, in_step, 0, many, ''), &
-      known_keyword_type('DFLUX', later, in_step, 0, many, ''), &
-      known_keyword_type('FILM', later, in_step, 0, many, ''), &
-      known_keyword_type('TEMPERATURE', later, in_step, 0, many, ''), &
+      known_keyword_type('DSLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('CFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('DFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('FILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
+      known_keyword_type('TEMPERATURE', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       known_keyword_type('NODE FILE', built, in_step, 0, many, &
       'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
       known_keyword_type('EL FILE', built, in_step, 0, many, &
@@ -121,11 +122,14 @@ module keywords
    type(known_keyword_type), parameter :: known_keywords(55) = &
       [model_keywords, control_keywords, step_keywords]
 
-   type(refusal_type), parameter :: refusals(7) = [ &
+   type(refusal_type), parameter :: refusals(10) = [ &
       refusal_type('TRANSFORM', '', 'displacements and forces are along x and y'), &
       refusal_type('EQUATION', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('MPC', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('RIGID BODY', '', 'every body is elastic'), &
+      refusal_type('GAP CONDUCTANCE', 'USER', 'no routine of the user is called; give the table'), &
+      refusal_type('GAP CONDUCTANCE', 'PRESSURE', 'the table is one of pressure without it'), &
+      refusal_type('GAP CONDUCTANCE', 'DEPENDENCIES', 'conductance depends on the pressure only'), &
       refusal_type('CONTACT PAIR', 'ADJUST', 'it would move nodes; gaps are those of the mesh'), &
       refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; let the bodies share nodes'), &
       refusal_type('STEP', 'NLGEOM', 'displacements and strains are small')]

@@ -3,22 +3,15 @@ module load_application
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use load_requests, only: request_list_type, request_type
-   use mesh, only: set_type
+   use load_requests, only: request_type
+   use mesh, only: mesh_type, set_type
    use model, only: model_type
    use sorting, only: sort_order
-   use steps, only: boundary_type, face_load_type, nodal_load_type
+   use steps, only: boundary_type, load_film_coefficient, load_film_sink, load_force, &
+      load_nodal_heat, load_temperature, load_type
    implicit none
    private
    public :: apply_loads, apply_boundaries, apply_temperatures
-
-   !> One load: loads of one step on one place add up.
-   type :: load_type
-      integer :: key = 0   !! place of the load: node and degree of freedom, or element and face
-      real(dp) :: value = 0.0_dp    !! value
-      integer :: amplitude = 0      !! index into model%amplitudes
-      integer :: request = 0        !! where it comes from
-   end type load_type
 
 contains
 
@@ -70,6 +63,7 @@ contains
 
       counts = 0
       do i = 1, context%boundaries%count
+         if (is_ended(context%boundaries%items(i), model)) cycle
          s = max(1, context%boundaries%items(i)%step)
          counts(s) = counts(s) + target_count(context%boundaries%items(i), model%mesh%node_sets)
       end do
@@ -79,6 +73,7 @@ contains
       counts = 0
       do i = 1, context%boundaries%count
          associate (request => context%boundaries%items(i))
+            if (is_ended(request, model)) cycle
             s = max(1, request%step)
             call find_targets(request, model%mesh%node_sets, nodes)
             n = counts(s)
@@ -91,85 +86,79 @@ contains
       end do
    end subroutine apply_boundaries
 
-   !> Forces and pressures of all steps, before refinement.
+   !> OP=NEW in the first step ends what stands before it.
+   pure logical function is_ended(request, model)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+
+      is_ended = request%step == 0 .and. model%steps(1)%ends_boundaries
+   end function is_ended
+
+   !> Loads of all steps, before refinement.
    subroutine apply_loads(context, model, report)
       type(deck_context_type), intent(in) :: context       !! requests
       type(model_type), intent(inout) :: model             !! receives the loads
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(load_type), allocatable :: loads(:)
+      integer, allocatable :: requests(:), order(:)
+      logical, allocatable :: stays(:)
       integer :: s, i
 
       do s = 1, size(model%steps)
-         call merge_loads(context%forces, s, 2, model%mesh%node_sets, report, loads)
-         allocate(model%steps(s)%nodal_loads(size(loads)))
-         do i = 1, size(loads)
-            model%steps(s)%nodal_loads(i) = nodal_load_type((loads(i)%key - 1)/2 + 1, &
-               mod(loads(i)%key - 1, 2) + 1, loads(i)%value, loads(i)%amplitude)
+         call collect_loads(context, s, model%mesh, loads, requests)
+         order = sort_order(loads%component)
+         order = order(sort_order(loads(order)%item))
+         order = order(sort_order(loads(order)%kind))
+         loads = loads(order)
+         requests = requests(order)
+         allocate(stays(size(loads)), source=.true.)
+         do i = 1, size(loads) - 1
+            if (loads(i)%kind /= loads(i + 1)%kind .or. loads(i)%item /= loads(i + 1)%item .or. &
+               loads(i)%component /= loads(i + 1)%component) cycle
+            if (any(loads(i)%kind == [load_film_coefficient, load_film_sink, load_temperature])) &
+               then
+               ! As in CalculiX the last card holds, while others add up.
+               stays(i) = .false.
+            else if (loads(i)%amplitude /= loads(i + 1)%amplitude) then
+               call report%error(context%loads%items(requests(i + 1))%place, &
+                  'loads of one step on one place have two amplitudes')
+               exit
+            end if
          end do
-         call merge_loads(context%pressures, s, 4, model%mesh%element_sets, report, loads)
-         allocate(model%steps(s)%face_loads(size(loads)))
-         do i = 1, size(loads)
-            model%steps(s)%face_loads(i) = face_load_type((loads(i)%key - 1)/4 + 1, &
-               mod(loads(i)%key - 1, 4) + 1, loads(i)%value, loads(i)%amplitude)
-         end do
+         model%steps(s)%loads = pack(loads, stays)
+         deallocate(stays)
       end do
    end subroutine apply_loads
 
-   !> Loads of a step, one for each place: those on the same place add up, as in CalculiX.
-   subroutine merge_loads(requests, step, components, sets, report, merged)
-      type(request_list_type), intent(in) :: requests
-      integer, intent(in) :: step, components
-      type(set_type), intent(in) :: sets(:)
-      type(deck_report_type), intent(inout) :: report
-      type(load_type), allocatable, intent(out) :: merged(:)
-      type(load_type), allocatable :: loads(:)
-      integer, allocatable :: keys(:)
-      integer :: i, n
-
-      call collect_loads(requests, step, components, sets, loads)
-      keys = loads%key
-      loads = loads(sort_order(keys))
-      n = 0
-      do i = 1, size(loads)
-         if (n > 0) then
-            if (loads(n)%key == loads(i)%key) then
-               if (loads(n)%amplitude /= loads(i)%amplitude) call report%error( &
-                  requests%items(loads(i)%request)%place, &
-                  'loads of one step on one place have two amplitudes')
-               loads(n)%value = loads(n)%value + loads(i)%value
-               cycle
-            end if
-         end if
-         n = n + 1
-         loads(n) = loads(i)
-      end do
-      merged = loads(:n)
-   end subroutine merge_loads
-
-   subroutine collect_loads(requests, step, components, sets, loads)
-      type(request_list_type), intent(in) :: requests
-      integer, intent(in) :: step, components
-      type(set_type), intent(in) :: sets(:)
+   !> Loads of a step in the order of the cards, and the request of each.
+   subroutine collect_loads(context, step, mesh, loads, requests)
+      type(deck_context_type), intent(in) :: context
+      integer, intent(in) :: step
+      type(mesh_type), intent(in) :: mesh
       type(load_type), allocatable, intent(out) :: loads(:)
+      integer, allocatable, intent(out) :: requests(:)
       integer, allocatable :: items(:)
-      integer :: i, j, n
+      integer :: i, j, n, pass
 
-      n = 0
-      do i = 1, requests%count
-         if (requests%items(i)%step == step) n = n + target_count(requests%items(i), sets)
-      end do
-      allocate(loads(n))
-      n = 0
-      do i = 1, requests%count
-         associate (request => requests%items(i))
-            if (request%step /= step) cycle
-            call find_targets(request, sets, items)
-            do j = 1, size(items)
-               loads(n + j) = load_type(components*(items(j) - 1) + request%component, &
-                  request%value, request%amplitude, i)
-            end do
-            n = n + size(items)
-         end associate
+      do pass = 1, 2
+         n = 0
+         do i = 1, context%loads%count
+            associate (request => context%loads%items(i))
+               if (request%step /= step) cycle
+               if (any(request%kind == [load_force, load_nodal_heat, load_temperature])) then
+                  call find_targets(request, mesh%node_sets, items)
+               else
+                  call find_targets(request, mesh%element_sets, items)
+               end if
+               do j = 1, merge(size(items), 0, pass == 2)
+                  loads(n + j) = load_type(request%kind, items(j), request%component, &
+                     request%value, request%amplitude, request%card)
+               end do
+               if (pass == 2) requests(n + 1:n + size(items)) = i
+               n = n + size(items)
+            end associate
+         end do
+         if (pass == 1) allocate(loads(n), requests(n))
       end do
    end subroutine collect_loads
 

@@ -9,9 +9,10 @@ module load_requests
    !> What one data card asks for, for one component.
    type :: request_type
       integer :: step = 0           !! index of the step; 0 before the first
+      integer :: kind = 0           !! kind of the load; 0 for prescribed and initial values
       integer :: item = 0           !! index of the node or element, 0 for a set
       integer :: set = 0            !! index of the set, 0 for a single item
-      integer :: component = 0      !! degree of freedom or face
+      integer :: component = 0      !! degree of freedom, face, ...: as said at the kind
       real(dp) :: value = 0.0_dp    !! value
       integer :: amplitude = 0      !! index into model%amplitudes, 0 for none
       integer :: card = 0           !! running number of the data card

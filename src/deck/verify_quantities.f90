@@ -6,7 +6,7 @@ module verify_quantities
    use text, only: nearest_known, string_type, to_upper
    implicit none
    private
-   public :: quantities, read_quantity, of_history, of_interface, of_pairs, of_nodes
+   public :: quantities, find_quantity, read_quantity, of_history, of_interface, of_pairs, of_nodes
 
    integer, parameter :: of_history = 1     !! one number an increment
    integer, parameter :: of_interface = 2   !! one number an increment and interface
@@ -15,35 +15,48 @@ module verify_quantities
 
    !> A quantity that *VERIFY may name.
    type :: quantity_type
-      character(18) :: name   !! dataset, or nodal quantity
-      integer :: kind         !! one of the constants above
+      character(24) :: name        !! dataset, or nodal quantity
+      integer :: kind              !! one of the constants above
+      logical :: is_heat = .false. !! whether only a step that solves heat gives it
    end type quantity_type
 
-   type(quantity_type), parameter :: quantities(42) = [ &
+   type(quantity_type), parameter :: quantities(43) = [ &
       quantity_type('time', of_history), quantity_type('load', of_history), &
-      quantity_type('iterations', of_history), quantity_type('heat_in', of_history), &
-      quantity_type('heat_out', of_history), quantity_type('heat_imbalance', of_history), &
-      quantity_type('force_imbalance', of_history), &
-      quantity_type('normal_force', of_interface), quantity_type('shear_force', of_interface), &
-      quantity_type('heat_rate', of_interface), quantity_type('edge_contact', of_interface), &
-      quantity_type('edge_stick', of_interface), quantity_type('edges_contact', of_interface), &
-      quantity_type('edges_stick', of_interface), &
+      quantity_type('iterations', of_history), quantity_type('heat_in', of_history, .true.), &
+      quantity_type('heat_out', of_history, .true.), &
+      quantity_type('heat_imbalance', of_history, .true.), &
+      quantity_type('heat_imbalance_pointwise', of_history, .true.), &
+      quantity_type('force_imbalance', of_history), quantity_type('normal_force', of_interface), &
+      quantity_type('shear_force', of_interface), &
+      quantity_type('heat_rate', of_interface, .true.), &
+      quantity_type('edge_contact', of_interface), quantity_type('edge_stick', of_interface), &
+      quantity_type('edges_contact', of_interface), quantity_type('edges_stick', of_interface), &
       quantity_type('gap', of_pairs), quantity_type('pressure', of_pairs), &
       quantity_type('shear', of_pairs), quantity_type('slip', of_pairs), &
-      quantity_type('status', of_pairs), quantity_type('conductance', of_pairs), &
-      quantity_type('heat_flux', of_pairs), quantity_type('slave_temperature', of_pairs), &
-      quantity_type('master_temperature', of_pairs), quantity_type('x', of_pairs), &
+      quantity_type('status', of_pairs), quantity_type('conductance', of_pairs, .true.), &
+      quantity_type('heat_flux', of_pairs, .true.), &
+      quantity_type('slave_temperature', of_pairs, .true.), &
+      quantity_type('master_temperature', of_pairs, .true.), quantity_type('x', of_pairs), &
       quantity_type('y', of_pairs), quantity_type('s', of_pairs), &
-      quantity_type('weight', of_pairs), &
-      quantity_type('slave_node', of_pairs), quantity_type('master_node', of_pairs), &
-      quantity_type('U1', of_nodes), quantity_type('U2', of_nodes), quantity_type('NT', of_nodes), &
+      quantity_type('weight', of_pairs), quantity_type('slave_node', of_pairs), &
+      quantity_type('master_node', of_pairs), quantity_type('U1', of_nodes), &
+      quantity_type('U2', of_nodes), quantity_type('NT', of_nodes), &
       quantity_type('S11', of_nodes), quantity_type('S22', of_nodes), &
       quantity_type('S33', of_nodes), quantity_type('S12', of_nodes), &
-      quantity_type('MISES', of_nodes), quantity_type('HFL1', of_nodes), &
-      quantity_type('HFL2', of_nodes), quantity_type('RF1', of_nodes), &
-      quantity_type('RF2', of_nodes), quantity_type('RFL', of_nodes)]
+      quantity_type('MISES', of_nodes), quantity_type('HFL1', of_nodes, .true.), &
+      quantity_type('HFL2', of_nodes, .true.), quantity_type('RF1', of_nodes), &
+      quantity_type('RF2', of_nodes), quantity_type('RFL', of_nodes, .true.)]
 
 contains
+
+   !> Index into quantities of a name in any case; 0 for one that is not known.
+   pure integer function find_quantity(name)
+      character(*), intent(in) :: name   !! the name
+
+      do find_quantity = size(quantities), 1, -1
+         if (to_upper(trim(quantities(find_quantity)%name)) == to_upper(name)) return
+      end do
+   end function find_quantity
 
    !> Reads the first field of a *VERIFY card.
    subroutine read_quantity(data, report, quantity)
@@ -61,8 +74,8 @@ contains
       if (.not. valid) return
       do i = 1, size(quantities)
          names(i)%value = trim(quantities(i)%name)
-         if (to_upper(names(i)%value) == to_upper(name)) quantity = i
       end do
+      quantity = find_quantity(name)
       if (quantity > 0) return
       select case (to_upper(name))
       case ('COUPLING_GAIN', 'COUPLING_GAIN_MAX')

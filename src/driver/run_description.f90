@@ -1,12 +1,13 @@
-!> What a run models, in words and numbers, once its first step is prepared.
+!> What a run models, in words and numbers, once it is started.
 module run_description
-   use conductance_laws, only: law_gas, law_power
+   use conductance_laws, only: law_none
    use controls, only: solver_mumps
    use increments, only: simulation_type
    use kinds, only: dp
    use model, only: model_type
    use run_summaries, only: run_summary_type
-   use steps, only: analysis_coupled
+   use steps, only: analysis_coupled, solves_heat, solves_mechanics
+   use text, only: to_text
    use version, only: program_version
    implicit none
    private
@@ -26,48 +27,94 @@ contains
       run%solver = 'SKYLINE'
       if (model%solver == solver_mumps) run%solver = 'MUMPS'
       call name_physics(model, run)
-      associate (operators => simulation%operators)
-         run%equations_mechanical = operators%mechanical%map%equations
-         run%contact_unknowns = operators%mechanical%map%tail
-         if (simulation%is_reduced) run%factor_bytes = operators%mechanical%solver%factor_bytes
-         if (.not. simulation%with_heat) return
-         run%equations_thermal = operators%thermal%map%equations
-         run%contact_unknowns = run%contact_unknowns + operators%thermal%map%tail
-         if (simulation%is_reduced) then
-            run%factor_bytes = run%factor_bytes + operators%thermal%solver%factor_bytes
-         end if
-      end associate
-      call find_biot(model, simulation, run)
+      run%equations_thermal = simulation%sizes%equations_thermal
+      run%equations_mechanical = simulation%sizes%equations_mechanical
+      run%contact_unknowns = simulation%sizes%contact_unknowns
+      run%factor_bytes = simulation%sizes%factor_bytes
+      if (any(solves_heat(model%steps%analysis))) call find_biot(model, simulation, run)
    end subroutine describe_run
 
-   !> Which parts of the physics are on, and what in the deck switched them on.
+   !> Which parts of the physics are on or off, and what in the deck makes them so.
    subroutine name_physics(model, run)
       type(model_type), intent(in) :: model
       type(run_summary_type), intent(inout) :: run
-      logical :: heat
+      logical :: has_heat, has_mechanics, has_contact, has_friction, has_law
 
-      run%modelled = 'elasticity'
-      run%reasons = 'every step solves equilibrium'
-      heat = any(model%steps%analysis == analysis_coupled)
-      if (heat) call name('heat', '*COUPLED TEMPERATURE-DISPLACEMENT')
-      if (size(model%contacts) == 0) return
-      call name('contact', '*CONTACT PAIR')
-      if (any(model%interactions(model%contacts%interaction)%friction > 0.0_dp)) then
-         call name('friction', '*FRICTION')
+      has_heat = any(solves_heat(model%steps%analysis))
+      has_mechanics = any(solves_mechanics(model%steps%analysis))
+      has_contact = size(model%contacts) > 0
+      has_friction = .false.
+      has_law = .false.
+      if (has_contact) then
+         associate (interactions => model%interactions(model%contacts%interaction))
+            has_friction = any(interactions%friction > 0.0_dp)
+            has_law = any(interactions%law%open_kind /= law_none .or. &
+               interactions%law%closed_kind /= law_none)
+         end associate
       end if
-      if (.not. heat) return
-      if (any(model%interactions(model%contacts%interaction)%law%open_kind == law_gas) .or. &
-         any(model%interactions(model%contacts%interaction)%law%closed_kind == law_power)) then
-         call name('coupling', 'conductance that depends on gap or pressure')
+      run%modelled = ''
+      run%reasons = ''
+      call name('elasticity', has_mechanics, steps_that(solves_mechanics(model%steps%analysis)), &
+         'no step but *HEAT TRANSFER')
+      call name('heat', has_heat, steps_that(solves_heat(model%steps%analysis)), &
+         'no step solves temperatures')
+      call name('contact', has_contact, '*CONTACT PAIR', 'no *CONTACT PAIR')
+      if (has_contact .and. .not. has_mechanics) then
+         call name('friction', .false., '', 'no step solves mechanics')
+      else
+         call name('friction', has_friction, '*FRICTION', &
+            reason_of(has_contact, 'no *FRICTION above 0', 'no contact'))
       end if
+      call name('coupling', has_law .and. any(model%steps%analysis == analysis_coupled), &
+         '*COUPLED TEMPERATURE-DISPLACEMENT and a conductance of gap or pressure', &
+         reason_of(has_law, 'no step solves heat and mechanics together', &
+         'no conductance of gap or pressure'))
    contains
-      subroutine name(part, reason)
-         character(*), intent(in) :: part, reason
+      subroutine name(part, is_on, why_on, why_off)
+         character(*), intent(in) :: part, why_on, why_off
+         logical, intent(in) :: is_on
+         character(:), allocatable :: reason
 
-         run%modelled = run%modelled//', '//part
-         run%reasons = run%reasons//'; '//part//' by '//reason
+         if (len(run%reasons) > 0) run%reasons = run%reasons//'; '
+         reason = ' is off: '//why_off
+         if (is_on) then
+            reason = ' is on: '//why_on
+            if (len(run%modelled) > 0) run%modelled = run%modelled//', '
+            run%modelled = run%modelled//part
+         end if
+         run%reasons = run%reasons//part//reason
       end subroutine name
    end subroutine name_physics
+
+   !> One of two reasons.
+   pure function reason_of(condition, if_true, if_false) result(reason)
+      logical, intent(in) :: condition
+      character(*), intent(in) :: if_true, if_false
+      character(:), allocatable :: reason
+
+      reason = if_false
+      if (condition) reason = if_true
+   end function reason_of
+
+   !> Names the steps for which something holds.
+   pure function steps_that(holds) result(words)
+      logical, intent(in) :: holds(:)
+      character(:), allocatable :: words
+      integer :: i
+
+      if (all(holds)) then
+         words = 'every step solves it'
+         return
+      end if
+      words = 'step'
+      if (count(holds) > 1) words = words//'s'
+      do i = 1, size(holds)
+         if (holds(i)) words = words//' '//to_text(i)
+      end do
+      words = words//' of '//to_text(size(holds))
+      if (count(holds) == 1) words = words//' solves it'
+      if (count(holds) > 1) words = words//' solve it'
+   end function steps_that
 
    !> Contact Biot number omega L/K of the initial gaps: L the length of the interface, K the
    !> slave's conductivity.

@@ -1,8 +1,10 @@
-!> Heat conduction in one eight-node element.
+!> Heat conduction in one element.
 module element_conduction
+   use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
-   use quadrature, only: square_points
-   use shape_functions, only: element_gradients
+   use quadrature, only: integration_rule, point_count
+   use shape_functions, only: element_gradients, element_shape
+   use side_integrals, only: area_factor
    implicit none
    private
    public :: conduction_matrix, heat_flux_at
@@ -10,38 +12,41 @@ module element_conduction
 contains
 
    !> Conductance matrix of an element, the first integral of (3.2):
-   !> K_pq = integral of (K_x psi^p,x psi^q,x + K_y psi^p,y psi^q,y).
-   pure function conduction_matrix(coordinates, conductivity, thickness) result(k)
-      real(dp), intent(in) :: coordinates(2, 8)   !! nodes [length]
-      real(dp), intent(in) :: conductivity(2)     !! K_x, K_y [power/(length temperature)]
-      real(dp), intent(in) :: thickness           !! thickness [length]
-      real(dp) :: k(8, 8)                         !! [power/temperature]
-      real(dp) :: points(2, 9), weights(9), b(2, 8), jacobian, factor
-      integer :: g, q
+   !> K_pq = integral of grad psi^p . K grad psi^q dV.
+   pure function conduction_matrix(kind, plane, coordinates, conductivity, thickness) result(k)
+      integer, intent(in) :: kind                  !! kind of the element
+      integer, intent(in) :: plane                 !! plane_strain, ...
+      real(dp), intent(in) :: coordinates(:, :)    !! (2, nodes of the kind) [length]
+      !> (2, 2, points of integration_rule) [power/(length temperature)]
+      real(dp), intent(in) :: conductivity(:, :, :)
+      real(dp), intent(in) :: thickness            !! thickness; not of axisymmetric ones [length]
+      real(dp) :: k(element_node_count(kind), element_node_count(kind)) !! [power/temperature]
+      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
+      real(dp) :: b(2, element_node_count(kind)), jacobian, radius, factor
+      integer :: g
 
-      call square_points(points, weights)
+      call integration_rule(kind, points, weights)
       k = 0.0_dp
-      do g = 1, 9
-         call element_gradients(coordinates, points(:, g), b, jacobian)
-         factor = weights(g)*jacobian*thickness
-         do q = 1, 8
-            k(:, q) = k(:, q) + factor*(conductivity(1)*b(1, q)*b(1, :) &
-               + conductivity(2)*b(2, q)*b(2, :))
-         end do
+      do g = 1, size(weights)
+         call element_gradients(kind, coordinates, points(:, g), b, jacobian)
+         radius = dot_product(element_shape(kind, points(:, g)), coordinates(1, :))
+         factor = weights(g)*jacobian*area_factor(radius, thickness, plane == axisymmetric)
+         k = k + factor*matmul(transpose(b), matmul(conductivity(:, :, g), b))
       end do
    end function conduction_matrix
 
    !> Heat flux q = -K grad T, eq. (1.4), at a point of an element.
-   pure function heat_flux_at(coordinates, point, conductivity, temperature) result(flux)
-      real(dp), intent(in) :: coordinates(2, 8)   !! nodes [length]
+   pure function heat_flux_at(kind, coordinates, point, conductivity, temperature) result(flux)
+      integer, intent(in) :: kind                 !! kind of the element
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
       real(dp), intent(in) :: point(2)            !! xi, eta
-      real(dp), intent(in) :: conductivity(2)     !! K_x, K_y [power/(length temperature)]
-      real(dp), intent(in) :: temperature(8)      !! at the nodes [temperature]
+      real(dp), intent(in) :: conductivity(2, 2)  !! at the point [power/(length temperature)]
+      real(dp), intent(in) :: temperature(:)      !! (nodes of the kind) [temperature]
       real(dp) :: flux(2)                         !! q_x, q_y [power/length^2]
-      real(dp) :: b(2, 8), jacobian
+      real(dp) :: b(2, element_node_count(kind)), jacobian
 
-      call element_gradients(coordinates, point, b, jacobian)
-      flux = -conductivity*matmul(b, temperature)
+      call element_gradients(kind, coordinates, point, b, jacobian)
+      flux = -matmul(conductivity, matmul(b, temperature))
    end function heat_flux_at
 
 end module element_conduction

@@ -1,130 +1,176 @@
-!> Plane-strain thermoelasticity in one eight-node element, eq. (1.5) for an isotropic body.
-!> Degrees of freedom are ordered u_x, u_y of node 1, u_x, u_y of node 2, ...
+!> Thermoelasticity in one element. Strains and stresses are ordered xx, yy, zz, xy, the shear
+!> strain being an angle; degrees of freedom u_x, u_y of node 1, u_x, u_y of node 2, ... In an
+!> axisymmetric element x is the radius and zz the circumference: eps_zz = u_x/r.
+!>
+!> Four-node elements of plane strain and axisymmetric ones take the mean dilatation of the element
+!> in place of that at each point (B-bar: Hughes, Int. J. Num. Meth. Eng. 15 (1980) 1413), so that
+!> nearly incompressible materials do not lock them.
 module element_elasticity
+   use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4
    use kinds, only: dp
-   use quadrature, only: gauss_point_3, gauss_weight_3, square_points
-   use shape_functions, only: element_gradients, element_shape, side_shape, side_slope
+   use quadrature, only: integration_rule, point_count
+   use shape_functions, only: element_gradients, element_shape
+   use side_integrals, only: area_factor
    implicit none
    private
-   public :: elastic_matrix, thermal_modulus, element_stiffness, element_thermal_load
-   public :: stress_at, side_pressure_load
+   public :: element_stiffness, element_thermal_load, stress_at, has_mean_dilatation
 
 contains
 
-   !> E of (1.5) in plane strain: (sigma_xx, sigma_yy, sigma_xy) from (eps_xx, eps_yy, gamma_xy).
-   pure function elastic_matrix(young, poisson) result(e)
-      real(dp), intent(in) :: young     !! E [stress]
-      real(dp), intent(in) :: poisson   !! nu [-]
-      real(dp) :: e(3, 3)               !! [stress]
-      real(dp) :: lambda, shear
+   !> Whether elements of a kind take the mean dilatation in a plane.
+   pure logical function has_mean_dilatation(kind, plane)
+      integer, intent(in) :: kind    !! kind of the element
+      integer, intent(in) :: plane   !! plane_strain, ...
 
-      lambda = young*poisson/((1 + poisson)*(1 - 2*poisson))
-      shear = young/(2*(1 + poisson))
-      e = 0.0_dp
-      e(1, 1) = lambda + 2*shear
-      e(2, 2) = e(1, 1)
-      e(1, 2) = lambda
-      e(2, 1) = lambda
-      e(3, 3) = shear
-   end function elastic_matrix
-
-   !> beta = E:alpha of (1.1), the in-plane stress that holds back a unit temperature.
-   pure function thermal_modulus(young, poisson, expansion) result(beta)
-      real(dp), intent(in) :: young       !! E [stress]
-      real(dp), intent(in) :: poisson     !! nu [-]
-      real(dp), intent(in) :: expansion   !! alpha [1/temperature]
-      real(dp) :: beta                    !! [stress/temperature]
-
-      beta = young*expansion/(1 - 2*poisson)
-   end function thermal_modulus
+      has_mean_dilatation = kind == quad4 .and. plane /= plane_stress
+   end function has_mean_dilatation
 
    !> Stiffness matrix, the element's part of K^n in (2.4): integral of B^T E B.
-   pure function element_stiffness(coordinates, e, thickness) result(k)
-      real(dp), intent(in) :: coordinates(2, 8)   !! nodes [length]
-      real(dp), intent(in) :: e(3, 3)             !! from elastic_matrix [stress]
-      real(dp), intent(in) :: thickness           !! thickness [length]
-      real(dp) :: k(16, 16)                       !! [stress length]
-      real(dp) :: points(2, 9), weights(9), gradients(2, 8), b(3, 16), jacobian
+   pure function element_stiffness(kind, plane, coordinates, e, thickness) result(k)
+      integer, intent(in) :: kind                 !! kind of the element
+      integer, intent(in) :: plane                !! plane_strain, ...
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
+      real(dp), intent(in) :: e(:, :, :)          !! (4, 4, points of integration_rule) [stress]
+      real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
+      real(dp) :: k(2*element_node_count(kind), 2*element_node_count(kind)) !! [stress length]
+      real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
       integer :: g
 
-      call square_points(points, weights)
+      call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
       k = 0.0_dp
-      do g = 1, 9
-         call element_gradients(coordinates, points(:, g), gradients, jacobian)
-         b = strain_matrix(gradients)
-         k = k + weights(g)*jacobian*thickness*matmul(transpose(b), matmul(e, b))
+      do g = 1, size(volumes)
+         k = k + volumes(g)*matmul(transpose(b(:, :, g)), matmul(e(:, :, g), b(:, :, g)))
       end do
    end function element_stiffness
 
    !> Nodal forces of a temperature increment, per unit nodal temperature: integral of B^T beta
    !> psi^q.
-   pure function element_thermal_load(coordinates, beta, thickness) result(load)
-      real(dp), intent(in) :: coordinates(2, 8)   !! nodes [length]
-      real(dp), intent(in) :: beta                !! from thermal_modulus [stress/temperature]
-      real(dp), intent(in) :: thickness           !! thickness [length]
-      real(dp) :: load(16, 8)                     !! [stress length^2/temperature]
-      real(dp) :: points(2, 9), weights(9), gradients(2, 8), psi(8), jacobian
+   pure function element_thermal_load(kind, plane, coordinates, beta, thickness) result(load)
+      integer, intent(in) :: kind                 !! kind of the element
+      integer, intent(in) :: plane                !! plane_strain, ...
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
+      real(dp), intent(in) :: beta(:, :)   !! (4, points of integration_rule) [stress/temperature]
+      real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
+      !> (2 nodes, nodes) [stress length^2/temperature]
+      real(dp) :: load(2*element_node_count(kind), element_node_count(kind))
+      real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
+      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
+      real(dp) :: psi(element_node_count(kind)), force(2*element_node_count(kind))
       integer :: g, q
 
-      call square_points(points, weights)
+      call integration_rule(kind, points, weights)
+      call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
       load = 0.0_dp
-      do g = 1, 9
-         call element_gradients(coordinates, points(:, g), gradients, jacobian)
-         psi = element_shape(points(:, g))
-         do q = 1, 8
-            load(:, q) = load(:, q) + weights(g)*jacobian*thickness*beta*psi(q) &
-               *reshape(gradients, [16])
+      do g = 1, size(volumes)
+         psi = element_shape(kind, points(:, g))
+         force = volumes(g)*matmul(beta(:, g), b(:, :, g))
+         do q = 1, size(psi)
+            load(:, q) = load(:, q) + force*psi(q)
          end do
       end do
    end function element_thermal_load
 
-   !> Stress at a point of an element, eq. (1.5): sigma = E eps - beta T, and sigma_zz of plane
-   !> strain.
-   pure function stress_at(coordinates, point, e, beta, displacement, temperature) result(stress)
-      real(dp), intent(in) :: coordinates(2, 8)    !! nodes [length]
+   !> Stress at a point of an element, eq. (1.5): sigma = E eps - beta T.
+   pure function stress_at(kind, plane, coordinates, point, e, beta, displacement, temperature) &
+      result(stress)
+      integer, intent(in) :: kind                  !! kind of the element
+      integer, intent(in) :: plane                 !! plane_strain, ...
+      real(dp), intent(in) :: coordinates(:, :)    !! (2, nodes of the kind) [length]
       real(dp), intent(in) :: point(2)             !! xi, eta
-      real(dp), intent(in) :: e(3, 3)              !! from elastic_matrix [stress]
-      real(dp), intent(in) :: beta                 !! from thermal_modulus [stress/temperature]
-      real(dp), intent(in) :: displacement(2, 8)   !! at the nodes [length]
-      real(dp), intent(in) :: temperature(8)       !! increment over the natural state [temperature]
+      real(dp), intent(in) :: e(4, 4)              !! at the point [stress]
+      real(dp), intent(in) :: beta(4)              !! at the point [stress/temperature]
+      real(dp), intent(in) :: displacement(:, :)   !! (2, nodes of the kind) [length]
+      real(dp), intent(in) :: temperature(:)       !! (nodes) over the natural state [temperature]
       real(dp) :: stress(4)                        !! xx, yy, zz, xy [stress]
-      real(dp) :: gradients(2, 8), strain(3), jacobian, thermal
+      real(dp) :: b(4, 2*element_node_count(kind)), volume, strain(4)
+      real(dp) :: all_b(4, 2*element_node_count(kind), point_count(kind))
+      real(dp) :: volumes(point_count(kind))
 
-      call element_gradients(coordinates, point, gradients, jacobian)
-      strain = matmul(strain_matrix(gradients), reshape(displacement, [16]))
-      thermal = beta*dot_product(element_shape(point), temperature)
-      stress([1, 2, 4]) = matmul(e, strain) - [thermal, thermal, 0.0_dp]
-      stress(3) = e(1, 2)*(strain(1) + strain(2)) - thermal
+      call strain_matrix(kind, plane, coordinates, 1.0_dp, point, b, volume)
+      if (has_mean_dilatation(kind, plane)) then
+         call point_strain_matrices(kind, plane, coordinates, 1.0_dp, all_b, volumes)
+         call set_dilatation(mean_dilatation(all_b, volumes), b)
+      end if
+      strain = matmul(b, reshape(displacement, [size(b, 2)]))
+      stress = matmul(e, strain) - beta*dot_product(element_shape(kind, point), temperature)
    end function stress_at
 
-   !> Nodal forces of a unit pressure on a side; the body lies on the left of the direction 1-2-3.
-   pure function side_pressure_load(coordinates, thickness) result(load)
-      real(dp), intent(in) :: coordinates(2, 3)   !! first corner, midside, second corner [length]
-      real(dp), intent(in) :: thickness           !! thickness [length]
-      real(dp) :: load(2, 3)                      !! [length^2]
-      real(dp) :: along(2), psi(3)
-      integer :: g, q
+   !> B at all integration points, with the mean dilatation where the element takes it, and the
+   !> volumes that the points stand for.
+   pure subroutine strain_matrices(kind, plane, coordinates, thickness, b, volumes)
+      integer, intent(in) :: kind, plane
+      real(dp), intent(in) :: coordinates(:, :), thickness
+      real(dp), intent(out) :: b(:, :, :), volumes(:)
+      real(dp) :: mean(size(b, 2))
+      integer :: g
 
-      load = 0.0_dp
-      do g = 1, 3
-         along = matmul(coordinates, side_slope(3, gauss_point_3(g)))
-         psi = side_shape(3, gauss_point_3(g))
-         do q = 1, 3
-            load(:, q) = load(:, q) + gauss_weight_3(g)*thickness*psi(q)*[-along(2), along(1)]
-         end do
+      call point_strain_matrices(kind, plane, coordinates, thickness, b, volumes)
+      if (.not. has_mean_dilatation(kind, plane)) return
+      mean = mean_dilatation(b, volumes)
+      do g = 1, size(volumes)
+         call set_dilatation(mean, b(:, :, g))
       end do
-   end function side_pressure_load
+   end subroutine strain_matrices
 
-   !> B: (eps_xx, eps_yy, gamma_xy) from the nodal displacements.
-   pure function strain_matrix(gradients) result(b)
-      real(dp), intent(in) :: gradients(2, 8)
-      real(dp) :: b(3, 16)
+   pure subroutine point_strain_matrices(kind, plane, coordinates, thickness, b, volumes)
+      integer, intent(in) :: kind, plane
+      real(dp), intent(in) :: coordinates(:, :), thickness
+      real(dp), intent(out) :: b(:, :, :), volumes(:)
+      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
+      integer :: g
 
+      call integration_rule(kind, points, weights)
+      do g = 1, size(weights)
+         call strain_matrix(kind, plane, coordinates, thickness, points(:, g), b(:, :, g), &
+            volumes(g))
+      end do
+      volumes = volumes*weights
+   end subroutine point_strain_matrices
+
+   !> B at a point, and the volume per d xi d eta.
+   pure subroutine strain_matrix(kind, plane, coordinates, thickness, point, b, volume)
+      integer, intent(in) :: kind, plane
+      real(dp), intent(in) :: coordinates(:, :), thickness, point(2)
+      real(dp), intent(out) :: b(:, :), volume
+      real(dp) :: gradients(2, element_node_count(kind)), psi(element_node_count(kind))
+      real(dp) :: jacobian, radius
+
+      call element_gradients(kind, coordinates, point, gradients, jacobian)
+      psi = element_shape(kind, point)
+      radius = dot_product(psi, coordinates(1, :))
+      volume = jacobian*area_factor(radius, thickness, plane == axisymmetric)
       b = 0.0_dp
       b(1, 1::2) = gradients(1, :)
       b(2, 2::2) = gradients(2, :)
-      b(3, 1::2) = gradients(2, :)
-      b(3, 2::2) = gradients(1, :)
-   end function strain_matrix
+      if (plane == axisymmetric) b(3, 1::2) = psi/radius
+      b(4, 1::2) = gradients(2, :)
+      b(4, 2::2) = gradients(1, :)
+   end subroutine strain_matrix
+
+   !> Mean of eps_xx + eps_yy + eps_zz over the volume, per degree of freedom.
+   pure function mean_dilatation(b, volumes) result(mean)
+      real(dp), intent(in) :: b(:, :, :), volumes(:)
+      real(dp) :: mean(size(b, 2))
+      integer :: g
+
+      mean = 0.0_dp
+      do g = 1, size(volumes)
+         mean = mean + volumes(g)*sum(b(:3, :, g), dim=1)
+      end do
+      mean = mean/sum(volumes)
+   end function mean_dilatation
+
+   !> Gives the strains of B this dilatation, their deviator staying.
+   pure subroutine set_dilatation(dilatation, b)
+      real(dp), intent(in) :: dilatation(:)
+      real(dp), intent(inout) :: b(:, :)
+      real(dp) :: change(size(b, 2))
+      integer :: i
+
+      change = (dilatation - sum(b(:3, :), dim=1))/3
+      do i = 1, 3
+         b(i, :) = b(i, :) + change
+      end do
+   end subroutine set_dilatation
 
 end module element_elasticity

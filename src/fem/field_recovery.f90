@@ -1,14 +1,17 @@
-!> Stress and heat flux at nodes: evaluated at the 2 x 2 Gauss points, extrapolated bilinearly,
-!> averaged over the elements of one body and section. A node shared by several sections so is
-!> several points.
+!> Stress and heat flux at nodes: evaluated at the points where they are best, extrapolated to the
+!> nodes, averaged over the elements of one body and section. A node shared by several sections so
+!> is several points.
 module field_recovery
    use element_conduction, only: heat_flux_at
-   use element_elasticity, only: elastic_matrix, stress_at, thermal_modulus
+   use element_elasticity, only: stress_at
+   use element_kinds, only: element_node_count
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
-   use quadrature, only: gauss_coordinate_2
-   use shape_functions, only: node_position
+   use orientations, only: material_axes, orientation_type
+   use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
+   use quadrature, only: most_points, recovery_count, recovery_points, recovery_weights
+   use shape_functions, only: element_shape, node_position
    implicit none
    private
    public :: point_map_type, make_points, recover_stress, recover_heat_flux
@@ -16,7 +19,7 @@ module field_recovery
    !> The points at which averaged fields live: one per node and section.
    type :: point_map_type
       integer, allocatable :: node(:)               !! (points) node index
-      integer, allocatable :: element_points(:, :)  !! (8, elements) point of each element node
+      integer, allocatable :: element_points(:, :)  !! (8, elements) point of each element node, or 0
       integer, allocatable :: sharing(:)            !! (points) elements that meet there
    end type point_map_type
 
@@ -35,8 +38,9 @@ contains
       owner = 0
       allocate (extra_node(0), extra_section(0))
       allocate (points%element_points, mold=mesh%element_nodes)
+      points%element_points = 0
       do element = 1, size(mesh%element_number)
-         do i = 1, size(mesh%element_nodes, 1)
+         do i = 1, element_node_count(mesh%element_kind(element))
             node = mesh%element_nodes(i, element)
             points%element_points(i, element) = node
             if (owner(node) == 0) owner(node) = mesh%element_section(element)
@@ -55,82 +59,93 @@ contains
       points%node = [[(i, i=1, n)], extra_node]
       allocate (points%sharing(size(points%node)), source=0)
       do element = 1, size(mesh%element_number)
-         associate (mine => points%element_points(:, element))
+         associate (mine => points%element_points(:element_node_count(mesh%element_kind(element)), &
+            element))
             points%sharing(mine) = points%sharing(mine) + 1
          end associate
       end do
    end function make_points
 
-   !> Stress at the points, eq. (1.5).
-   pure function recover_stress(mesh, sections, materials, points, displacement, temperature) &
-      result(stress)
-      type(mesh_type), intent(in) :: mesh             !! the mesh
-      type(section_type), intent(in) :: sections(:)   !! sections
-      type(material_type), intent(in) :: materials(:) !! materials
-      type(point_map_type), intent(in) :: points      !! the points
-      real(dp), intent(in) :: displacement(:, :)      !! (2, nodes) [length]
+   !> Stress at the points along x and y, eq. (1.5).
+   pure function recover_stress(mesh, sections, materials, orientations, points, displacement, &
+      temperature) result(stress)
+      type(mesh_type), intent(in) :: mesh                   !! the mesh
+      type(section_type), intent(in) :: sections(:)         !! sections
+      type(material_type), intent(in) :: materials(:)       !! materials
+      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
+      type(point_map_type), intent(in) :: points            !! the points
+      real(dp), intent(in) :: displacement(:, :)            !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
-      real(dp) :: stress(4, size(points%node))        !! xx, yy, zz, xy [stress]
-      real(dp) :: at_gauss(4, 4), e(3, 3), beta
+      real(dp) :: stress(4, size(points%node))              !! xx, yy, zz, xy [stress]
+      real(dp) :: at_points(4, most_points), place(2, most_points), axes(2, 2)
       integer :: element, g
 
       stress = 0.0_dp
       do element = 1, size(mesh%element_number)
-         associate (nodes => mesh%element_nodes(:, element), &
-            material => materials(sections(mesh%element_section(element))%material))
-            e = elastic_matrix(material%young, material%poisson)
-            beta = thermal_modulus(material%young, material%poisson, material%expansion)
-            do g = 1, 4
-               at_gauss(:, g) = stress_at(mesh%coordinates(:, nodes), &
-                  gauss_coordinate_2*node_position(:, g), e, beta, displacement(:, nodes), &
-                  temperature(nodes))
+         associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
+            section => sections(mesh%element_section(element)), &
+            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+            place(:, :recovery_count(kind)) = recovery_points(kind)
+            do g = 1, recovery_count(kind)
+               axes = material_axes(orientations, section%orientation, &
+                  matmul(mesh%coordinates(:, nodes), element_shape(kind, place(:, g))))
+               associate (material => materials(section%material))
+                  at_points(:, g) = stress_at(kind, plane, mesh%coordinates(:, nodes), &
+                     place(:, g), elasticity_in(plane, material, axes), &
+                     thermal_modulus_in(plane, material, axes), displacement(:, nodes), &
+                     temperature(nodes))
+               end associate
             end do
+            call spread_to_nodes(kind, at_points, points%element_points(:, element), stress)
          end associate
-         call spread_to_nodes(at_gauss, points%element_points(:, element), stress)
       end do
       call average(points, stress)
    end function recover_stress
 
-   !> Heat flux at the points, eq. (1.4).
-   pure function recover_heat_flux(mesh, sections, materials, points, temperature) result(flux)
-      type(mesh_type), intent(in) :: mesh             !! the mesh
-      type(section_type), intent(in) :: sections(:)   !! sections
-      type(material_type), intent(in) :: materials(:) !! materials
-      type(point_map_type), intent(in) :: points      !! the points
-      real(dp), intent(in) :: temperature(:)          !! (nodes) [temperature]
-      real(dp) :: flux(2, size(points%node))          !! x, y [power/length^2]
-      real(dp) :: at_gauss(2, 4)
+   !> Heat flux at the points along x and y, eq. (1.4).
+   pure function recover_heat_flux(mesh, sections, materials, orientations, points, temperature) &
+      result(flux)
+      type(mesh_type), intent(in) :: mesh                   !! the mesh
+      type(section_type), intent(in) :: sections(:)         !! sections
+      type(material_type), intent(in) :: materials(:)       !! materials
+      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
+      type(point_map_type), intent(in) :: points            !! the points
+      real(dp), intent(in) :: temperature(:)                !! (nodes) [temperature]
+      real(dp) :: flux(2, size(points%node))                !! x, y [power/length^2]
+      real(dp) :: at_points(2, most_points), place(2, most_points), axes(2, 2)
       integer :: element, g
 
       flux = 0.0_dp
       do element = 1, size(mesh%element_number)
-         associate (nodes => mesh%element_nodes(:, element), &
-            material => materials(sections(mesh%element_section(element))%material))
-            do g = 1, 4
-               at_gauss(:, g) = heat_flux_at(mesh%coordinates(:, nodes), &
-                  gauss_coordinate_2*node_position(:, g), material%conductivity, &
-                  temperature(nodes))
+         associate (kind => mesh%element_kind(element), &
+            section => sections(mesh%element_section(element)), &
+            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+            place(:, :recovery_count(kind)) = recovery_points(kind)
+            do g = 1, recovery_count(kind)
+               axes = material_axes(orientations, section%orientation, &
+                  matmul(mesh%coordinates(:, nodes), element_shape(kind, place(:, g))))
+               at_points(:, g) = heat_flux_at(kind, mesh%coordinates(:, nodes), place(:, g), &
+                  conductivity_in(materials(section%material), axes), temperature(nodes))
             end do
+            call spread_to_nodes(kind, at_points, points%element_points(:, element), flux)
          end associate
-         call spread_to_nodes(at_gauss, points%element_points(:, element), flux)
       end do
       call average(points, flux)
    end function recover_heat_flux
 
-   !> Adds the bilinear extrapolation of Gauss values to the nodes of an element.
-   pure subroutine spread_to_nodes(at_gauss, points, values)
-      real(dp), intent(in) :: at_gauss(:, :)     !! (components, 4)
-      integer, intent(in) :: points(8)
+   !> Adds the extrapolation of the values at the recovery points to the nodes of an element.
+   pure subroutine spread_to_nodes(kind, at_points, points, values)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: at_points(:, :)    !! (components, recovery points)
+      integer, intent(in) :: points(:)
       real(dp), intent(inout) :: values(:, :)    !! (components, points)
-      real(dp) :: position(2)
-      integer :: g, q
+      real(dp) :: position(2, element_node_count(kind))
+      integer :: q
 
-      do q = 1, 8
-         position = node_position(:, q)/gauss_coordinate_2
-         do g = 1, 4
-            values(:, points(q)) = values(:, points(q)) + at_gauss(:, g)* &
-               (1 + position(1)*node_position(1, g))*(1 + position(2)*node_position(2, g))/4
-         end do
+      position = node_position(kind)
+      do q = 1, size(position, 2)
+         values(:, points(q)) = values(:, points(q)) + &
+            matmul(at_points(:, :recovery_count(kind)), recovery_weights(kind, position(:, q)))
       end do
    end subroutine spread_to_nodes
 

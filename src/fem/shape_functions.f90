@@ -1,74 +1,154 @@
-!> Shape functions of the eight-node element and of its three-node sides.
+!> Shape functions of the elements and of their sides. The square runs over xi, eta = -1..1; the
+!> triangle has its corners at (0, 0), (1, 0), (0, 1).
 module shape_functions
+   use element_kinds, only: element_node_count, quad4, quad8, quad8_reduced, triangle3, triangle6
    use kinds, only: dp
    implicit none
    private
    public :: element_shape, element_gradients, side_shape, side_slope
-   public :: node_position
+   public :: node_position, is_triangle
 
    !> xi, eta of the eight nodes: corners anticlockwise, then the midsides of 1-2, 2-3, 3-4, 4-1.
-   real(dp), parameter :: node_position(2, 8) = reshape( &
+   real(dp), parameter :: square_position(2, 8) = reshape( &
       [-1.0_dp, -1.0_dp, 1.0_dp, -1.0_dp, 1.0_dp, 1.0_dp, -1.0_dp, 1.0_dp, &
       0.0_dp, -1.0_dp, 1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp, -1.0_dp, 0.0_dp], [2, 8])
 
+   !> xi, eta of the six nodes of the triangle.
+   real(dp), parameter :: triangle_position(2, 6) = reshape( &
+      [0.0_dp, 0.0_dp, 1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp, &
+      0.5_dp, 0.0_dp, 0.5_dp, 0.5_dp, 0.0_dp, 0.5_dp], [2, 6])
+
+   !> Slopes of the area coordinates by xi and eta.
+   real(dp), parameter :: area_slope(2, 3) = reshape( &
+      [-1.0_dp, -1.0_dp, 1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 3])
+
 contains
 
-   !> psi^q at a point of the square.
-   pure function element_shape(point) result(psi)
-      real(dp), intent(in) :: point(2)   !! xi, eta
-      real(dp) :: psi(8)                 !! values
+   !> Whether a kind of element is a triangle.
+   elemental logical function is_triangle(kind)
+      integer, intent(in) :: kind   !! kind of the element
+
+      is_triangle = kind == triangle6 .or. kind == triangle3
+   end function is_triangle
+
+   !> Local coordinates of the nodes of an element.
+   pure function node_position(kind) result(position)
+      integer, intent(in) :: kind                             !! kind of the element
+      real(dp) :: position(2, element_node_count(kind))       !! xi, eta
+
+      if (is_triangle(kind)) then
+         position = triangle_position(:, :element_node_count(kind))
+      else
+         position = square_position(:, :element_node_count(kind))
+      end if
+   end function node_position
+
+   !> psi^q at a point of an element.
+   pure function element_shape(kind, point) result(psi)
+      integer, intent(in) :: kind                   !! kind of the element
+      real(dp), intent(in) :: point(2)              !! xi, eta
+      real(dp) :: psi(element_node_count(kind))     !! values
+      real(dp) :: area(3)
+
+      area = [1 - point(1) - point(2), point(1), point(2)]
+      select case (kind)
+      case (quad8, quad8_reduced)
+         psi = quad8_shape(point)
+      case (quad4)
+         psi = (1 + point(1)*square_position(1, :4))*(1 + point(2)*square_position(2, :4))/4
+      case (triangle6)
+         psi(1:3) = area*(2*area - 1)
+         psi(4:6) = 4*area*cshift(area, 1)
+      case (triangle3)
+         psi = area
+      case default
+         psi = 0.0_dp
+      end select
+   end function element_shape
+
+   pure function quad8_shape(point) result(psi)
+      real(dp), intent(in) :: point(2)
+      real(dp) :: psi(8)
       real(dp) :: xi, eta
       integer :: q
 
       do q = 1, 4
-         xi = point(1)*node_position(1, q)
-         eta = point(2)*node_position(2, q)
+         xi = point(1)*square_position(1, q)
+         eta = point(2)*square_position(2, q)
          psi(q) = (1 + xi)*(1 + eta)*(xi + eta - 1)/4
       end do
       do q = 5, 7, 2
-         psi(q) = (1 - point(1)**2)*(1 + point(2)*node_position(2, q))/2
+         psi(q) = (1 - point(1)**2)*(1 + point(2)*square_position(2, q))/2
       end do
       do q = 6, 8, 2
-         psi(q) = (1 - point(2)**2)*(1 + point(1)*node_position(1, q))/2
+         psi(q) = (1 - point(2)**2)*(1 + point(1)*square_position(1, q))/2
       end do
-   end function element_shape
+   end function quad8_shape
 
    !> Derivatives of psi^q by xi and eta.
-   pure function local_gradients(point) result(slope)
+   pure function local_gradients(kind, point) result(slope)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: point(2)
+      real(dp) :: slope(2, element_node_count(kind))
+      real(dp) :: area(3)
+      integer :: q, next
+
+      select case (kind)
+      case (quad8, quad8_reduced)
+         slope = quad8_gradients(point)
+      case (quad4)
+         slope(1, :) = square_position(1, :4)*(1 + point(2)*square_position(2, :4))/4
+         slope(2, :) = square_position(2, :4)*(1 + point(1)*square_position(1, :4))/4
+      case (triangle6)
+         area = [1 - point(1) - point(2), point(1), point(2)]
+         do q = 1, 3
+            next = mod(q, 3) + 1
+            slope(:, q) = (4*area(q) - 1)*area_slope(:, q)
+            slope(:, q + 3) = 4*(area(q)*area_slope(:, next) + area(next)*area_slope(:, q))
+         end do
+      case (triangle3)
+         slope = area_slope
+      case default
+         slope = 0.0_dp
+      end select
+   end function local_gradients
+
+   pure function quad8_gradients(point) result(slope)
       real(dp), intent(in) :: point(2)
       real(dp) :: slope(2, 8)
       real(dp) :: a, b, xi, eta
       integer :: q
 
       do q = 1, 4
-         a = node_position(1, q)
-         b = node_position(2, q)
+         a = square_position(1, q)
+         b = square_position(2, q)
          xi = point(1)*a
          eta = point(2)*b
          slope(1, q) = a*(1 + eta)*(2*xi + eta)/4
          slope(2, q) = b*(1 + xi)*(2*eta + xi)/4
       end do
       do q = 5, 7, 2
-         b = node_position(2, q)
+         b = square_position(2, q)
          slope(1, q) = -point(1)*(1 + point(2)*b)
          slope(2, q) = b*(1 - point(1)**2)/2
       end do
       do q = 6, 8, 2
-         a = node_position(1, q)
+         a = square_position(1, q)
          slope(1, q) = a*(1 - point(2)**2)/2
          slope(2, q) = -point(2)*(1 + point(1)*a)
       end do
-   end function local_gradients
+   end function quad8_gradients
 
    !> Derivatives of psi^q by x and y, and the Jacobian determinant.
-   pure subroutine element_gradients(coordinates, point, gradients, jacobian)
-      real(dp), intent(in) :: coordinates(2, 8)   !! nodes [length]
+   pure subroutine element_gradients(kind, coordinates, point, gradients, jacobian)
+      integer, intent(in) :: kind                 !! kind of the element
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
       real(dp), intent(in) :: point(2)            !! xi, eta
-      real(dp), intent(out) :: gradients(2, 8)    !! d psi/dx, d psi/dy [1/length]
+      real(dp), intent(out) :: gradients(:, :)    !! (2, nodes) d psi/dx, d psi/dy [1/length]
       real(dp), intent(out) :: jacobian           !! d(x, y)/d(xi, eta) [length^2]
-      real(dp) :: slope(2, 8), map(2, 2)
+      real(dp) :: slope(2, element_node_count(kind)), map(2, 2)
 
-      slope = local_gradients(point)
+      slope = local_gradients(kind, point)
       map = matmul(slope, transpose(coordinates))
       jacobian = map(1, 1)*map(2, 2) - map(1, 2)*map(2, 1)
       gradients(1, :) = (map(2, 2)*slope(1, :) - map(1, 2)*slope(2, :))/jacobian

@@ -1,11 +1,14 @@
 !> The stiffness matrices K^n of (2.4) of all bodies, and the forces that temperatures exert on
 !> them. Rows 2i - 1 and 2i are u_x and u_y of node i; bodies share no entries.
 module stiffness_matrix
-   use element_elasticity, only: elastic_matrix, element_stiffness, element_thermal_load, &
-      thermal_modulus
+   use element_elasticity, only: element_stiffness, element_thermal_load
+   use element_kinds, only: element_node_count
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
+   use orientations, only: orientation_type
+   use point_properties, only: axes_at_points, elasticity_in, thermal_modulus_in
+   use quadrature, only: most_points, point_count
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
@@ -14,25 +17,33 @@ module stiffness_matrix
 contains
 
    !> K of all bodies, both triangles.
-   pure function assemble_stiffness(mesh, sections, materials) result(stiffness)
-      type(mesh_type), intent(in) :: mesh             !! the mesh
-      type(section_type), intent(in) :: sections(:)   !! sections
-      type(material_type), intent(in) :: materials(:) !! materials
-      type(sparse_matrix_type) :: stiffness           !! (2 nodes, 2 nodes) [stress length]
+   pure function assemble_stiffness(mesh, sections, materials, orientations) result(stiffness)
+      type(mesh_type), intent(in) :: mesh                    !! the mesh
+      type(section_type), intent(in) :: sections(:)          !! sections
+      type(material_type), intent(in) :: materials(:)        !! materials
+      type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
+      type(sparse_matrix_type) :: stiffness                  !! (2 nodes, 2 nodes) [stress length]
       type(triplet_list_type) :: list
-      real(dp) :: k(16, 16)
-      integer :: dofs(16), element, i, j
+      real(dp), allocatable :: k(:, :)
+      real(dp) :: e(4, 4, most_points), axes(2, 2, most_points)
+      integer, allocatable :: dofs(:)
+      integer :: element, g, i, j
 
-      call list%reserve(256*size(mesh%element_number))
+      call list%reserve(sum(4*element_node_count(mesh%element_kind)**2))
       do element = 1, size(mesh%element_number)
-         associate (section => sections(mesh%element_section(element)))
-            k = element_stiffness(mesh%coordinates(:, mesh%element_nodes(:, element)), &
-               elastic_matrix(materials(section%material)%young, &
-               materials(section%material)%poisson), section%thickness)
+         associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
+            section => sections(mesh%element_section(element)), &
+            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+            axes = axes_at_points(kind, mesh%coordinates(:, nodes), orientations, &
+               section%orientation)
+            do g = 1, point_count(kind)
+               e(:, :, g) = elasticity_in(plane, materials(section%material), axes(:, :, g))
+            end do
+            k = element_stiffness(kind, plane, mesh%coordinates(:, nodes), e, section%thickness)
+            dofs = element_dofs(nodes)
          end associate
-         dofs = element_dofs(mesh%element_nodes(:, element))
-         do j = 1, 16
-            do i = 1, 16
+         do j = 1, size(dofs)
+            do i = 1, size(dofs)
                call list%add(dofs(i), dofs(j), k(i, j))
             end do
          end do
@@ -41,27 +52,34 @@ contains
    end function assemble_stiffness
 
    !> Nodal forces per unit nodal temperature over the natural state, the right-hand side of (1.1).
-   pure function assemble_thermal_load(mesh, sections, materials) result(load)
-      type(mesh_type), intent(in) :: mesh             !! the mesh
-      type(section_type), intent(in) :: sections(:)   !! sections
-      type(material_type), intent(in) :: materials(:) !! materials
-      type(sparse_matrix_type) :: load                !! (2 nodes, nodes)
+   pure function assemble_thermal_load(mesh, sections, materials, orientations) result(load)
+      type(mesh_type), intent(in) :: mesh                    !! the mesh
+      type(section_type), intent(in) :: sections(:)          !! sections
+      type(material_type), intent(in) :: materials(:)        !! materials
+      type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
+      type(sparse_matrix_type) :: load                       !! (2 nodes, nodes)
       type(triplet_list_type) :: list
-      real(dp) :: f(16, 8), beta
-      integer :: dofs(16), element, i, j
+      real(dp), allocatable :: f(:, :)
+      real(dp) :: beta(4, most_points), axes(2, 2, most_points)
+      integer, allocatable :: dofs(:)
+      integer :: element, g, i, j
 
-      call list%reserve(128*size(mesh%element_number))
+      call list%reserve(sum(2*element_node_count(mesh%element_kind)**2))
       do element = 1, size(mesh%element_number)
-         associate (section => sections(mesh%element_section(element)))
-            associate (material => materials(section%material))
-               beta = thermal_modulus(material%young, material%poisson, material%expansion)
-            end associate
-            f = element_thermal_load(mesh%coordinates(:, mesh%element_nodes(:, element)), beta, &
+         associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
+            section => sections(mesh%element_section(element)), &
+            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+            axes = axes_at_points(kind, mesh%coordinates(:, nodes), orientations, &
+               section%orientation)
+            do g = 1, point_count(kind)
+               beta(:, g) = thermal_modulus_in(plane, materials(section%material), axes(:, :, g))
+            end do
+            f = element_thermal_load(kind, plane, mesh%coordinates(:, nodes), beta, &
                section%thickness)
+            dofs = element_dofs(nodes)
          end associate
-         dofs = element_dofs(mesh%element_nodes(:, element))
-         do j = 1, 8
-            do i = 1, 16
+         do j = 1, size(f, 2)
+            do i = 1, size(dofs)
                call list%add(dofs(i), mesh%element_nodes(j, element), f(i, j))
             end do
          end do
@@ -71,8 +89,8 @@ contains
 
    !> Rows of an element's degrees of freedom.
    pure function element_dofs(nodes) result(dofs)
-      integer, intent(in) :: nodes(8)
-      integer :: dofs(16)
+      integer, intent(in) :: nodes(:)
+      integer :: dofs(2*size(nodes))
 
       dofs(1::2) = 2*nodes - 1
       dofs(2::2) = 2*nodes

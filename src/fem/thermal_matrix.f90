@@ -12,9 +12,13 @@
 module thermal_matrix
    use controls, only: thermal_scheme_type
    use element_conduction, only: conduction_matrix
+   use element_kinds, only: element_node_count
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
+   use orientations, only: orientation_type
+   use point_properties, only: axes_at_points, conductivity_in
+   use quadrature, only: most_points, point_count
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
@@ -23,27 +27,35 @@ module thermal_matrix
 contains
 
    !> K of (3.3), both triangles.
-   pure function assemble_conduction(mesh, sections, materials) result(conduction)
-      type(mesh_type), intent(in) :: mesh             !! the mesh
-      type(section_type), intent(in) :: sections(:)   !! sections
-      type(material_type), intent(in) :: materials(:) !! materials
-      type(sparse_matrix_type) :: conduction          !! (nodes, nodes) [power/temperature]
+   pure function assemble_conduction(mesh, sections, materials, orientations) result(conduction)
+      type(mesh_type), intent(in) :: mesh                    !! the mesh
+      type(section_type), intent(in) :: sections(:)          !! sections
+      type(material_type), intent(in) :: materials(:)        !! materials
+      type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
+      type(sparse_matrix_type) :: conduction                 !! (nodes, nodes) [power/temperature]
       type(triplet_list_type) :: list
-      real(dp) :: k(8, 8)
-      integer :: element, i, j
+      real(dp), allocatable :: k(:, :)
+      real(dp) :: conductivity(2, 2, most_points), axes(2, 2, most_points)
+      integer :: element, g, i, j
 
-      call list%reserve(64*size(mesh%element_number))
+      call list%reserve(sum(element_node_count(mesh%element_kind)**2))
       do element = 1, size(mesh%element_number)
-         associate (section => sections(mesh%element_section(element)))
-            k = conduction_matrix(mesh%coordinates(:, mesh%element_nodes(:, element)), &
-               materials(section%material)%conductivity, section%thickness)
-         end associate
-         do j = 1, 8
-            do i = 1, 8
-               call list%add(mesh%element_nodes(i, element), mesh%element_nodes(j, element), &
-                  k(i, j))
+         associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
+            section => sections(mesh%element_section(element)), &
+            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+            axes = axes_at_points(kind, mesh%coordinates(:, nodes), orientations, &
+               section%orientation)
+            do g = 1, point_count(kind)
+               conductivity(:, :, g) = conductivity_in(materials(section%material), axes(:, :, g))
             end do
-         end do
+            k = conduction_matrix(kind, plane, mesh%coordinates(:, nodes), conductivity, &
+               section%thickness)
+            do j = 1, size(nodes)
+               do i = 1, size(nodes)
+                  call list%add(nodes(i), nodes(j), k(i, j))
+               end do
+            end do
+         end associate
       end do
       conduction = list%compress(size(mesh%node_number), size(mesh%node_number))
    end function assemble_conduction

@@ -3,7 +3,7 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgetrf, dgetrs, ilaver
+   public :: ddot, daxpy, dgetrf, dgetrs, dgesvd, ilaver
 
    interface
       !> Scalar product x.y.
@@ -39,6 +39,16 @@ module blas_lapack
          real(dp), intent(inout) :: b(ldb, *)
          integer, intent(out) :: info
       end subroutine dgetrs
+
+      !> Singular value decomposition of a general matrix.
+      pure subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
+         import :: dp
+         character, intent(in) :: jobu, jobvt
+         integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
+         real(dp), intent(inout) :: a(lda, *)
+         real(dp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)
+         integer, intent(out) :: info
+      end subroutine dgesvd
 
       !> Version of LAPACK.
       subroutine ilaver(major, minor, patch)

@@ -14,9 +14,11 @@ module dense
    type :: lu_type
       real(dp), allocatable :: factors(:, :)   !! (n, n) as dgetrf leaves them
       integer, allocatable :: pivots(:)        !! (n) row exchanges
+      integer :: lost_pivot = 0                !! first pivot that is lost, 0 for none
    contains
       procedure :: factor
       procedure :: solve
+      procedure :: null_vector
    end type lu_type
 
 contains
@@ -33,12 +35,11 @@ contains
       if (allocated(self%pivots)) deallocate (self%pivots)
       allocate (self%pivots(n))
       call dgetrf(n, n, self%factors, max(n, 1), self%pivots, info)
-      singular = info /= 0
-      do i = 1, n
-         if (abs(self%factors(i, i)) <= lost*maxval(abs(matrix(:, i)))) then
-            singular = .true.
-         end if
+      self%lost_pivot = 0
+      do i = n, 1, -1
+         if (abs(self%factors(i, i)) <= lost*maxval(abs(matrix(:, i)))) self%lost_pivot = i
       end do
+      singular = info /= 0 .or. self%lost_pivot > 0
    end subroutine factor
 
    !> Solves with the factors.
@@ -50,5 +51,19 @@ contains
       n = size(x, 1)
       call dgetrs('N', n, size(x, 2), self%factors, max(n, 1), self%pivots, x, max(n, 1), info)
    end subroutine solve
+
+   !> A vector that a singular matrix maps to zero, from the factors up to the first lost pivot.
+   pure function null_vector(self) result(z)
+      class(lu_type), intent(in) :: self         !! the factors of a singular matrix
+      real(dp) :: z(size(self%factors, 1))       !! (n) scaled by its component at the lost pivot
+      integer :: i, last
+
+      last = self%lost_pivot
+      z = 0.0_dp
+      z(last) = 1.0_dp
+      do i = last - 1, 1, -1
+         z(i) = -dot_product(self%factors(i, i + 1:last), z(i + 1:last))/self%factors(i, i)
+      end do
+   end function null_vector
 
 end module dense

@@ -4,7 +4,7 @@ module sparse_matrix
    use kinds, only: dp
    implicit none
    private
-   public :: sparse_matrix_type, triplet_list_type
+   public :: sparse_matrix_type, triplet_list_type, linear_combination
 
    !> A matrix in compressed rows, columns ascending in each row.
    type :: sparse_matrix_type
@@ -70,6 +70,43 @@ contains
       self%column(self%length) = column
       self%value(self%length) = value
    end subroutine add
+
+   !> a A + b B of two matrices of one size; one that is not allocated counts as zero.
+   pure function linear_combination(a, matrix_a, b, matrix_b) result(combined)
+      real(dp), intent(in) :: a                          !! factor of the first
+      type(sparse_matrix_type), intent(in) :: matrix_a   !! first matrix
+      real(dp), intent(in) :: b                          !! factor of the second
+      type(sparse_matrix_type), intent(in) :: matrix_b   !! second matrix
+      type(sparse_matrix_type) :: combined               !! their combination
+      type(triplet_list_type) :: list
+
+      call list%reserve(entry_count(matrix_a) + entry_count(matrix_b))
+      call add_entries(list, a, matrix_a)
+      call add_entries(list, b, matrix_b)
+      if (list%length > 0) combined = list%compress(max(matrix_a%row_count, &
+         matrix_b%row_count), max(matrix_a%column_count, matrix_b%column_count))
+   end function linear_combination
+
+   pure integer function entry_count(matrix)
+      type(sparse_matrix_type), intent(in) :: matrix
+
+      entry_count = 0
+      if (allocated(matrix%value)) entry_count = size(matrix%value)
+   end function entry_count
+
+   pure subroutine add_entries(list, factor, matrix)
+      type(triplet_list_type), intent(inout) :: list
+      real(dp), intent(in) :: factor
+      type(sparse_matrix_type), intent(in) :: matrix
+      integer :: i, k
+
+      if (.not. allocated(matrix%value)) return
+      do i = 1, matrix%row_count
+         do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+            call list%add(i, matrix%column(k), factor*matrix%value(k))
+         end do
+      end do
+   end subroutine add_entries
 
    !> The matrix of a list of entries: a counting sort by column and then by row, equal places
    !> summed.

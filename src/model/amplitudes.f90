@@ -1,6 +1,7 @@
 !> Load curves, and the value that a load has at an instant of a step.
 module amplitudes
    use kinds, only: dp
+   use piecewise_lines, only: line_value
    implicit none
    private
    public :: amplitude_type, amplitude_value
@@ -20,20 +21,8 @@ contains
       type(amplitude_type), intent(in) :: amplitude !! the curve
       real(dp), intent(in) :: time                  !! of the step or in total, as the curve asks
       real(dp) :: factor                            !! ordinate [-]
-      integer :: i, n
 
-      n = size(amplitude%times)
-      if (time <= amplitude%times(1)) then
-         factor = amplitude%values(1)
-         return
-      else if (time >= amplitude%times(n)) then
-         factor = amplitude%values(n)
-         return
-      end if
-      i = count(amplitude%times <= time)
-      associate (t => amplitude%times, v => amplitude%values)
-         factor = v(i) + (v(i + 1) - v(i))*(time - t(i))/(t(i + 1) - t(i))
-      end associate
+      factor = line_value(amplitude%times, amplitude%values, time)
    end function amplitude_value
 
 end module amplitudes

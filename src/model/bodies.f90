@@ -1,5 +1,6 @@
 !> Bodies: elements that share nodes hang together.
 module bodies
+   use element_kinds, only: element_node_count
    use mesh, only: mesh_type
    implicit none
    private
@@ -16,7 +17,7 @@ contains
 
       parent = [(q, q=1, size(parent))]
       do e = 1, size(mesh%element_nodes, 2)
-         do q = 2, size(mesh%element_nodes, 1)
+         do q = 2, element_node_count(mesh%element_kind(e))
             call join(parent, mesh%element_nodes(1, e), mesh%element_nodes(q, e))
          end do
       end do

@@ -1,30 +1,38 @@
 !> Contact conductance as a function of the gap and the pressure, eq. (1.8), with its derivatives.
 module conductance_laws
    use kinds, only: dp
+   use piecewise_lines, only: line_slope, line_value
    implicit none
    private
-   public :: conductance_law_type, law_none, law_gas, law_power
+   public :: conductance_law_type, law_none, law_gas, law_power, law_clearance, law_pressure
    public :: conductance, conductance_slope, law_jump
 
-   integer, parameter :: law_none = 0   !! this side of the law was not given
-   integer, parameter :: law_gas = 1    !! open: omega = A/(B + gamma)
-   integer, parameter :: law_power = 2  !! closed: omega = C0 + C1 p^n
+   integer, parameter :: law_none = 0        !! this side of the law was not given
+   integer, parameter :: law_gas = 1         !! open: omega = A/(B + gamma)
+   integer, parameter :: law_power = 2       !! closed: omega = C0 + C1 p^n
+   integer, parameter :: law_clearance = 3   !! open: table over gamma
+   integer, parameter :: law_pressure = 4    !! closed: table over p
 
-   !> The open and the closed law of one surface interaction.
+   !> The open and the closed law of one surface interaction. Tables are straight lines between
+   !> their rows and hold their end values outside.
    type :: conductance_law_type
-      integer :: open_kind = law_none      !! law_none or law_gas
-      integer :: closed_kind = law_none    !! law_none or law_power
+      integer :: open_kind = law_none      !! law_none, law_gas or law_clearance
+      integer :: closed_kind = law_none    !! law_none, law_power or law_pressure
       real(dp) :: gas_a = 0.0_dp           !! A [power/(length temperature)]
       real(dp) :: gas_b = 1.0_dp           !! B [length]
       real(dp) :: power_c0 = 0.0_dp        !! C0 [power/(length^2 temperature)]
       real(dp) :: power_c1 = 0.0_dp        !! C1 [C0/stress^n]
       real(dp) :: power_n = 1.0_dp         !! n [-]
+      real(dp), allocatable :: table_gap(:)        !! (rows) ascending gamma >= 0 [length]
+      real(dp), allocatable :: open_omega(:)       !! (rows) omega there
+      real(dp), allocatable :: table_pressure(:)   !! (rows) ascending p >= 0 [stress]
+      real(dp), allocatable :: closed_omega(:)     !! (rows) omega there
    end type conductance_law_type
 
 contains
 
    !> omega of a pair, eq. (1.8). A side that was not given: an open pair carries no heat, a closed
-   !> pair has the open law's value at gamma = 0.
+   !> pair has the open law's value at gamma = 0. A negative gap or pressure counts as zero.
    pure function conductance(law, closed, gap, pressure) result(omega)
       type(conductance_law_type), intent(in) :: law !! the law
       logical, intent(in) :: closed                 !! whether the pair is closed
@@ -32,16 +40,23 @@ contains
       real(dp), intent(in) :: pressure              !! p >= 0 in compression [stress]
       real(dp) :: omega                             !! [power/(length^2 temperature)]
 
-      if (closed .and. law%closed_kind == law_power) then
-         omega = law%power_c0 + law%power_c1*max(pressure, 0.0_dp)**law%power_n
-      else if (closed) then
-         omega = open_law(law, 0.0_dp)
-      else
+      if (.not. closed) then
          omega = open_law(law, max(gap, 0.0_dp))
+         return
       end if
+      select case (law%closed_kind)
+      case (law_power)
+         omega = law%power_c0 + law%power_c1*max(pressure, 0.0_dp)**law%power_n
+      case (law_pressure)
+         omega = line_value(law%table_pressure, law%closed_omega, max(pressure, 0.0_dp))
+      case default
+         omega = open_law(law, 0.0_dp)
+      end select
    end function conductance
 
-   !> Derivative of omega by the gap of an open pair or by the pressure of a closed one, eq. (1.8).
+   !> Derivative of omega by the gap of an open pair or by the pressure of a closed one, eq. (1.8),
+   !> towards larger gaps or pressures where the law has a kink; 0 below zero, and at p = 0 for
+   !> n < 1, where it is not bounded.
    pure function conductance_slope(law, closed, gap, pressure) result(slope)
       type(conductance_law_type), intent(in) :: law !! the law
       logical, intent(in) :: closed                 !! whether the pair is closed
@@ -50,12 +65,19 @@ contains
       real(dp) :: slope                             !! d omega/d gamma or d omega/d p
 
       slope = 0.0_dp
-      if (closed) then
-         if (law%closed_kind == law_power .and. pressure > 0.0_dp) then
-            slope = law%power_c1*law%power_n*pressure**(law%power_n - 1.0_dp)
+      if (closed .and. pressure >= 0.0_dp) then
+         if (law%closed_kind == law_power) then
+            if (pressure > 0.0_dp .or. law%power_n >= 1.0_dp) slope = &
+               law%power_c1*law%power_n*pressure**(law%power_n - 1.0_dp)
+         else if (law%closed_kind == law_pressure) then
+            slope = line_slope(law%table_pressure, law%closed_omega, pressure)
          end if
-      else if (law%open_kind == law_gas) then
-         slope = -law%gas_a/(law%gas_b + max(gap, 0.0_dp))**2
+      else if (.not. closed .and. gap >= 0.0_dp) then
+         if (law%open_kind == law_gas) then
+            slope = -law%gas_a/(law%gas_b + gap)**2
+         else if (law%open_kind == law_clearance) then
+            slope = line_slope(law%table_gap, law%open_omega, gap)
+         end if
       end if
    end function conductance_slope
 
@@ -73,7 +95,11 @@ contains
       real(dp) :: omega
 
       omega = 0.0_dp
-      if (law%open_kind == law_gas) omega = law%gas_a/(law%gas_b + gap)
+      if (law%open_kind == law_gas) then
+         omega = law%gas_a/(law%gas_b + gap)
+      else if (law%open_kind == law_clearance) then
+         omega = line_value(law%table_gap, law%open_omega, gap)
+      end if
    end function open_law
 
 end module conductance_laws

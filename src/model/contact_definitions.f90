@@ -20,6 +20,8 @@ module contact_definitions
       integer :: master = 0                   !! index of the master surface, the paper's body eta
       integer :: card = 0                     !! card image of the *CONTACT PAIR
       integer :: interaction = 0              !! index into model%interactions
+      logical :: has_clearance = .false.      !! whether *CLEARANCE stands in place of the geometry
+      real(dp) :: clearance = 0.0_dp          !! its gap of all pairs, negative overlap [length]
    end type contact_definition_type
 
 end module contact_definitions

@@ -3,7 +3,8 @@ module controls
    use kinds, only: dp
    implicit none
    private
-   public :: fixed_point_type, thermal_scheme_type, implicit_scheme
+   public :: fixed_point_type, thermal_scheme_type
+   public :: implicit_scheme, galerkin_scheme, crank_nicolson_scheme, explicit_scheme
    public :: method_picard, method_zaitsev, solver_skyline, solver_mumps
 
    integer, parameter :: method_picard = 1    !! eq. (4.1)
@@ -20,15 +21,32 @@ module controls
       integer :: constant = 3                 !! number of iterations with the constant g
    end type fixed_point_type
 
-   !> Coefficients of eq. (3.4).
+   !> Coefficients of eq. (3.4), with a1 + b1 = 1.
    type :: thermal_scheme_type
-      real(dp) :: a(3)   !! a1, a2, a3
-      real(dp) :: b(3)   !! b1, b2, b3
-      real(dp) :: c(2)   !! c1, c2
+      real(dp) :: a(3)                !! a1, a2, a3
+      real(dp) :: b(3)                !! b1, b2, b3
+      real(dp) :: c(2)                !! c1, c2
+      character(14) :: name = 'FREE'  !! TYPE= of *THERMAL SCHEME
    end type thermal_scheme_type
 
    !> The implicit scheme of the paper: a1 = a3 = c2 = 1.
    type(thermal_scheme_type), parameter :: implicit_scheme = &
-      thermal_scheme_type([1.0_dp, 0.0_dp, 1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp])
+      thermal_scheme_type([1.0_dp, 0.0_dp, 1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
+      'IMPLICIT')
+
+   !> Galerkin's scheme of the paper: weight tau on [0, 1], T and G linear in tau.
+   type(thermal_scheme_type), parameter :: galerkin_scheme = &
+      thermal_scheme_type([4.0_dp, 1.0_dp, 3.0_dp]/6.0_dp, [2.0_dp, 1.0_dp, 1.0_dp]/6.0_dp, &
+      [1.0_dp, 2.0_dp]/3.0_dp, 'GALERKIN')
+
+   !> Crank and Nicolson's scheme: the mean of both ends, with the mean of both G.
+   type(thermal_scheme_type), parameter :: crank_nicolson_scheme = &
+      thermal_scheme_type([2.0_dp, 1.0_dp, 1.0_dp]/4.0_dp, [2.0_dp, 1.0_dp, 1.0_dp]/4.0_dp, &
+      [1.0_dp, 1.0_dp]/2.0_dp, 'CRANK-NICOLSON')
+
+   !> Explicit in omega: G of the start of the increment.
+   type(thermal_scheme_type), parameter :: explicit_scheme = &
+      thermal_scheme_type([1.0_dp, 1.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
+      'EXPLICIT')
 
 end module controls

@@ -6,6 +6,7 @@ module model
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
+   use orientations, only: orientation_type
    use steps, only: step_type
    use text, only: string_type
    implicit none
@@ -32,6 +33,7 @@ module model
       real(dp) :: tolerance = 0.0_dp          !! allowed deviation
       logical :: relative = .true.            !! REL, else ABS
       integer :: line = 0                     !! card number in the deck
+      integer :: columns(2) = 1               !! columns of quantity and where on that card
    end type verify_type
 
    !> All that the deck says.
@@ -40,6 +42,7 @@ module model
       type(mesh_type) :: mesh                                    !! nodes, elements, sets, surfaces
       type(material_type), allocatable :: materials(:)           !! materials
       type(section_type), allocatable :: sections(:)             !! sections
+      type(orientation_type), allocatable :: orientations(:)     !! axes of materials
       type(amplitude_type), allocatable :: amplitudes(:)         !! load curves
       type(interaction_type), allocatable :: interactions(:)     !! surface interactions
       type(contact_definition_type), allocatable :: contacts(:)  !! contact pairs of surfaces

@@ -1,13 +1,14 @@
-!> Uniform refinement of a model: each eight-node element becomes four. A child's quadratic map is
-!> its parent's on a quarter of the square, so the geometry does not change. Sets, surfaces,
-!> sections, initial temperatures and face loads follow; forces on nodes stay where they are.
+!> Uniform refinement of a model: each element becomes four of its kind. A child's map is its
+!> parent's on a quarter of the element, so the geometry does not change. Sets, surfaces, sections,
+!> initial temperatures and loads follow.
 module refinement
+   use element_kinds, only: element_corner_count, quad4, quad8, quad8_reduced, triangle3, triangle6
    use kinds, only: dp
+   use load_refinement, only: refine_loads
    use mesh, only: mesh_type
-   use mesh_division, only: child_element, divide, division_type, inner_node, node_count, &
+   use mesh_division, only: child_element, divide, division_type, inner_node, refined_members, &
       refined_values, side_node
    use model, only: model_type
-   use steps, only: face_load_type
    implicit none
    private
    public :: refine
@@ -19,21 +20,15 @@ contains
       type(model_type), intent(inout) :: model   !! model with a conforming mesh
       integer, intent(in) :: levels   !! number of refinements, each with four times the elements
       type(division_type) :: division
-      integer :: level, s
+      integer :: level
 
       do level = 1, levels
          division = divide(model%mesh)
          if (allocated(model%initial_temperature)) then
-            model%initial_temperature = refined_values(division, model%mesh%element_nodes, &
+            model%initial_temperature = refined_values(division, model%mesh, &
                model%initial_temperature)
          end if
-         if (allocated(model%steps)) then
-            do s = 1, size(model%steps)
-               if (allocated(model%steps(s)%face_loads)) then
-                  call refine_face_loads(division%elements, model%steps(s)%face_loads)
-               end if
-            end do
-         end if
+         if (allocated(model%steps)) call refine_loads(division, model%mesh, model%steps)
          call refine_mesh(division, model%mesh)
       end do
       model%refinement_levels = model%refinement_levels + levels
@@ -46,83 +41,158 @@ contains
       integer :: i, first
 
       do i = 1, size(mesh%node_sets)
-         call refine_node_set(division, mesh%element_nodes, mesh%node_sets(i)%members)
+         call refine_node_set(division, mesh, mesh%node_sets(i)%members)
       end do
       do i = 1, size(mesh%element_sets)
          call refine_element_set(division%elements, mesh%element_sets(i)%members)
       end do
       do i = 1, size(mesh%surfaces)
-         call refine_faces(division%elements, mesh%surfaces(i)%faces)
+         call refine_faces(division%elements, mesh%element_kind, mesh%surfaces(i)%faces)
       end do
-      allocate(coordinates(2, node_count(division)))
-      coordinates(1, :) = refined_values(division, mesh%element_nodes, mesh%coordinates(1, :))
-      coordinates(2, :) = refined_values(division, mesh%element_nodes, mesh%coordinates(2, :))
+      allocate(coordinates(2, division%nodes_after))
+      coordinates(1, :) = refined_values(division, mesh, mesh%coordinates(1, :))
+      coordinates(2, :) = refined_values(division, mesh, mesh%coordinates(2, :))
       call move_alloc(coordinates, mesh%coordinates)
       first = maxval(mesh%node_number) - division%nodes
       mesh%node_number = [mesh%node_number, &
-         (first + i, i=division%nodes + 1, size(mesh%coordinates, 2))]
+         (first + i, i=division%nodes + 1, division%nodes_after)]
       first = maxval(mesh%element_number) - division%elements
       mesh%element_number = [mesh%element_number, &
          (first + i, i=division%elements + 1, 4*division%elements)]
-      mesh%element_section = [mesh%element_section, &
-         (spread(mesh%element_section(i), 1, 3), i=1, division%elements)]
-      mesh%element_kind = [mesh%element_kind, &
-         (spread(mesh%element_kind(i), 1, 3), i=1, division%elements)]
-      mesh%element_plane = [mesh%element_plane, &
-         (spread(mesh%element_plane(i), 1, 3), i=1, division%elements)]
-      call refine_elements(division, mesh%element_nodes)
+      call refine_elements(division, mesh%element_kind, mesh%element_nodes)
+      mesh%element_section = of_children(mesh%element_section)
+      mesh%element_kind = of_children(mesh%element_kind)
+      mesh%element_plane = of_children(mesh%element_plane)
    end subroutine refine_mesh
 
-   subroutine refine_elements(division, element_nodes)
+   !> What the children have from their parents.
+   pure function of_children(parents) result(children)
+      integer, intent(in) :: parents(:)
+      integer :: children(4*size(parents))
+      integer :: e, child
+
+      do e = 1, size(parents)
+         do child = 1, 4
+            children(child_element(size(parents), e, child)) = parents(e)
+         end do
+      end do
+   end function of_children
+
+   subroutine refine_elements(division, kinds, element_nodes)
       type(division_type), intent(in) :: division
+      integer, intent(in) :: kinds(:)
       integer, allocatable, intent(inout) :: element_nodes(:, :)
       integer, allocatable :: children(:, :)
-      integer :: e, f, c(4), m(4), near_first(4), near_second(4), centre, inner(4)
+      integer :: e, nodes(8, 4), child
 
       allocate(children(8, 4*division%elements))
       do e = 1, division%elements
-         c = element_nodes(1:4, e)
-         m = element_nodes(5:8, e)
-         centre = inner_node(division, e, 1)
-         do f = 1, 4
-            near_first(f) = side_node(division, m(f), c(f))
-            near_second(f) = side_node(division, m(f), c(mod(f, 4) + 1))
-            inner(f) = inner_node(division, e, 1 + f)
+         nodes = 0
+         select case (kinds(e))
+         case (quad8, quad8_reduced)
+            nodes = quad8_children(division, element_nodes(:, e), e)
+         case (quad4)
+            nodes(:4, :) = quad4_children(division, element_nodes(:, e), e)
+         case (triangle6)
+            nodes(:6, :) = triangle6_children(division, element_nodes(:, e), e)
+         case (triangle3)
+            nodes(:3, :) = triangle3_children(division, element_nodes(:, e), e)
+         end select
+         do child = 1, 4
+            children(:, child_element(division%elements, e, child)) = nodes(:, child)
          end do
-         children(:, child_element(division%elements, e, 1)) = [c(1), m(1), centre, m(4), &
-            near_first(1), inner(1), inner(4), near_second(4)]
-         children(:, child_element(division%elements, e, 2)) = [m(1), c(2), m(2), centre, &
-            near_second(1), near_first(2), inner(2), inner(1)]
-         children(:, child_element(division%elements, e, 3)) = [centre, m(2), c(3), m(3), &
-            inner(2), near_second(2), near_first(3), inner(3)]
-         children(:, child_element(division%elements, e, 4)) = [m(4), centre, m(3), c(4), &
-            inner(4), inner(3), near_second(3), near_first(4)]
       end do
       call move_alloc(children, element_nodes)
    end subroutine refine_elements
 
-   !> New nodes on a side belong to the set if its three nodes do, those inside an element if its
-   !> eight nodes do.
-   subroutine refine_node_set(division, element_nodes, members)
+   !> Nodes of the four children of an eight-node element.
+   pure function quad8_children(division, nodes, e) result(children)
       type(division_type), intent(in) :: division
-      integer, intent(in) :: element_nodes(:, :)
+      integer, intent(in) :: nodes(8), e
+      integer :: children(8, 4)
+      integer :: f, centre, inner(4), near_first(4), near_second(4)
+
+      centre = inner_node(division, e, 1)
+      do f = 1, 4
+         near_first(f) = side_node(division, e, f, nodes(f))
+         near_second(f) = side_node(division, e, f, nodes(mod(f, 4) + 1))
+         inner(f) = inner_node(division, e, 1 + f)
+      end do
+      associate (c => nodes(1:4), m => nodes(5:8))
+         children(:, 1) = [c(1), m(1), centre, m(4), &
+            near_first(1), inner(1), inner(4), near_second(4)]
+         children(:, 2) = [m(1), c(2), m(2), centre, &
+            near_second(1), near_first(2), inner(2), inner(1)]
+         children(:, 3) = [centre, m(2), c(3), m(3), &
+            inner(2), near_second(2), near_first(3), inner(3)]
+         children(:, 4) = [m(4), centre, m(3), c(4), &
+            inner(4), inner(3), near_second(3), near_first(4)]
+      end associate
+   end function quad8_children
+
+   !> Nodes of the four children of a four-node element.
+   pure function quad4_children(division, nodes, e) result(children)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: nodes(8), e
+      integer :: children(4, 4)
+      integer :: f, centre, m(4)
+
+      centre = inner_node(division, e, 1)
+      m = [(side_node(division, e, f, nodes(f)), f=1, 4)]
+      associate (c => nodes(1:4))
+         children(:, 1) = [c(1), m(1), centre, m(4)]
+         children(:, 2) = [m(1), c(2), m(2), centre]
+         children(:, 3) = [centre, m(2), c(3), m(3)]
+         children(:, 4) = [m(4), centre, m(3), c(4)]
+      end associate
+   end function quad4_children
+
+   !> Nodes of the four children of a six-node triangle; the fourth lies between its midside nodes.
+   pure function triangle6_children(division, nodes, e) result(children)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: nodes(8), e
+      integer :: children(6, 4)
+      integer :: f, inner(3), near_first(3), near_second(3)
+
+      do f = 1, 3
+         near_first(f) = side_node(division, e, f, nodes(f))
+         near_second(f) = side_node(division, e, f, nodes(mod(f, 3) + 1))
+         inner(f) = inner_node(division, e, f)
+      end do
+      associate (c => nodes(1:3), m => nodes(4:6))
+         children(:, 1) = [c(1), m(1), m(3), near_first(1), inner(1), near_second(3)]
+         children(:, 2) = [m(1), c(2), m(2), near_second(1), near_first(2), inner(2)]
+         children(:, 3) = [m(3), m(2), c(3), inner(3), near_second(2), near_first(3)]
+         children(:, 4) = [m(1), m(2), m(3), inner(2), inner(3), inner(1)]
+      end associate
+   end function triangle6_children
+
+   !> Nodes of the four children of a three-node triangle; the fourth is in the middle.
+   pure function triangle3_children(division, nodes, e) result(children)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: nodes(8), e
+      integer :: children(3, 4)
+      integer :: f, m(3)
+
+      m = [(side_node(division, e, f, nodes(f)), f=1, 3)]
+      associate (c => nodes(1:3))
+         children(:, 1) = [c(1), m(1), m(3)]
+         children(:, 2) = [m(1), c(2), m(2)]
+         children(:, 3) = [m(3), m(2), c(3)]
+         children(:, 4) = m
+      end associate
+   end function triangle3_children
+
+   subroutine refine_node_set(division, mesh, members)
+      type(division_type), intent(in) :: division
+      type(mesh_type), intent(in) :: mesh
       integer, allocatable, intent(inout) :: members(:)
-      logical, allocatable :: member(:)
+      logical :: member(division%nodes)
       integer :: i
 
-      allocate(member(node_count(division)), source=.false.)
+      member = .false.
       member(members) = .true.
-      do i = 1, division%sides
-         if (all(member(division%ends(:, i)))) then
-            member(division%nodes + 2*i - 1:division%nodes + 2*i) = .true.
-         end if
-      end do
-      do i = 1, division%elements
-         if (all(member(element_nodes(:, i)))) then
-            member(inner_node(division, i, 1):inner_node(division, i, 5)) = .true.
-         end if
-      end do
-      members = pack([(i, i=1, size(member))], member)
+      members = pack([(i, i=1, division%nodes_after)], refined_members(division, mesh, member))
    end subroutine refine_node_set
 
    subroutine refine_element_set(elements, members)
@@ -135,35 +205,22 @@ contains
    end subroutine refine_element_set
 
    !> A face becomes the faces of the same name of the two children at it.
-   subroutine refine_faces(elements, faces)
+   subroutine refine_faces(elements, kinds, faces)
       integer, intent(in) :: elements
+      integer, intent(in) :: kinds(:)
       integer, allocatable, intent(inout) :: faces(:, :)
       integer, allocatable :: halves(:, :)
       integer :: i, f
 
       allocate(halves(2, 2*size(faces, 2)))
       do i = 1, size(faces, 2)
-         f = faces(2, i)
-         halves(:, 2*i - 1) = [child_element(elements, faces(1, i), f), f]
-         halves(:, 2*i) = [child_element(elements, faces(1, i), mod(f, 4) + 1), f]
+         associate (element => faces(1, i), corners => element_corner_count(kinds(faces(1, i))))
+            f = faces(2, i)
+            halves(:, 2*i - 1) = [child_element(elements, element, f), f]
+            halves(:, 2*i) = [child_element(elements, element, mod(f, corners) + 1), f]
+         end associate
       end do
       call move_alloc(halves, faces)
    end subroutine refine_faces
-
-   subroutine refine_face_loads(elements, loads)
-      integer, intent(in) :: elements
-      type(face_load_type), allocatable, intent(inout) :: loads(:)
-      type(face_load_type), allocatable :: halves(:)
-      integer :: i, f
-
-      allocate(halves(2*size(loads)))
-      do i = 1, size(loads)
-         f = loads(i)%face
-         halves(2*i - 1:2*i) = loads(i)
-         halves(2*i - 1)%element = child_element(elements, loads(i)%element, f)
-         halves(2*i)%element = child_element(elements, loads(i)%element, mod(f, 4) + 1)
-      end do
-      call move_alloc(halves, loads)
-   end subroutine refine_face_loads
 
 end module refinement

@@ -4,12 +4,13 @@ module steps
    use kinds, only: dp
    implicit none
    private
-   public :: step_type, boundary_type, nodal_load_type, face_load_type
+   public :: step_type, boundary_type
    public :: load_type, load_kind_count
    public :: load_force, load_pressure, load_traction, load_body_force, load_gravity
    public :: load_centrifugal, load_nodal_heat, load_face_heat, load_body_heat
    public :: load_film_coefficient, load_film_sink, load_temperature
    public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
+   public :: solves_heat, solves_mechanics
 
    integer, parameter :: analysis_static = 1    !! *STATIC: mechanics at given temperatures
    integer, parameter :: analysis_coupled = 2   !! *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
@@ -50,22 +51,6 @@ module steps
       integer :: card = 0           !! running number of the *BOUNDARY data card, over all steps
    end type boundary_type
 
-   !> A force on one node (*CLOAD).
-   type :: nodal_load_type
-      integer :: node = 0           !! node index
-      integer :: dof = 0            !! 1 or 2
-      real(dp) :: value = 0.0_dp    !! force [stress length thickness]
-      integer :: amplitude = 0      !! index into model%amplitudes, 0 for the step's own course
-   end type nodal_load_type
-
-   !> A pressure on one element face (*DLOAD, Pn).
-   type :: face_load_type
-      integer :: element = 0        !! element index
-      integer :: face = 0           !! 1..4
-      real(dp) :: value = 0.0_dp    !! pressure, positive towards the body [stress]
-      integer :: amplitude = 0      !! index into model%amplitudes, 0 for the step's own course
-   end type face_load_type
-
    !> One *STEP. Loads are those that its own cards give; what earlier steps gave stays (OP=MOD).
    type :: step_type
       integer :: analysis = analysis_static          !! one of the analysis_* constants
@@ -77,8 +62,6 @@ module steps
       real(dp) :: smallest_increment = 1.0e-5_dp     !! smallest increment [time]
       real(dp) :: largest_increment = 1.0_dp         !! largest increment [time]
       type(boundary_type), allocatable :: boundaries(:)      !! prescribed values
-      type(nodal_load_type), allocatable :: nodal_loads(:)   !! forces
-      type(face_load_type), allocatable :: face_loads(:)     !! pressures
       type(load_type), allocatable :: loads(:)               !! loads that the step gives
       !> Kinds of loads whose former ones end with this step (OP=NEW).
       logical :: ends_loads(load_kind_count) = .false.
@@ -88,5 +71,23 @@ module steps
       integer :: field_frequency = 1                 !! fields at every n-th increment and the last
       integer :: contact_print_frequency = 0         !! *CONTACT PRINT likewise; 0 never
    end type step_type
+
+contains
+
+   !> Whether an analysis solves heat.
+   elemental function solves_heat(analysis) result(heat)
+      integer, intent(in) :: analysis   !! one of the analysis_* constants
+      logical :: heat                   !! temperatures are unknown
+
+      heat = analysis /= analysis_static
+   end function solves_heat
+
+   !> Whether an analysis solves mechanics.
+   elemental function solves_mechanics(analysis) result(mechanics)
+      integer, intent(in) :: analysis   !! one of the analysis_* constants
+      logical :: mechanics              !! displacements are unknown
+
+      mechanics = analysis /= analysis_heat
+   end function solves_mechanics
 
 end module steps

@@ -2,16 +2,18 @@
 !> diagrams, the verdicts.
 module listing
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_pairs_type, never_approached
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
    use listing_model, only: print_model
    use listing_tables, only: print_contact_table, print_iterations, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
-   use records, only: contact_record_type, increment_record_type, iteration_record_type
+   use records, only: contact_record_type, edges_kept, increment_record_type, &
+      iteration_record_type, status_open, status_stick
    use run_summaries, only: or_blank, run_summary_type
-   use text, only: string_type, to_text
+   use steps, only: solves_heat, solves_mechanics
+   use text, only: append, string_type, to_text
    use verification, only: outcome_type
    use zone_diagram, only: zone_counts, zone_diagram_type
    implicit none
@@ -27,6 +29,8 @@ module listing
       character(:), allocatable :: failure                     !! why the run ended early
       integer :: step = 0                                      !! step of the last increment
       integer :: increment_in_step = 0                         !! its number in the step
+      type(string_type), allocatable :: warnings(:)            !! warnings of the increments
+      type(contact_record_type), allocatable :: contacts(:)    !! contact at the last increment
    contains
       procedure :: open => open_listing
       procedure :: add
@@ -54,7 +58,7 @@ contains
          return
       end if
       self%is_open = .true.
-      allocate(self%diagrams(size(pairs)))
+      allocate(self%diagrams(size(pairs)), self%warnings(0))
       call print_heading(self%unit, model, run)
       call print_deck(self%unit, cards)
       call print_list(self%unit, 'DEFAULTS AND CARDS NOT NEEDED', model%notes)
@@ -83,7 +87,9 @@ contains
          call print_interface(self%unit, pairs(i)%name, record%contacts(i))
          call self%diagrams(i)%add(record, record%contacts(i)%status)
       end do
-      call print_balances(self%unit, record)
+      call print_balances(self%unit, record, model%steps(record%step)%analysis)
+      call print_warnings(self, record)
+      self%contacts = record%contacts
       if (.not. table_is_due) return
       do i = 1, size(pairs)
          call print_contact_table(self%unit, pairs(i), record%contacts(i), model%mesh%node_number)
@@ -119,6 +125,7 @@ contains
       type(outcome_type), intent(in) :: outcomes(:)       !! what came of the *VERIFY cards
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
+      type(string_type), allocatable :: warnings(:)
       integer :: i, status
 
       if (.not. self%is_open) return
@@ -127,8 +134,13 @@ contains
       do i = 1, size(pairs)
          call self%diagrams(i)%print(self%unit, pairs(i))
       end do
-      call print_list(self%unit, 'WARNINGS', model%warnings)
-      if (size(model%warnings) == 0) write (self%unit, '(/, a)') 'No warnings.'
+      call print_unapproached(self, model%mesh%node_number, pairs)
+      warnings = model%warnings
+      do i = 1, size(self%warnings)
+         call append(warnings, self%warnings(i)%value)
+      end do
+      call print_list(self%unit, 'WARNINGS', warnings)
+      if (size(warnings) == 0) write (self%unit, '(/, a)') 'No warnings.'
       if (allocated(self%failure)) then
          call print_title(self%unit, 'ENDED EARLY')
          call print_wrapped(self%unit, '   ', self%failure)
@@ -184,7 +196,26 @@ contains
          write (unit, '(a, es14.6)', advance='no') '   heat rate', contact%heat_rate
       end if
       write (unit, '()')
+      call print_surplus(unit, 'contact', edge_count(contact%status /= status_open))
+      call print_surplus(unit, 'stick', edge_count(contact%status == status_stick))
    end subroutine print_interface
+
+   !> Ends of zones between two pairs.
+   pure integer function edge_count(in_zone)
+      logical, intent(in) :: in_zone(:)
+
+      edge_count = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
+   end function edge_count
+
+   subroutine print_surplus(unit, zone, edges)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: zone
+      integer, intent(in) :: edges
+
+      if (edges > edges_kept) write (unit, '(6x, 3a, i0, 3a, i0)') 'warning: the zones of ', &
+         zone, ' have ', edges, ' edges; edges_', zone, ' of the result file holds the first ', &
+         edges_kept
+   end subroutine print_surplus
 
    function edge_text(edge) result(string)
       real(dp), intent(in) :: edge
@@ -194,16 +225,20 @@ contains
       if (.not. ieee_is_nan(edge)) string = to_text(edge)
    end function edge_text
 
-   subroutine print_balances(unit, record)
+   subroutine print_balances(unit, record, analysis)
       integer, intent(in) :: unit
       type(increment_record_type), intent(in) :: record
+      integer, intent(in) :: analysis
 
-      if (allocated(record%fields%heat_flux)) then
-         write (unit, '(3x, 2(a, es14.6), a, es9.2)') 'heat in', record%heat_in, '   out', &
-            record%heat_out, '   heat imbalance', record%heat_imbalance
+      if (solves_heat(analysis)) then
+         write (unit, '(3x, 2(a, es14.6), 2(a, es9.2))') 'heat in', record%heat_in, '   out', &
+            record%heat_out, '   heat imbalance', record%heat_imbalance, '   at this instant', &
+            record%heat_imbalance_pointwise
       end if
-      write (unit, '(3x, 2(a, es9.2))') 'force imbalance', record%force_imbalance, &
-         '   contact conditions violated by', record%contact_violation
+      if (solves_mechanics(analysis)) then
+         write (unit, '(3x, 2(a, es9.2))') 'force imbalance', record%force_imbalance, &
+            '   contact conditions violated by', record%contact_violation
+      end if
       associate (work => record%work)
          if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &
             'factored again ', work%columns_again, ' of ', work%columns_full, ' columns (', &
@@ -212,6 +247,48 @@ contains
             real(work%flops_full, dp)), ' %)'
       end associate
    end subroutine print_balances
+
+   !> Prints the warnings of an increment and keeps them for the end.
+   subroutine print_warnings(self, record)
+      class(listing_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
+      integer :: i
+
+      if (.not. allocated(record%warnings)) return
+      do i = 1, size(record%warnings)
+         call print_wrapped(self%unit, '   ', 'warning: '//record%warnings(i)%value)
+         call append(self%warnings, record%warnings(i)%value)
+      end do
+   end subroutine print_warnings
+
+   !> Prints the pairs of each interface that never came nearer than they were.
+   subroutine print_unapproached(self, node_number, pairs)
+      class(listing_type), intent(in) :: self
+      integer, intent(in) :: node_number(:)
+      type(contact_pairs_type), intent(in) :: pairs(:)
+      integer, parameter :: most = 20
+      integer, allocatable :: far(:)
+      character(:), allocatable :: line
+      integer :: i, k
+
+      if (.not. allocated(self%contacts)) return
+      do i = 1, size(pairs)
+         associate (m => size(pairs(i)%slave_node))
+            far = pack([(k, k=1, m)], never_approached(pairs(i)%initial_gap, &
+               self%contacts(i)%smallest_gap))
+            if (size(far) == 0) cycle
+            call print_title(self%unit, 'PAIRS THAT NEVER APPROACHED: '//to_text(size(far))// &
+               ' of '//to_text(m)//' of '//pairs(i)%name)
+         end associate
+         line = 'slave and master nodes'
+         do k = 1, min(size(far), most)
+            line = line//' '//to_text(node_number(pairs(i)%slave_node(far(k))))//'-'// &
+               to_text(node_number(pairs(i)%master_node(far(k))))
+         end do
+         if (size(far) > most) line = line//' and '//to_text(size(far) - most)//' more'
+         call print_wrapped(self%unit, '   ', line)
+      end do
+   end subroutine print_unapproached
 
    subroutine print_times(unit, run)
       integer, intent(in) :: unit

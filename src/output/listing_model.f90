@@ -1,9 +1,11 @@
 !> The listing's summary of the model: what will be modelled and why, sizes, interfaces.
 module listing_model
+   use conductance_laws, only: law_clearance, law_gas, law_power, law_pressure
    use contact_pairs, only: contact_pairs_type
    use kinds, only: dp
    use listing_text, only: print_title, print_wrapped
    use model, only: model_type
+   use steps, only: analysis_heat, analysis_static, solves_heat
    use run_summaries, only: or_blank, run_summary_type
    use text, only: to_text
    implicit none
@@ -28,6 +30,7 @@ contains
       call print_count(unit, 'elements', size(model%mesh%element_number))
       call print_count(unit, 'uniform refinements', model%refinement_levels)
       call print_count(unit, 'steps', size(model%steps))
+      call print_steps(unit, model)
       call print_count(unit, 'unknown temperatures', run%equations_thermal)
       call print_count(unit, 'unknown displacements', run%equations_mechanical)
       call print_count(unit, 'contact unknowns', run%contact_unknowns)
@@ -42,18 +45,83 @@ contains
       integer, intent(in) :: unit
       type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)
+      logical :: has_heat
       integer :: i
 
+      has_heat = any(solves_heat(model%steps%analysis))
       do i = 1, size(pairs)
          write (unit, '(/, 3x, 2a)') 'CONTACT PAIR ', pairs(i)%name
          call print_count(unit, 'node pairs', size(pairs(i)%slave_node))
          call print_entry(unit, 'length', to_text(maxval(pairs(i)%arc_length)))
          call print_entry(unit, 'initial gaps', &
             from_to([minval(pairs(i)%initial_gap), maxval(pairs(i)%initial_gap)]))
-         call print_entry(unit, 'coefficient of friction', &
-            to_text(model%interactions(model%contacts(i)%interaction)%friction))
+         associate (interaction => model%interactions(model%contacts(i)%interaction))
+            if (interaction%friction > 0.0_dp) then
+               call print_entry(unit, 'coefficient of friction', to_text(interaction%friction))
+            else
+               call print_entry(unit, 'coefficient of friction', 'none')
+            end if
+            if (.not. has_heat) cycle
+            call print_entry(unit, 'conductance, open', law_text(interaction%law%open_kind))
+            call print_entry(unit, 'conductance, closed', law_text(interaction%law%closed_kind))
+         end associate
       end do
    end subroutine print_interfaces
+
+   !> Analysis and scheme of (3.4) of every step; steps that are alike stand together.
+   subroutine print_steps(unit, model)
+      integer, intent(in) :: unit
+      type(model_type), intent(in) :: model
+      character(:), allocatable :: line, before
+      integer :: first, i
+
+      before = ''
+      first = 1
+      do i = 1, size(model%steps)
+         associate (step => model%steps(i))
+            select case (step%analysis)
+            case (analysis_static)
+               line = 'mechanics'
+            case (analysis_heat)
+               line = 'heat, scheme '//trim(step%scheme%name)
+            case default
+               line = 'heat and mechanics, scheme '//trim(step%scheme%name)
+            end select
+         end associate
+         if (i > 1 .and. line /= before) then
+            call print_entry(unit, step_range(first, i - 1), before)
+            first = i
+         end if
+         before = line
+      end do
+      call print_entry(unit, step_range(first, size(model%steps)), before)
+   end subroutine print_steps
+
+   pure function law_text(kind) result(words)
+      integer, intent(in) :: kind
+      character(:), allocatable :: words
+
+      select case (kind)
+      case (law_gas)
+         words = 'A/(B + gap)'
+      case (law_clearance)
+         words = 'table over the gap'
+      case (law_power)
+         words = 'C0 + C1 p^n'
+      case (law_pressure)
+         words = 'table over the pressure'
+      case default
+         words = 'not given'
+      end select
+   end function law_text
+
+   pure function step_range(first, last) result(words)
+      integer, intent(in) :: first, last
+      character(:), allocatable :: words
+
+      words = 'step '//to_text(first)
+      if (last > first) words = 'steps '//to_text(first)//' to '//to_text(last)
+   end function step_range
 
    subroutine print_count(unit, name, number)
       integer, intent(in) :: unit

@@ -68,8 +68,8 @@ contains
       integer :: i
 
       write (unit, '(/, a)') 'VERIFICATION'
-      write (unit, '(a6, 2x, a10, 1x, a18, 1x, a16, a12, 2a15, 2a10, a11)') 'card', &
-         'kind      ', 'quantity          ', 'where           ', 'time', 'expected', 'found', &
+      write (unit, '(a6, 2x, a10, 1x, a24, 1x, a16, a11, 2a14, 2a10, a9)') 'card', &
+         'kind      ', 'quantity                ', 'where           ', 'time', 'expected', 'found', &
          'deviation', 'allowed', 'verdict'
       do i = 1, size(checks)
          call print_verdict(unit, checks(i), outcomes(i))
@@ -83,10 +83,10 @@ contains
       type(verify_type), intent(in) :: check
       type(outcome_type), intent(in) :: outcome
       character(10) :: kind
-      character(18) :: quantity
+      character(24) :: quantity
       character(16) :: where
-      character(12) :: time
-      character(15) :: found
+      character(11) :: time
+      character(14) :: found
       character(10) :: deviation
 
       kind = or_blank(check%kind)
@@ -97,13 +97,13 @@ contains
       found = '-'
       deviation = '-'
       if (outcome%reason == '') then
-         write (found, '(es15.7)') outcome%found
+         write (found, '(es14.7)') outcome%found
          write (deviation, '(es10.2)') outcome%deviation
       end if
-      write (unit, '(i6, 2x, a, 1x, a, 1x, a, a, es15.7, 2a, es10.2, a4, a7)') check%line, kind, &
+      write (unit, '(i6, 2x, a, 1x, a, 1x, a, a, es14.7, 2a, es10.2, a4, a5)') check%line, kind, &
          quantity, where, adjustr(time), check%value, adjustr(found), adjustr(deviation), &
          check%tolerance, merge(' REL', ' ABS', check%relative), &
-         merge('   PASS', '   FAIL', outcome%passed)
+         merge(' PASS', ' FAIL', outcome%passed)
       if (or_blank(check%source) /= '') write (unit, '(8x, 2a)') 'source: ', check%source
       if (outcome%reason /= '') write (unit, '(8x, 2a)') 'failed: ', outcome%reason
    end subroutine print_verdict

@@ -10,11 +10,12 @@ module record_values
    public :: contact_total_names, contact_edge_names
    public :: history_value, contact_values, point_values, not_a_number
 
-   integer, parameter :: name_length = 20   !! length of the names below
+   integer, parameter :: name_length = 24   !! length of the names below
 
    !> Datasets of `/history`, one number an increment.
-   character(name_length), parameter :: history_names(7) = [character(name_length) :: &
-      'time', 'load', 'iterations', 'heat_in', 'heat_out', 'heat_imbalance', 'force_imbalance']
+   character(name_length), parameter :: history_names(8) = [character(name_length) :: &
+      'time', 'load', 'iterations', 'heat_in', 'heat_out', 'heat_imbalance', &
+      'heat_imbalance_pointwise', 'force_imbalance']
 
    !> Datasets of `/contact/<name>`, one number a pair and increment.
    character(name_length), parameter :: contact_pair_names(5) = [character(name_length) :: &
@@ -61,6 +62,8 @@ contains
          value = record%heat_out
       case ('heat_imbalance')
          value = record%heat_imbalance
+      case ('heat_imbalance_pointwise')
+         value = record%heat_imbalance_pointwise
       case ('force_imbalance')
          value = record%force_imbalance
       case default

@@ -43,18 +43,19 @@ module result_fields
 contains
 
    !> Prepares the datasets.
-   subroutine start(self, pairs, point_node, has_temperature, has_heat, expected)
+   subroutine start(self, pairs, point_node, has_temperature, has_heat, has_mechanics, expected)
       class(field_results_type), intent(inout) :: self   !! the fields
       type(contact_pairs_type), intent(in) :: pairs(:)   !! pairs of every interface
       integer, intent(in) :: point_node(:)               !! (points) node index of each point
       logical, intent(in) :: has_temperature             !! whether temperatures matter
       logical, intent(in) :: has_heat                    !! whether a step solves heat
+      logical, intent(in) :: has_mechanics               !! whether a step solves mechanics
       integer, intent(in) :: expected                    !! increments that are expected
       integer :: i
 
       self%point_node = point_node
       call find_faces(self, pairs)
-      self%names = field_names(has_temperature, has_heat, size(pairs) > 0)
+      self%names = field_names(has_temperature, has_heat, has_mechanics, size(pairs) > 0)
       allocate(self%sets(step_sets + size(self%names)))
       self%sets(at_values) = growing_dataset(steps_group//'Values', as_real, 0, 1, expected)
       self%sets(at_zero) = growing_dataset(steps_group//'PartOffsets', as_long, 0, 1, expected)
@@ -153,13 +154,15 @@ contains
       call write_attribute(file, steps_group, 'NSteps', self%increments, error)
    end subroutine write_count
 
-   pure function field_names(has_temperature, has_heat, has_contact) result(names)
+   pure function field_names(has_temperature, has_heat, has_mechanics, has_contact) result(names)
       logical, intent(in) :: has_temperature
       logical, intent(in) :: has_heat
+      logical, intent(in) :: has_mechanics
       logical, intent(in) :: has_contact
       character(name_length), allocatable :: names(:)
 
-      names = [character(name_length) :: 'displacement', 'stress', 'von_mises']
+      allocate(names(0))
+      if (has_mechanics) names = [character(name_length) :: 'displacement', 'stress', 'von_mises']
       if (has_temperature) names = [character(name_length) :: names, 'temperature']
       if (has_heat) names = [character(name_length) :: names, 'heat_flux']
       if (has_contact) names = [character(name_length) :: names, 'contact_pressure', &
@@ -212,11 +215,13 @@ contains
       associate (fields => record%fields)
          select case (name)
          case ('displacement')
-            values = as_vectors(fields%displacement(:, self%point_node))
+            if (allocated(fields%displacement)) then
+               values = as_vectors(fields%displacement(:, self%point_node))
+            end if
          case ('heat_flux')
             if (allocated(fields%heat_flux)) values = as_vectors(fields%heat_flux)
          case ('stress')
-            values = reshape(fields%stress, [size(fields%stress)])
+            if (allocated(fields%stress)) values = reshape(fields%stress, [size(fields%stress)])
          case ('von_mises')
             values = point_values('MISES', fields, self%point_node)
          case ('temperature')

@@ -1,12 +1,12 @@
 !> The part of group `/VTKHDF` that does not vary: the mesh and its numbers, in one part, stored
 !> once. Layout: VTKHDF 2.0, UnstructuredGrid.
 module result_mesh
+   use element_kinds, only: element_node_count, kind_count
    use errors, only: error_type
    use hdf5, only: hid_t
    use hdf5_attributes, only: write_attribute, write_fixed_text
    use hdf5_helpers, only: as_byte, as_integer, as_long, create_group, write_array
    use kinds, only: dp
-   use mesh, only: nodes_per_element
    use model, only: model_type
    implicit none
    private
@@ -22,7 +22,9 @@ module result_mesh
    character(10), parameter :: cell_data_names(3) = [character(10) :: &
       'element_id', 'body', 'material']
 
-   integer, parameter :: vtk_quadratic_quad = 23   !! VTK's cell type of the eight-node element
+   !> VTK's cell types of quad8, quad8_reduced, quad4, triangle6 and triangle3. Its corners and
+   !> midside nodes are in our order.
+   integer, parameter :: vtk_types(kind_count) = [23, 23, 9, 22, 5]
 
 contains
 
@@ -33,7 +35,7 @@ contains
       integer(hid_t), intent(in) :: file                  !! the open file
       type(model_type), intent(in) :: model               !! the model
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
-      integer, intent(in) :: element_points(:, :)         !! (8, elements) points of each element
+      integer, intent(in) :: element_points(:, :)         !! (8, elements) their points, as the nodes
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call create_group(file, grid_group, error)
@@ -42,45 +44,47 @@ contains
       if (allocated(error)) return
       call write_attribute(file, grid_group, 'Version', [2, 0], error)
       if (allocated(error)) return
-      call write_counts(file, size(point_node), size(element_points, 2), error)
+      call write_counts(file, size(point_node), model%mesh%element_kind, error)
       if (allocated(error)) return
-      call write_cells(file, element_points, error)
+      call write_cells(file, model%mesh%element_kind, element_points, error)
       if (allocated(error)) return
       call write_point_data(file, model, point_node, error)
       if (allocated(error)) return
       call write_cell_data(file, model, error)
    end subroutine write_result_mesh
 
-   subroutine write_counts(file, points, cells, error)
+   subroutine write_counts(file, points, kinds, error)
       integer(hid_t), intent(in) :: file
       integer, intent(in) :: points
-      integer, intent(in) :: cells
+      integer, intent(in) :: kinds(:)
       type(error_type), allocatable, intent(out) :: error
 
       call write_array(file, grid_group//'/NumberOfPoints', [points], as_long, error)
       if (allocated(error)) return
-      call write_array(file, grid_group//'/NumberOfCells', [cells], as_long, error)
+      call write_array(file, grid_group//'/NumberOfCells', [size(kinds)], as_long, error)
       if (allocated(error)) return
-      call write_array(file, grid_group//'/NumberOfConnectivityIds', [nodes_per_element*cells], &
-         as_long, error)
+      call write_array(file, grid_group//'/NumberOfConnectivityIds', &
+         [sum(element_node_count(kinds))], as_long, error)
    end subroutine write_counts
 
-   subroutine write_cells(file, element_points, error)
+   subroutine write_cells(file, kinds, element_points, error)
       integer(hid_t), intent(in) :: file
+      integer, intent(in) :: kinds(:)
       integer, intent(in) :: element_points(:, :)
       type(error_type), allocatable, intent(out) :: error
-      integer :: cells, i
+      integer :: e, offsets(0:size(kinds)), points(sum(element_node_count(kinds)))
 
-      cells = size(element_points, 2)
-      ! VTK counts from 0; its midside nodes 1-2, 2-3, 3-4, 4-1 are in our order.
-      call write_array(file, grid_group//'/Connectivity', &
-         reshape(element_points - 1, [nodes_per_element*cells]), as_long, error)
+      offsets(0) = 0
+      do e = 1, size(kinds)
+         offsets(e) = offsets(e - 1) + element_node_count(kinds(e))
+         points(offsets(e - 1) + 1:offsets(e)) = element_points(:element_node_count(kinds(e)), e)
+      end do
+      ! VTK counts from 0.
+      call write_array(file, grid_group//'/Connectivity', points - 1, as_long, error)
       if (allocated(error)) return
-      call write_array(file, grid_group//'/Offsets', &
-         [(nodes_per_element*i, i=0, cells)], as_long, error)
+      call write_array(file, grid_group//'/Offsets', offsets, as_long, error)
       if (allocated(error)) return
-      call write_array(file, grid_group//'/Types', [(vtk_quadratic_quad, i=1, cells)], as_byte, &
-         error)
+      call write_array(file, grid_group//'/Types', vtk_types(kinds), as_byte, error)
    end subroutine write_cells
 
    subroutine write_point_data(file, model, point_node, error)

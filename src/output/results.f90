@@ -19,7 +19,7 @@ module results
    use result_tables, only: contact_results_type, convergence_results_type, history_results_type
    use run_summaries, only: or_blank, run_summary_type
    use status_files, only: status_file_type
-   use steps, only: analysis_coupled
+   use steps, only: solves_heat, solves_mechanics
    use clock, only: wall_seconds
    use text, only: string_type
    use working_files, only: working_file_type
@@ -59,10 +59,10 @@ contains
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
-      integer, intent(in) :: element_points(:, :)         !! (8, elements) points of each element
+      integer, intent(in) :: element_points(:, :)         !! (8, elements) their points, as the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      logical :: has_heat
+      logical :: has_heat, has_mechanics
       integer :: i, expected
 
       call open_hdf5(error)
@@ -72,11 +72,12 @@ contains
       call self%file%start(path//'.vtkhdf')
       call self%increments%start_increments(path//'.sta')
       call self%passes%start_iterations(path//'.cvg')
-      has_heat = any(model%steps%analysis == analysis_coupled)
+      has_heat = any(solves_heat(model%steps%analysis))
+      has_mechanics = any(solves_mechanics(model%steps%analysis))
       expected = expected_increments(model)
       call self%fields%start(pairs, point_node, has_heat .or. any(model%materials%has_expansion), &
-         has_heat, expected)
-      call self%history%start(has_heat, expected)
+         has_heat, has_mechanics, expected)
+      call self%history%start(has_heat, has_mechanics, expected)
       call self%convergence%start(8*expected)
       allocate(self%contacts(size(pairs)))
       do i = 1, size(pairs)

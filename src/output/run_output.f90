@@ -1,6 +1,7 @@
 !> All that a run writes, in one object: result file, `.sta`, `.cvg`, listing, verdicts, progress
 !> line.
 module run_output
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use contact_pairs, only: contact_pairs_type
    use errors, only: error_type
    use kinds, only: dp
@@ -9,7 +10,7 @@ module run_output
    use progress, only: progress_type
    use records, only: increment_record_type, iteration_record_type
    use results, only: results_type
-   use run_summaries, only: run_summary_type
+   use run_summaries, only: or_blank, run_summary_type
    use clock, only: wall_seconds
    use text, only: append, string_type, to_text
    use verification, only: verifier_type
@@ -77,11 +78,26 @@ contains
       since = wall_seconds()
       call self%listing%add(record, model, pairs)
       call self%verifier%judge(record, model, pairs, self%point_node)
+      call print_warnings(self, record)
       call self%progress%show(record)
       call self%results%append(record, model, pairs, self%run, error)
       if (allocated(error)) call self%progress%clear()
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine accept
+
+   !> Prints the warnings of an increment on stderr.
+   subroutine print_warnings(self, record)
+      class(run_output_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
+      integer :: i
+
+      if (.not. allocated(record%warnings)) return
+      call self%progress%clear()
+      do i = 1, size(record%warnings)
+         write (error_unit, '(3a)') or_blank(self%run%deck_path), ': warning: ', &
+            record%warnings(i)%value
+      end do
+   end subroutine print_warnings
 
    !> Takes the increment at which the run ended without convergence.
    subroutine fail(self, reason, iterations)

@@ -11,7 +11,7 @@ module verify_values
    use text, only: read_integer, read_real, to_upper
    implicit none
    private
-   public :: values_asked_for
+   public :: values_asked_for, is_on_interface
 
    !> Datasets of `/contact/<name>` that can be checked.
    character(name_length), parameter :: contact_names(22) = [character(name_length) :: &
@@ -115,6 +115,17 @@ contains
       end select
    end function values_of
 
+   !> Whether an arc length lies on an interface.
+   pure logical function is_on_interface(s, pairs)
+      real(dp), intent(in) :: s                        !! arc length [length]
+      type(contact_pairs_type), intent(in) :: pairs    !! pairs of the interface
+      ! The deck's digits and the sum of the sides may differ in the last places.
+      real(dp), parameter :: rounding = 1.0e-9_dp
+
+      is_on_interface = s >= 0.0_dp .and. &
+         s <= pairs%arc_length(size(pairs%arc_length))*(1.0_dp + rounding)
+   end function is_on_interface
+
    subroutine interpolate(pairs, place, values, reason)
       type(contact_pairs_type), intent(in) :: pairs
       character(*), intent(in) :: place
@@ -126,8 +137,7 @@ contains
 
       last = size(pairs%arc_length)
       call read_real(trim(adjustl(place)), s, valid)
-      if (valid) valid = s >= 0.0_dp .and. s <= pairs%arc_length(last)*(1.0_dp + 1.0e-9_dp) &
-         .and. size(values) == last
+      if (valid) valid = is_on_interface(s, pairs) .and. size(values) == last
       if (.not. valid) then
          deallocate(values)
          reason = 'no such arc length, "'//place//'"'

@@ -2,12 +2,13 @@
 !> fields, against what the reduced system says crosses the contacts.
 module balances
    use contact_system, only: contact_state_type
+   use controls, only: thermal_scheme_type
    use interface_operators, only: pair_row_type
    use kinds, only: dp
    use records, only: status_open, status_slip, status_stick
    implicit none
    private
-   public :: heat_residual, force_residual, imbalance, contact_violation
+   public :: heat_residual, scheme_pair_heat, force_residual, imbalance, contact_violation
 
 contains
 
@@ -27,6 +28,23 @@ contains
          residual(pairs%master(k)) = residual(pairs%master(k)) - pair_heat(k)
       end do
    end function heat_residual
+
+   !> Heat of the pairs, from slave to master, in (3.4): the terms with G of both sides.
+   pure function scheme_pair_heat(scheme, weight, omega_old, omega_new, jump_old, jump_new) &
+      result(pair_heat)
+      type(thermal_scheme_type), intent(in) :: scheme !! coefficients of (3.4)
+      real(dp), intent(in) :: weight(:)               !! (m) tributary areas [length^2]
+      real(dp), intent(in) :: omega_old(:)            !! (m) omega_i
+      real(dp), intent(in) :: omega_new(:)            !! (m) omega_i+1
+      real(dp), intent(in) :: jump_old(:)             !! (m) theta_i [temperature]
+      real(dp), intent(in) :: jump_new(:)             !! (m) theta_i+1 [temperature]
+      real(dp) :: pair_heat(size(weight))             !! (m) (a1 + b1)*mean heat [power]
+
+      associate (a => scheme%a, b => scheme%b)
+         pair_heat = weight*((a(2)*omega_old + a(3)*omega_new)*jump_new + &
+            (b(2)*omega_old + b(3)*omega_new)*jump_old)
+      end associate
+   end function scheme_pair_heat
 
    !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces
    !> of the reduced system.
@@ -94,21 +112,22 @@ contains
       real(dp), intent(in) :: force_scale            !! largest force [force]
       real(dp) :: violation                          !! relative
       real(dp) :: force(2), relative(2), gap, normal_force, shear_force, slip, cone
+      real(dp) :: left(size(unbalanced))
       integer :: c, k, s, m
 
       violation = 0.0_dp
+      ! A node may be in several pairs: what they leave over goes to each of them.
+      left = force_residual(unbalanced, 0.0_dp*unbalanced, pairs, state)
       do k = 1, size(pairs%slave)
+         force = state%shear_force(k)*pairs%tangent(:, k) - state%force(k)*pairs%normal(:, k)
          do c = 1, 2
             s = 2*pairs%slave(k) - 2 + c
             m = 2*pairs%master(k) - 2 + c
             relative(c) = displacement(s) - displacement(m)
             if (.not. supported(s)) then
-               force(c) = unbalanced(s)
+               force(c) = force(c) + left(s)
             else if (.not. supported(m)) then
-               force(c) = -unbalanced(m)
-            else
-               force(c) = state%shear_force(k)*pairs%tangent(c, k) - &
-                  state%force(k)*pairs%normal(c, k)
+               force(c) = force(c) - left(m)
             end if
          end do
          gap = (pairs%initial_gap(k) - dot_product(relative, pairs%normal(:, k)))/length_scale

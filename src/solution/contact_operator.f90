@@ -1,6 +1,7 @@
 !> One pass of the contact operator U = chi H L of section 2: conductance -> temperature jumps ->
 !> contact state -> conductance, all on the pairs.
 module contact_operator
+   use axis_limits, only: tractions
    use closing_instant, only: solve_increment
    use conductance_laws, only: conductance, conductance_slope
    use contact_system, only: contact_state_type
@@ -8,12 +9,12 @@ module contact_operator
    use errors, only: error_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
-   use records, only: status_open, work_record_type
+   use records, only: status_open, status_slip, work_record_type
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
    private
    public :: increment_data_type, temperature_jumps, condensed_load, law_conductance
-   public :: contact_operator_pass, residual_floor
+   public :: contact_operator_pass, kept_contact, residual_floor, thermal_forces
 
    !> What stays fixed while the iteration of an increment runs.
    type :: increment_data_type
@@ -109,13 +110,44 @@ contains
       type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
       type(contact_state_type), intent(in) :: state             !! contact state
       real(dp) :: omega(size(state%status))                     !! (m)
-      integer :: k
+      real(dp) :: pressure(size(state%status))
+      integer :: first, i, k, last
 
+      do i = 1, size(operators%interfaces)
+         first = operators%pairs%interface_start(i)
+         last = operators%pairs%interface_start(i + 1) - 1
+         pressure(first:last) = tractions(state%force(first:last), &
+            operators%interfaces(i)%weight, operators%interfaces(i)%position(1, :), even=.true.)
+      end do
       do k = 1, size(omega)
          omega(k) = conductance(operators%pairs%law(k), state%status(k) /= status_open, &
-            state%gap(k), state%force(k)/operators%pairs%weight(k))
+            state%gap(k), pressure(k))
       end do
    end function law_conductance
+
+   !> Contact state that a step without mechanics finds. Before any mechanics pairs without a gap
+   !> touch: they are closed and carry no pressure.
+   pure function kept_contact(state, has_mechanics) result(kept)
+      type(contact_state_type), intent(in) :: state  !! contact state of the last increment
+      logical, intent(in) :: has_mechanics           !! whether mechanics was solved before
+      type(contact_state_type) :: kept
+
+      kept = state
+      if (has_mechanics) return
+      where (kept%gap <= 0.0_dp) kept%status = status_slip
+   end function kept_contact
+
+   !> Nodal forces of temperatures over the natural state; none where no temperature strains.
+   pure function thermal_forces(operators, temperature) result(forces)
+      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
+      real(dp) :: forces(2*size(temperature))                   !! (2 nodes) [force]
+
+      forces = 0.0_dp
+      if (allocated(operators%thermal_load%value)) then
+         forces = operators%thermal_load%multiply(temperature)
+      end if
+   end function thermal_forces
 
    !> What a few units in the last place of the displacements change in omega, relative: no residual
    !> can be smaller.
@@ -131,7 +163,7 @@ contains
 
       floor_value = 0.0_dp
       do k = 1, size(omega)
-         if (omega(k) <= 0.0_dp) cycle
+         if (omega(k) <= 0.0_dp .or. operators%pairs%weight(k) <= 0.0_dp) cycle
          associate (weight => operators%pairs%weight(k), place => operators%contact%normal(k))
             change = few*epsilon(1.0_dp)*max(data%displacement_scale, abs(state%gap(k)), &
                abs(operators%pairs%initial_gap(k) - state%gap(k)))

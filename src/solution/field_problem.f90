@@ -7,7 +7,7 @@ module field_problem
    use linear_solver, only: linear_solver_type
    use mumps_solver, only: mumps_solver_type
    use skyline_solver, only: skyline_solver_type
-   use sparse_matrix, only: sparse_matrix_type
+   use sparse_matrix, only: linear_combination, sparse_matrix_type
    implicit none
    private
    public :: field_problem_type
@@ -16,6 +16,8 @@ module field_problem
    !> increment.
    type :: field_problem_type
       type(sparse_matrix_type) :: matrix !! (dofs, dofs) bodies alone, both triangles
+      !> (dofs, dofs) what is added to it, such as films; without values where there is nothing.
+      type(sparse_matrix_type) :: added
       type(equation_map_type) :: map                          !! numbering of the unknowns
       class(linear_solver_type), allocatable :: solver        !! factors
       real(dp), allocatable :: given(:)                       !! (dofs) prescribed values
@@ -47,7 +49,12 @@ contains
       else
          allocate (skyline_solver_type :: self%solver)
       end if
-      call self%solver%factor(self%map%transform(self%matrix), self%map%tail, error)
+      if (allocated(self%added%value)) then
+         call self%solver%factor(self%map%transform(linear_combination(1.0_dp, self%matrix, &
+            1.0_dp, self%added)), self%map%tail, error)
+      else
+         call self%solver%factor(self%map%transform(self%matrix), self%map%tail, error)
+      end if
    end subroutine reduce
 
    !> Takes the load of an increment.
@@ -55,14 +62,16 @@ contains
       class(field_problem_type), intent(inout) :: self    !! the problem
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
       real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
-      real(dp) :: zero(self%map%equations)
+      real(dp) :: zero(self%map%equations), supported(size(given))
 
       zero = 0.0_dp
       self%given = given
+      supported = self%map%expand(zero, given)
       if (allocated(self%rhs)) deallocate (self%rhs)
       allocate (self%rhs(self%map%equations, 1))
-      self%rhs(:, 1) = self%map%restrict( &
-         forces - self%matrix%multiply(self%map%expand(zero, given)))
+      self%rhs(:, 1) = self%map%restrict(forces - self%matrix%multiply(supported))
+      if (allocated(self%added%value)) self%rhs(:, 1) = self%rhs(:, 1) - &
+         self%map%restrict(self%added%multiply(supported))
    end subroutine set_load
 
    !> Condenses the load of the increment on the tail.

@@ -1,15 +1,22 @@
 !> The record of an accepted increment, made from its state.
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use balances, only: contact_violation, force_residual, heat_residual, imbalance
-   use contact_system, only: contact_system_type
+   use axis_limits, only: tractions, with_axis_limit
+   use balances, only: contact_violation, force_residual, heat_residual, imbalance, &
+      scheme_pair_heat
+   use contact_operator, only: kept_contact, thermal_forces
+   use contact_system, only: contact_state_type, contact_system_type
+   use controls, only: thermal_scheme_type
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
+   use heat_balance, only: balance_heat
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
    use records, only: contact_record_type, increment_record_type, status_open
+   use scheme_properties, only: is_explicit
    use solution_state, only: solution_state_type
+   use steps, only: solves_heat, solves_mechanics, step_type
    use zone_edges, only: contact_edges, stick_edges
    implicit none
    private
@@ -22,31 +29,48 @@ module increment_records
 contains
 
    !> Completes the record of an increment with contact state, fields and balances, and settles the
-   !> slip memory.
-   subroutine make_record(operators, model, points, loads, with_heat, previous, next, record)
+   !> slip memory. What the step does not solve stands as the last step that did left it.
+   subroutine make_record(operators, model, points, loads, step, previous, next, record)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
       type(point_map_type), intent(in) :: points              !! where averaged fields live
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
-      logical, intent(in) :: with_heat                        !! whether heat was solved
+      type(step_type), intent(in) :: step                     !! the step
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(inout) :: next        !! state at the end
       type(increment_record_type), intent(inout) :: record    !! the record
+      real(dp) :: carrying(size(next%omega))
       integer :: i
 
-      call settle_slip(operators, previous, next)
+      if (solves_mechanics(step%analysis)) call settle_slip(operators, previous, next)
+      next%smallest_gap = min(previous%smallest_gap, next%contact%gap)
+      carrying = merge(next%omega_start, next%omega, is_explicit(step%scheme))
       allocate (record%contacts(size(operators%interfaces)))
       do i = 1, size(operators%interfaces)
-         record%contacts(i) = contact_record(operators, with_heat, i, next)
+         record%contacts(i) = contact_record(operators, solves_heat(step%analysis), i, next, &
+            carrying)
       end do
-      call set_fields(model, points, with_heat, next, record)
-      call balance_forces(operators, model, loads, next, record)
-      if (with_heat) then
-         call balance_heat(operators, model, loads, next, record)
+      record%fields%temperature = next%temperature
+      if (solves_mechanics(step%analysis)) then
+         call balance_forces(operators, model, points, loads, next, record)
+      else
+         record%force_imbalance = ieee_value(1.0_dp, ieee_quiet_nan)
+         record%contact_violation = record%force_imbalance
+      end if
+      if (next%has_mechanics) then
+         record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
+         record%fields%stress = next%stress
+         record%fields%reaction = next%reaction
+      end if
+      if (solves_heat(step%analysis)) then
+         record%fields%heat_flux = recover_heat_flux(model%mesh, model%sections, &
+            model%materials, model%orientations, points, next%temperature)
+         call balance_heat(operators, model, loads, step%scheme, carrying, previous, next, record)
       else
          record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
          record%heat_out = record%heat_in
          record%heat_imbalance = record%heat_in
+         record%heat_imbalance_pointwise = record%heat_in
          record%contacts%heat_rate = record%heat_in
       end if
    end subroutine make_record
@@ -98,21 +122,27 @@ contains
    end function closing_fraction
 
    !> Contact state of one interface.
-   pure function contact_record(operators, with_heat, i, next) result(record)
+   pure function contact_record(operators, with_heat, i, next, carrying) result(record)
       type(interface_operators_type), intent(in) :: operators
       logical, intent(in) :: with_heat
       integer, intent(in) :: i
       type(solution_state_type), intent(in) :: next
+      real(dp), intent(in) :: carrying(:)
       type(contact_record_type) :: record
+      type(contact_state_type) :: contact
       integer :: first, last
 
       first = operators%pairs%interface_start(i)
       last = operators%pairs%interface_start(i + 1) - 1
-      associate (pairs => operators%interfaces(i), contact => next%contact)
+      contact = kept_contact(next%contact, next%has_mechanics)
+      associate (pairs => operators%interfaces(i))
          record%status = contact%status(first:last)
          record%gap = contact%gap(first:last)
-         record%pressure = contact%force(first:last)/pairs%weight
-         record%shear = contact%shear_force(first:last)/pairs%weight
+         record%smallest_gap = next%smallest_gap(first:last)
+         record%pressure = tractions(contact%force(first:last), pairs%weight, &
+            pairs%position(1, :), even=.true.)
+         record%shear = tractions(contact%shear_force(first:last), pairs%weight, &
+            pairs%position(1, :), even=.false.)
          record%slip = contact%tangential(first:last) - next%closing(first:last)
          record%normal_force = sum(contact%force(first:last))
          record%shear_force = sum(contact%shear_force(first:last))
@@ -126,46 +156,33 @@ contains
             record%master_temperature = next%temperature(pairs%master_node)
          end if
          if (.not. with_heat) return
-         record%conductance = next%omega(first:last)
-         record%heat_flux = next%omega(first:last)*next%jump(first:last)
+         record%conductance = carrying(first:last)
+         record%heat_flux = with_axis_limit(carrying(first:last)*next%jump(first:last), &
+            pairs%weight, pairs%position(1, :), even=.true.)
          record%heat_rate = sum(pairs%weight*record%heat_flux)
       end associate
    end function contact_record
 
-   !> Fields over nodes and points.
-   subroutine set_fields(model, points, with_heat, next, record)
-      type(model_type), intent(in) :: model
-      type(point_map_type), intent(in) :: points
-      logical, intent(in) :: with_heat
-      type(solution_state_type), intent(in) :: next
-      type(increment_record_type), intent(inout) :: record
-
-      associate (fields => record%fields)
-         fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
-         fields%temperature = next%temperature
-         fields%stress = recover_stress(model%mesh, model%sections, model%materials, points, &
-            fields%displacement, next%temperature - model%initial_temperature)
-         if (with_heat) fields%heat_flux = recover_heat_flux(model%mesh, model%sections, &
-            model%materials, points, next%temperature)
-      end associate
-   end subroutine set_fields
-
-   !> Reactions, force balance, and the contact conditions on the recovered displacements.
-   subroutine balance_forces(operators, model, loads, next, record)
+   !> Stress, reactions, force balance, and the contact conditions on the recovered displacements.
+   subroutine balance_forces(operators, model, points, loads, next, record)
       type(interface_operators_type), intent(in) :: operators
       type(model_type), intent(in) :: model
+      type(point_map_type), intent(in) :: points
       type(loads_type), intent(in) :: loads
-      type(solution_state_type), intent(in) :: next
+      type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
       real(dp) :: length, scale
 
+      next%stress = recover_stress(model%mesh, model%sections, model%materials, &
+         model%orientations, points, reshape(next%displacement, [2, size(next%temperature)]), &
+         next%temperature - model%initial_temperature)
       length = max(maxval(abs(next%displacement)), tiny(1.0_dp))
       if (size(operators%pairs%initial_gap) > 0) then
          length = max(length, noise*maxval(abs(operators%pairs%initial_gap)))
       end if
       internal = operators%mechanical%matrix%multiply(next%displacement) - &
-         operators%thermal_load%multiply(next%temperature - model%initial_temperature)
+         thermal_forces(operators, next%temperature - model%initial_temperature)
       residual = force_residual(internal, next%force_load, operators%pairs, next%contact)
       associate (held => loads%displacement%active)
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
@@ -175,38 +192,8 @@ contains
          record%contact_violation = contact_violation(next%displacement, &
             internal - next%force_load, held, operators%pairs, next%contact, &
             operators%contact%tangent > 0, length, scale)
-         record%fields%reaction = reshape(merge(residual, 0.0_dp, held), &
-            shape(record%fields%displacement))
+         next%reaction = reshape(merge(residual, 0.0_dp, held), [2, size(next%temperature)])
       end associate
    end subroutine balance_forces
-
-   !> Heat that enters at prescribed temperatures, and the heat balance.
-   subroutine balance_heat(operators, model, loads, next, record)
-      type(interface_operators_type), intent(in) :: operators
-      type(model_type), intent(in) :: model
-      type(loads_type), intent(in) :: loads
-      type(solution_state_type), intent(in) :: next
-      type(increment_record_type), intent(inout) :: record
-      real(dp), allocatable :: conducted(:), residual(:), pair_heat(:)
-      real(dp) :: net(0:maxval(loads%temperature%card)), scale
-      integer :: i
-
-      pair_heat = operators%pairs%weight*next%omega*next%jump
-      conducted = operators%thermal%matrix%multiply(next%temperature)
-      residual = heat_residual(conducted, next%heat_load, operators%pairs, pair_heat)
-      net = 0.0_dp
-      associate (held => loads%temperature%active, card => loads%temperature%card)
-         do i = 1, size(residual)
-            if (held(i)) net(card(i)) = net(card(i)) + residual(i)
-         end do
-         record%heat_in = sum(net, mask=net > 0.0_dp)
-         record%heat_out = -sum(net, mask=net < 0.0_dp)
-         scale = max(record%heat_in, record%heat_out, abs(sum(pair_heat)), &
-            maxval(abs(residual), mask=held), noise*maxval(abs(operators%thermal%matrix%value))* &
-            maxval(abs(next%temperature)), tiny(1.0_dp))
-         record%heat_imbalance = imbalance(conducted, residual, held, model%mesh%node_body, scale)
-         record%fields%reaction_heat = merge(residual, 0.0_dp, held)
-      end associate
-   end subroutine balance_heat
 
 end module increment_records

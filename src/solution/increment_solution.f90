@@ -1,10 +1,11 @@
 !> One increment on the pairs: load, fixed-point iteration of section 4, and the fields behind it.
 module increment_solution
    use closing_instant, only: solve_increment
-   use contact_operator, only: contact_operator_pass, increment_data_type, law_conductance, &
-      residual_floor
+   use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
+      law_conductance, residual_floor, temperature_jumps, thermal_forces
    use contact_system, only: closing_law_type
    use errors, only: error_type, set_error, status_no_convergence
+   use films, only: film_history
    use fixed_point, only: accelerator_type, fixed_point_residual, make_accelerator, &
       predicted_conductance
    use interface_operators, only: interface_operators_type
@@ -12,8 +13,10 @@ module increment_solution
    use loads, only: loads_type
    use model, only: model_type
    use records, only: increment_record_type, iteration_record_type
+   use scheme_properties, only: is_explicit
+   use scheme_start, only: warn_of_imbalance
    use solution_state, only: solution_state_type
-   use steps, only: step_type
+   use steps, only: solves_heat, solves_mechanics, step_type
    use text, only: to_text
    use thermal_matrix, only: field_history, scheme_load
    implicit none
@@ -23,14 +26,13 @@ module increment_solution
 contains
 
    !> Jumps, contact state and conductance at the end of an increment, and the temperatures that
-   !> belong to welded contacts.
+   !> belong to welded contacts. A field that the step does not solve stays.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
-   subroutine solve_pairs(operators, loads, model, step, with_heat, previous, next, record, error)
+   subroutine solve_pairs(operators, loads, model, step, previous, next, record, error)
       type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
       type(model_type), intent(in) :: model                      !! the model
       type(step_type), intent(in) :: step                        !! the step
-      logical, intent(in) :: with_heat                           !! whether heat is solved
       type(solution_state_type), intent(in) :: previous          !! state at the start
       type(solution_state_type), intent(inout) :: next           !! guess in, solution out
       type(increment_record_type), intent(inout) :: record       !! receives passes and work
@@ -41,14 +43,28 @@ contains
       data%previous = previous%contact
       data%omega_old = previous%omega
       data%jump_old = previous%jump
+      next%omega_start = data%omega_old
+      next%keeps_imbalance = .false.
+      if (solves_heat(step%analysis)) then
+         call load_heat(operators, loads, previous, data, next)
+         call warn_of_imbalance(operators, loads, data, previous, next, record)
+      end if
+      if (.not. solves_mechanics(step%analysis)) then
+         call conduct(operators, previous, data, next, record)
+         return
+      end if
       data%displacement_scale = maxval(abs(previous%displacement))
       next%contact%reference = previous%contact%tangential
       operators%contact%closing = closing_law_type()
       call operators%contact%forget_factors()
-      if (with_heat) call load_heat(operators, loads, previous, data, next)
+      if (.not. solves_heat(step%analysis)) call give_temperatures(operators, loads, previous, next)
       call load_mechanics(operators, loads, model, data, next)
-      if (with_heat .and. size(next%omega) > 0) then
-         call iterate(operators, step, previous, data, next, record, error)
+      if (solves_heat(step%analysis) .and. size(next%omega) > 0) then
+         if (is_explicit(step%scheme)) then
+            call pass_once(operators, previous, data, next, record, error)
+         else
+            call iterate(operators, step, previous, data, next, record, error)
+         end if
       else
          call solve_increment(operators%contact, data%previous, data%welded_load, next%contact, &
             error)
@@ -56,7 +72,58 @@ contains
          next%omega = law_conductance(operators, next%contact)
          next%omega_before = next%omega
       end if
+      next%has_mechanics = .true.
    end subroutine solve_pairs
+
+   !> Temperatures that a step without heat gives, and the jumps between them.
+   subroutine give_temperatures(operators, loads, previous, next)
+      type(interface_operators_type), intent(in) :: operators
+      type(loads_type), intent(in) :: loads
+      type(solution_state_type), intent(in) :: previous
+      type(solution_state_type), intent(inout) :: next
+
+      call loads%set_temperatures(next%temperature)
+      associate (s => operators%pairs%slave, m => operators%pairs%master, t => next%temperature)
+         where (abs(t(s) - previous%temperature(s)) + abs(t(m) - previous%temperature(m)) > 0.0_dp)
+            next%jump = t(s) - t(m)
+         end where
+      end associate
+   end subroutine give_temperatures
+
+   !> The jumps of an increment without mechanics: the conductance is that of the contact state that
+   !> stays, at both ends of the increment.
+   subroutine conduct(operators, previous, data, next, record)
+      type(interface_operators_type), intent(inout) :: operators
+      type(solution_state_type), intent(in) :: previous
+      type(increment_data_type), intent(inout) :: data
+      type(solution_state_type), intent(inout) :: next
+      type(increment_record_type), intent(inout) :: record
+
+      next%omega = law_conductance(operators, kept_contact(previous%contact, &
+         previous%has_mechanics))
+      data%omega_old = next%omega
+      call temperature_jumps(operators, data, next%omega, next%jump, record%work)
+      next%omega_before = next%omega
+      next%omega_start = next%omega
+   end subroutine conduct
+
+   !> An increment explicit in omega: temperatures by the conductance at its start, then mechanics,
+   !> then the conductance at its end. Nothing is iterated.
+   subroutine pass_once(operators, previous, data, next, record, error)
+      type(interface_operators_type), intent(inout) :: operators
+      type(solution_state_type), intent(in) :: previous
+      type(increment_data_type), intent(inout) :: data
+      type(solution_state_type), intent(inout) :: next
+      type(increment_record_type), intent(inout) :: record
+      type(error_type), allocatable, intent(out) :: error
+
+      call contact_operator_pass(operators, data, previous%omega, next%jump, next%contact, &
+         next%omega, record%work, error)
+      if (allocated(error)) return
+      next%omega_before = previous%omega
+      record%iterations = [iteration_record_type(increment=record%increment, iteration=1, &
+         pairs_changed=count(next%contact%status /= previous%contact%status))]
+   end subroutine pass_once
 
    !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.
    subroutine load_heat(operators, loads, previous, data, next)
@@ -69,6 +136,7 @@ contains
 
       associate (given => loads%temperature%value)
          forces = field_history(data%scheme, operators%thermal%matrix, previous%temperature) + &
+            film_history(data%scheme, previous%film, next%film, previous%temperature) + &
             scheme_load(data%scheme, previous%heat_load, next%heat_load)
          call operators%thermal%set_load(forces, given)
          call operators%thermal%condense_load()
@@ -89,7 +157,7 @@ contains
       type(solution_state_type), intent(inout) :: next
 
       next%force_load = loads%nodal_forces(model)
-      call operators%mechanical%set_load(next%force_load + operators%thermal_load%multiply( &
+      call operators%mechanical%set_load(next%force_load + thermal_forces(operators, &
          next%temperature - model%initial_temperature), loads%displacement%value)
       call operators%mechanical%condense_load()
       data%welded_load = operators%mechanical%condensed
@@ -139,25 +207,27 @@ contains
    end subroutine iterate
 
    !> Fields of the whole bodies, from the solution on the pairs.
-   subroutine recover_fields(operators, loads, model, with_heat, next)
+   subroutine recover_fields(operators, loads, model, step, next)
       type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
       type(model_type), intent(in) :: model                      !! the model
-      logical, intent(in) :: with_heat                           !! whether heat is solved
+      type(step_type), intent(in) :: step                        !! the step
       type(solution_state_type), intent(inout) :: next           !! as solve_pairs left it
       real(dp), allocatable :: on_tail(:)
       integer :: k
 
-      if (with_heat) then
+      if (solves_heat(step%analysis)) then
          allocate (on_tail(operators%thermal%map%tail))
          do k = 1, size(next%jump)
             if (operators%jump_place(k) > 0) on_tail(operators%jump_place(k)) = next%jump(k)
          end do
          next%temperature = operators%thermal%recover(on_tail)
          deallocate (on_tail)
-         call operators%mechanical%set_load(next%force_load + &
-            operators%thermal_load%multiply(next%temperature - model%initial_temperature), &
-            loads%displacement%value)
+      end if
+      if (.not. solves_mechanics(step%analysis)) return
+      if (solves_heat(step%analysis)) then
+         call operators%mechanical%set_load(next%force_load + thermal_forces(operators, &
+            next%temperature - model%initial_temperature), loads%displacement%value)
       end if
       allocate (on_tail(operators%mechanical%map%tail))
       on_tail(operators%contact%normal) = operators%pairs%initial_gap - next%contact%gap

@@ -14,7 +14,7 @@ module interface_operators
    use thermal_matrix, only: assemble_conduction
    implicit none
    private
-   public :: interface_operators_type, pair_row_type
+   public :: interface_operators_type, pair_row_type, pair_surfaces
 
    real(dp), parameter :: nearly_aligned = 0.99_dp !! cosine of a normal that counts as along an
    !! axis
@@ -40,35 +40,56 @@ module interface_operators
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       type(contact_system_type) :: contact                    !! the partial solution of (2.4)
       integer, allocatable :: jump_place(:) !! (m) place of the jump on the tail, 0 where held
-      real(dp), allocatable :: jump_load(:, :)                !! condensed mechanical load per jump
+      !> (mechanical tail, thermal tail) condensed mechanical load per jump; formed where coupled.
+      real(dp), allocatable :: jump_load(:, :)
+      logical :: is_coupled = .false.   !! whether heat and mechanics are solved together
    contains
       procedure :: prepare
       procedure :: number
       procedure :: assemble
       procedure :: reduce
+      procedure :: reduce_heat
+      procedure :: set_film
       procedure :: release
    end type interface_operators_type
 
 contains
 
-   !> Pairs the surfaces.
+   !> Pairs the surfaces, unless the caller has already put the pairs in place.
    !> Error: as make_pairs.
    subroutine prepare(self, model, error)
       class(interface_operators_type), intent(inout) :: self !! empty
       type(model_type), intent(in) :: model                  !! the model
       type(error_type), allocatable, intent(out) :: error    !! see above
-      integer :: i, element
+      integer :: i
 
-      allocate (self%interfaces(size(model%contacts)))
-      do i = 1, size(model%contacts)
-         element = model%mesh%surfaces(model%contacts(i)%slave)%faces(1, 1)
-         call make_pairs(model%mesh, model%contacts(i), &
-            model%sections(model%mesh%element_section(element))%thickness, &
-            self%interfaces(i), error)
-         if (allocated(error)) return
-      end do
+      if (.not. allocated(self%interfaces)) then
+         allocate (self%interfaces(size(model%contacts)))
+         do i = 1, size(model%contacts)
+            call pair_surfaces(model, i, self%interfaces(i), error)
+            if (allocated(error)) return
+         end do
+      end if
       self%pairs = row_of(self%interfaces, model)
    end subroutine prepare
+
+   !> Pairs the surfaces of one *CONTACT PAIR, with the thickness of the slave's first element.
+   !> Error: as make_pairs.
+   subroutine pair_surfaces(model, i, pairs, error)
+      type(model_type), intent(in) :: model               !! the model
+      integer, intent(in) :: i                            !! index into model%contacts
+      type(contact_pairs_type), intent(out) :: pairs      !! the pairs
+      type(error_type), allocatable, intent(out) :: error !! see above
+      real(dp) :: thickness
+
+      thickness = 1.0_dp
+      associate (faces => model%mesh%surfaces(model%contacts(i)%slave)%faces)
+         if (size(faces, 2) > 0) then
+            thickness = model%sections(model%mesh%element_section(faces(1, 1)))%thickness
+         end if
+      end associate
+      call make_pairs(model%mesh, model%contacts(i), thickness, pairs, error)
+   end subroutine pair_surfaces
 
    !> Puts the pairs of all interfaces in one row.
    pure function row_of(interfaces, model) result(row)
@@ -99,45 +120,65 @@ contains
       end do
    end function row_of
 
-   !> Numbers the unknowns for a set of supports.
+   !> Numbers the unknowns of the fields that are asked for, for a set of supports.
    !> Error: an over-constrained pair.
-   subroutine number(self, model, held, held_temperature, with_heat, error)
+   subroutine number(self, model, held, held_temperature, mechanics, heat, error)
       class(interface_operators_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model                  !! the model
       logical, intent(in) :: held(:)                         !! (2 nodes) prescribed displacements
       logical, intent(in) :: held_temperature(:)             !! (nodes) prescribed temperatures
-      logical, intent(in) :: with_heat                       !! whether heat is solved
+      logical, intent(in) :: mechanics                       !! whether displacements are numbered
+      logical, intent(in) :: heat                            !! whether temperatures are numbered
       type(error_type), allocatable, intent(out) :: error    !! see above
       real(dp) :: frame(2, 2, size(self%pairs%slave)), scalar(1, 1, size(self%pairs%slave))
       logical :: on_tail(2, size(self%pairs%slave))
 
-      call align_frames(self%pairs, held)
+      if (mechanics) call align_frames(self%pairs, held)
       associate (pairs => self%pairs, used => model%mesh%node_body > 0)
          frame(:, 1, :) = pairs%normal
          frame(:, 2, :) = pairs%tangent
          on_tail(1, :) = .true.
          on_tail(2, :) = pairs%friction > 0.0_dp
-         call make_map(used, held, pairs%slave, pairs%master, frame, on_tail, &
+         if (mechanics) call make_map(used, held, pairs%slave, pairs%master, frame, on_tail, &
             self%mechanical%map, error)
-         if (allocated(error) .or. .not. with_heat) return
+         if (allocated(error) .or. .not. heat) return
          scalar = 1.0_dp
          call make_map(used, held_temperature, pairs%slave, pairs%master, scalar, on_tail(:1, :), &
             self%thermal%map, error)
       end associate
    end subroutine number
 
-   !> Reduces the bodies to the unknowns that were numbered last.
+   !> Reduces the fields that are asked for to the unknowns that were numbered last.
    !> Errors: bodies that nothing holds, a failure of the solver.
-   subroutine reduce(self, model, with_heat, error)
+   subroutine reduce(self, model, mechanics, heat, coupled, error)
       class(interface_operators_type), intent(inout) :: self !! numbered
       type(model_type), intent(in) :: model                  !! the model
-      logical, intent(in) :: with_heat                       !! whether heat is solved
+      logical, intent(in) :: mechanics                       !! whether mechanics is reduced anew
+      logical, intent(in) :: heat                            !! whether heat is reduced anew
+      logical, intent(in) :: coupled                         !! whether both are solved together
       type(error_type), allocatable, intent(out) :: error    !! see above
 
-      call self%mechanical%reduce(model%solver, error)
-      if (allocated(error)) return
-      call set_contact(self)
-      if (.not. with_heat) return
+      self%is_coupled = coupled
+      if (mechanics) then
+         if (allocated(self%jump_load)) deallocate (self%jump_load)
+         call self%mechanical%reduce(model%solver, error)
+         if (allocated(error)) return
+         call set_contact(self)
+      end if
+      if (heat) then
+         call self%reduce_heat(model, error)
+      else if (coupled .and. .not. allocated(self%jump_load)) then
+         call form_jump_load(self)
+      end if
+   end subroutine reduce
+
+   !> Reduces the heat problem to the jumps.
+   !> Errors: bodies whose temperature nothing determines, a failure of the solver.
+   subroutine reduce_heat(self, model, error)
+      class(interface_operators_type), intent(inout) :: self !! numbered
+      type(model_type), intent(in) :: model                  !! the model
+      type(error_type), allocatable, intent(out) :: error    !! see above
+
       call self%thermal%reduce(model%solver, error)
       if (allocated(error)) then
          error%message = error%message//' (heat: no temperature holds it)'
@@ -146,20 +187,49 @@ contains
       associate (map => self%thermal%map)
          self%jump_place = map%tail_index(map%relative(1, :))
       end associate
-      call form_jump_load(self)
-   end subroutine reduce
+      if (allocated(self%jump_load)) deallocate (self%jump_load)
+      if (self%is_coupled) call form_jump_load(self)
+   end subroutine reduce_heat
+
+   !> Takes the films of an increment; where they differ from those of the factors, the heat problem
+   !> is reduced again.
+   !> Errors: as reduce_heat.
+   subroutine set_film(self, film, model, error)
+      class(interface_operators_type), intent(inout) :: self !! reduced
+      type(sparse_matrix_type), intent(in) :: film !! (nodes, nodes) [power/temperature]
+      type(model_type), intent(in) :: model                  !! the model
+      type(error_type), allocatable, intent(out) :: error    !! see above
+
+      if (same_values(film, self%thermal%added)) return
+      self%thermal%added = film
+      call self%reduce_heat(model, error)
+   end subroutine set_film
+
+   !> Whether two matrices have the same entries.
+   pure logical function same_values(a, b)
+      type(sparse_matrix_type), intent(in) :: a, b
+
+      same_values = allocated(a%value) .eqv. allocated(b%value)
+      if (.not. (same_values .and. allocated(a%value))) return
+      same_values = size(a%value) == size(b%value)
+      if (same_values) same_values = all(a%column == b%column) .and. &
+         all(abs(a%value - b%value) <= 0.0_dp)
+   end function same_values
 
    !> Assembles the matrices of the bodies alone, once.
-   subroutine assemble(self, model, with_heat)
+   subroutine assemble(self, model, with_mechanics, with_heat, with_strain)
       class(interface_operators_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model                  !! the model
+      logical, intent(in) :: with_mechanics                  !! whether any step solves mechanics
       logical, intent(in) :: with_heat                       !! whether any step solves heat
+      logical, intent(in) :: with_strain !! whether temperatures strain the bodies in any step
 
-      self%mechanical%matrix = assemble_stiffness(model%mesh, model%sections, model%materials)
-      self%thermal_load = assemble_thermal_load(model%mesh, model%sections, model%materials)
-      if (with_heat) then
-         self%thermal%matrix = assemble_conduction(model%mesh, model%sections, model%materials)
-      end if
+      if (with_mechanics) self%mechanical%matrix = assemble_stiffness(model%mesh, &
+         model%sections, model%materials, model%orientations)
+      if (with_strain) self%thermal_load = assemble_thermal_load(model%mesh, model%sections, &
+         model%materials, model%orientations)
+      if (with_heat) self%thermal%matrix = assemble_conduction(model%mesh, model%sections, &
+         model%materials, model%orientations)
    end subroutine assemble
 
    !> A pair that is held along one axis on both nodes, as on an axis of symmetry, moves along the
@@ -207,7 +277,6 @@ contains
       integer :: first, last, tail
 
       tail = self%thermal%map%tail
-      if (allocated(self%jump_load)) deallocate (self%jump_load)
       allocate (self%jump_load(self%mechanical%map%tail, tail))
       do first = 1, tail, columns_at_once
          last = min(first + columns_at_once - 1, tail)

@@ -15,9 +15,12 @@ module load_courses
    end type step_clock_type
 
    !> A set of numbered loads, each with its present value. Loads stay from step to step until given
-   !> anew.
+   !> anew or ended.
    type :: load_course_type
-      logical, allocatable :: active(:)      !! (n) whether the load was ever given
+      logical, allocatable :: active(:)      !! (n) whether the load is given
+      logical, allocatable :: permanent(:)   !! (n) active whatever the cards say
+      logical, allocatable :: at_once(:)     !! (n) whether it never ramps
+      real(dp), allocatable :: rest(:)       !! (n) value to which a load fades
       real(dp), allocatable :: start(:)      !! (n) value at the start of the step
       real(dp), allocatable :: target(:)     !! (n) value at its end, or factor of the amplitude
       real(dp), allocatable :: value(:)      !! (n) present value
@@ -27,6 +30,8 @@ module load_courses
       procedure :: prepare
       procedure :: begin_step
       procedure :: give
+      procedure :: fade
+      procedure :: remove
       procedure :: move_to
    end type load_course_type
 
@@ -35,19 +40,24 @@ contains
    !> Starts with no load given.
    pure subroutine prepare(self, initial)
       class(load_course_type), intent(inout) :: self !! the loads
-      real(dp), intent(in) :: initial(:) !! (n) values from which loads ramp when first given
+      real(dp), intent(in) :: initial(:)             !! (n) values before anything is given
 
-      allocate (self%active(size(initial)), source=.false.)
+      allocate (self%active(size(initial)), self%at_once(size(initial)), &
+         self%permanent(size(initial)), source=.false.)
       allocate (self%amplitude(size(initial)), self%card(size(initial)), source=0)
+      self%rest = initial
       self%start = initial
       self%target = initial
       self%value = initial
    end subroutine prepare
 
-   !> Starts a step: loads without an amplitude stay at their last value unless given anew.
-   pure subroutine begin_step(self)
+   !> Starts a step: loads without an amplitude stay at their last value unless given anew; one that
+   !> is not given has the present value, from which it ramps once it is.
+   pure subroutine begin_step(self, present_value)
       class(load_course_type), intent(inout) :: self !! the loads
+      real(dp), intent(in) :: present_value(:)       !! (n) values of loads that are not given
 
+      where (.not. self%active) self%value = present_value
       self%start = self%value
       where (self%amplitude == 0) self%target = self%value
    end subroutine begin_step
@@ -65,6 +75,28 @@ contains
       self%amplitude(i) = amplitude
       self%card(i) = card
    end subroutine give
+
+   !> Ends a load as OP=NEW does in CalculiX: it goes to its rest over the step where it would ramp,
+   !> at once where it follows an amplitude or nothing ramps.
+   pure subroutine fade(self, i)
+      class(load_course_type), intent(inout) :: self !! the loads
+      integer, intent(in) :: i                       !! number of the load
+
+      if (self%amplitude(i) > 0) self%start(i) = self%rest(i)
+      self%amplitude(i) = 0
+      self%target(i) = self%rest(i)
+   end subroutine fade
+
+   !> Ends a load at once: what it prescribed is free.
+   pure subroutine remove(self, i)
+      class(load_course_type), intent(inout) :: self !! the loads
+      integer, intent(in) :: i                       !! number of the load
+
+      self%active(i) = self%permanent(i)
+      self%amplitude(i) = 0
+      self%card(i) = 0
+      self%target(i) = self%value(i)
+   end subroutine remove
 
    !> Moves all loads to an instant of the step.
    pure subroutine move_to(self, clock, amplitudes)
@@ -84,6 +116,8 @@ contains
          if (.not. self%active(i)) cycle
          if (self%amplitude(i) > 0) then
             self%value(i) = self%target(i)*factor(self%amplitude(i))
+         else if (self%at_once(i)) then
+            self%value(i) = self%target(i)
          else
             self%value(i) = self%start(i) + (self%target(i) - self%start(i))*share
          end if

@@ -1,58 +1,115 @@
 !> All loads and supports of a model at the present instant.
 module loads
-   use element_elasticity, only: side_pressure_load
+   use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
    use load_courses, only: load_course_type, step_clock_type
-   use mesh, only: face_nodes
+   use load_integrals, only: film_side, unit_forces, unit_heat
+   use load_places, only: entries_of, find_places, load_places_type
+   use mesh, only: mesh_type
    use model, only: model_type
-   use steps, only: dof_temperature, step_type
+   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use steps, only: analysis_static, dof_temperature, load_film_coefficient, load_film_sink, &
+      load_temperature, step_type
    implicit none
    private
    public :: loads_type
 
-   !> Courses of the loads; displacements and forces by degree of freedom, temperatures by node,
-   !> pressures by face.
+   !> Courses of the loads; displacements by degree of freedom, temperatures by node, all other ones
+   !> by the places on which the deck puts loads.
    type :: loads_type
       type(load_course_type) :: displacement   !! (2 nodes) prescribed displacements [length]
       type(load_course_type) :: temperature    !! (nodes) prescribed temperatures [temperature]
-      type(load_course_type) :: force          !! (2 nodes) nodal forces [force]
-      type(load_course_type) :: pressure       !! (4 elements) pressures on faces [stress]
+      type(load_course_type) :: applied        !! (places) loads, each in the unit of its kind
+      type(load_places_type) :: places         !! (places) what they act on
+      integer :: film_count = 0                !! sides with a film: so far behind a film is its sink
+      integer :: card_count = 0                !! number of the last data card of a load
    contains
       procedure :: prepare
       procedure :: begin_step
       procedure :: move_to
       procedure :: nodal_forces
+      procedure :: heat_load
+      procedure :: has_film
+      procedure :: film_matrix
+      procedure :: card_heat
+      procedure :: set_temperatures
       procedure :: axis_value
    end type loads_type
 
 contains
 
-   !> Starts with nothing given: displacements, forces and pressures from zero, temperatures from
-   !> the initial ones.
+   !> Starts with nothing given: displacements and loads from zero, temperatures from the initial
+   !> ones.
    pure subroutine prepare(self, model)
       class(loads_type), intent(inout) :: self   !! the loads
       type(model_type), intent(in) :: model      !! the model
       real(dp), allocatable :: zero(:)
+      integer :: s
 
       allocate (zero(2*size(model%mesh%node_number)), source=0.0_dp)
       call self%displacement%prepare(zero)
-      call self%force%prepare(zero)
+      call hold_axis(model%mesh, self%displacement)
       call self%temperature%prepare(model%initial_temperature)
-      deallocate (zero)
-      allocate (zero(4*size(model%mesh%element_number)), source=0.0_dp)
-      call self%pressure%prepare(zero)
+      self%places = find_places(model%steps)
+      call self%applied%prepare(values_at(self%places, model%initial_temperature))
+      ! As in CalculiX the sink of a film acts whole at once, while its coefficient ramps.
+      self%applied%at_once = self%places%kind == load_film_sink
+      self%film_count = count(self%places%kind == load_film_coefficient)
+      do s = 1, size(model%steps)
+         if (.not. allocated(model%steps(s)%loads)) cycle
+         self%card_count = max(self%card_count, maxval([0, model%steps(s)%loads%card]))
+      end do
    end subroutine prepare
 
-   !> Takes over what the cards of a step give.
-   pure subroutine begin_step(self, step)
-      class(loads_type), intent(inout) :: self   !! the loads
-      type(step_type), intent(in) :: step        !! the step
+   !> Nodes on the axis of an axisymmetric body stay there.
+   pure subroutine hold_axis(mesh, displacement)
+      type(mesh_type), intent(in) :: mesh
+      type(load_course_type), intent(inout) :: displacement
+      integer :: e, node, q
+
+      do e = 1, size(mesh%element_number)
+         if (mesh%element_plane(e) /= axisymmetric) cycle
+         do q = 1, element_node_count(mesh%element_kind(e))
+            node = mesh%element_nodes(q, e)
+            if (mesh%coordinates(1, node) <= 0.0_dp) displacement%permanent(2*node - 1) = .true.
+         end do
+      end do
+      displacement%active = displacement%permanent
+   end subroutine hold_axis
+
+   !> Values of loads that are not given: the nodes' temperatures for *TEMPERATURE, else zero.
+   pure function values_at(places, temperature) result(values)
+      type(load_places_type), intent(in) :: places
+      real(dp), intent(in) :: temperature(:)
+      real(dp) :: values(size(places%kind))
       integer :: i
 
-      call self%displacement%begin_step()
-      call self%temperature%begin_step()
-      call self%force%begin_step()
-      call self%pressure%begin_step()
+      values = 0.0_dp
+      do i = 1, size(values)
+         if (places%kind(i) == load_temperature) values(i) = temperature(places%item(i))
+      end do
+   end function values_at
+
+   !> Takes over what the cards of a step give and end. What is prescribed for the first time, or
+   !> again after it was free, ramps from where the node is.
+   pure subroutine begin_step(self, step, displacement, temperature)
+      class(loads_type), intent(inout) :: self    !! the loads
+      type(step_type), intent(in) :: step         !! the step
+      real(dp), intent(in) :: displacement(:)     !! (2 nodes) at the end of the last step [length]
+      real(dp), intent(in) :: temperature(:)      !! (nodes) likewise [temperature]
+      integer :: i
+
+      call self%displacement%begin_step(displacement)
+      call self%temperature%begin_step(temperature)
+      call self%applied%begin_step(values_at(self%places, temperature))
+      if (step%ends_boundaries) then
+         do i = 1, size(displacement)
+            call self%displacement%remove(i)
+         end do
+         do i = 1, size(temperature)
+            call self%temperature%remove(i)
+         end do
+      end if
       do i = 1, size(step%boundaries)
          associate (card => step%boundaries(i))
             if (card%dof == dof_temperature) then
@@ -63,17 +120,39 @@ contains
             end if
          end associate
       end do
-      do i = 1, size(step%nodal_loads)
-         associate (card => step%nodal_loads(i))
-            call self%force%give(2*(card%node - 1) + card%dof, card%value, card%amplitude, 0)
-         end associate
-      end do
-      do i = 1, size(step%face_loads)
-         associate (card => step%face_loads(i))
-            call self%pressure%give(4*(card%element - 1) + card%face, card%value, card%amplitude, 0)
-         end associate
-      end do
+      call apply_step(self, step)
    end subroutine begin_step
+
+   !> Gives the loads of a step; on their places, and of the kinds that OP=NEW ends, nothing stays.
+   pure subroutine apply_step(self, step)
+      class(loads_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      logical :: given(size(self%places%kind)), ends
+      integer :: entries(size(step%loads)), i
+
+      given = .false.
+      entries = entries_of(self%places, step%loads)
+      given(entries) = .true.
+      ends = .false.
+      do i = 1, size(given)
+         ! The entries of a place that a step gives are its first ones.
+         ends = self%places%is_repeated(i) .and. (ends .or. given(max(1, i - 1)))
+         if (given(i)) cycle
+         associate (kind => self%places%kind(i))
+            if (kind == load_temperature .and. step%analysis /= analysis_static) then
+               call self%applied%remove(i)
+            else if (self%applied%active(i) .and. (ends .or. step%ends_loads(kind)) .and. &
+               kind /= load_film_sink) then
+               call self%applied%fade(i)
+            end if
+         end associate
+      end do
+      do i = 1, size(step%loads)
+         associate (load => step%loads(i))
+            call self%applied%give(entries(i), load%value, load%amplitude, load%card)
+         end associate
+      end do
+   end subroutine apply_step
 
    !> Moves everything to an instant.
    pure subroutine move_to(self, clock, model)
@@ -83,30 +162,129 @@ contains
 
       call self%displacement%move_to(clock, model%amplitudes)
       call self%temperature%move_to(clock, model%amplitudes)
-      call self%force%move_to(clock, model%amplitudes)
-      call self%pressure%move_to(clock, model%amplitudes)
+      call self%applied%move_to(clock, model%amplitudes)
    end subroutine move_to
 
-   !> Applied nodal forces: concentrated ones and those of the pressures.
+   !> Applied nodal forces: concentrated ones and those of pressures, tractions and body forces.
    pure function nodal_forces(self, model) result(forces)
-      class(loads_type), intent(in) :: self       !! the loads
-      type(model_type), intent(in) :: model       !! the model
-      real(dp) :: forces(size(self%force%value))  !! (2 nodes) [force]
-      real(dp) :: side(2, 3)
-      integer :: i, element, nodes(3), q
+      class(loads_type), intent(in) :: self              !! the loads
+      type(model_type), intent(in) :: model              !! the model
+      real(dp) :: forces(size(self%displacement%value))  !! (2 nodes) [force]
+      integer, allocatable :: nodes(:)
+      real(dp), allocatable :: unit(:, :)
+      integer :: i
 
-      forces = self%force%value
-      do i = 1, size(self%pressure%value)
-         if (.not. self%pressure%active(i)) cycle
-         element = (i - 1)/4 + 1
-         nodes = model%mesh%element_nodes(face_nodes(:, i - 4*(element - 1)), element)
-         side = self%pressure%value(i)*side_pressure_load(model%mesh%coordinates(:, nodes), &
-            model%sections(model%mesh%element_section(element))%thickness)
-         do q = 1, 3
-            forces(2*nodes(q) - 1:2*nodes(q)) = forces(2*nodes(q) - 1:2*nodes(q)) + side(:, q)
-         end do
+      forces = 0.0_dp
+      do i = 1, size(self%places%kind)
+         if (.not. self%applied%active(i)) cycle
+         call unit_forces(model, self%places%kind(i), self%places%item(i), &
+            self%places%component(i), nodes, unit)
+         forces(2*nodes - 1) = forces(2*nodes - 1) + self%applied%value(i)*unit(1, :)
+         forces(2*nodes) = forces(2*nodes) + self%applied%value(i)*unit(2, :)
       end do
    end function nodal_forces
+
+   !> Nodal heat of sources and fluxes, and of films with the bodies at temperature zero: Q of (3.3).
+   pure function heat_load(self, model) result(heat)
+      class(loads_type), intent(in) :: self             !! the loads
+      type(model_type), intent(in) :: model             !! the model
+      real(dp) :: heat(size(self%temperature%value))    !! (nodes) into the bodies [power]
+      integer, allocatable :: nodes(:)
+      real(dp), allocatable :: unit(:), mass(:, :)
+      integer :: i
+
+      heat = 0.0_dp
+      do i = 1, size(self%places%kind)
+         if (.not. self%applied%active(i)) cycle
+         if (self%places%kind(i) == load_film_coefficient) then
+            call film_side(model, self%places%item(i), self%places%component(i), nodes, mass)
+            unit = sink_of(self, i)*sum(mass, dim=2)
+         else
+            call unit_heat(model, self%places%kind(i), self%places%item(i), &
+               self%places%component(i), nodes, unit)
+         end if
+         heat(nodes) = heat(nodes) + self%applied%value(i)*unit
+      end do
+   end function heat_load
+
+   !> Sink temperature of a film: cards give coefficients and sinks for the same sides.
+   pure function sink_of(self, i) result(temperature)
+      class(loads_type), intent(in) :: self
+      integer, intent(in) :: i
+      real(dp) :: temperature
+
+      temperature = self%applied%value(i + self%film_count)
+   end function sink_of
+
+   !> Whether heat crosses a film at this instant.
+   pure logical function has_film(self)
+      class(loads_type), intent(in) :: self   !! the loads
+
+      has_film = any(self%places%kind == load_film_coefficient .and. self%applied%active .and. &
+         abs(self%applied%value) > 0.0_dp)
+   end function has_film
+
+   !> What the films add to the conduction matrix, with both triangles; no entries without a film.
+   pure function film_matrix(self, model) result(matrix)
+      class(loads_type), intent(in) :: self   !! the loads
+      type(model_type), intent(in) :: model   !! the model
+      type(sparse_matrix_type) :: matrix      !! (nodes, nodes) [power/temperature]
+      type(triplet_list_type) :: list
+      integer, allocatable :: nodes(:)
+      real(dp), allocatable :: mass(:, :)
+      integer :: i, p, q, n
+
+      n = size(self%temperature%value)
+      call list%reserve(9*self%film_count)
+      do i = 1, size(self%places%kind)
+         if (self%places%kind(i) /= load_film_coefficient .or. .not. self%applied%active(i)) cycle
+         call film_side(model, self%places%item(i), self%places%component(i), nodes, mass)
+         do q = 1, size(nodes)
+            do p = 1, size(nodes)
+               call list%add(nodes(p), nodes(q), self%applied%value(i)*mass(p, q))
+            end do
+         end do
+      end do
+      matrix = list%compress(n, n)
+   end function film_matrix
+
+   !> Net heat that each data card of a load brings into the bodies; zero for cards of mechanics.
+   pure function card_heat(self, model, temperature) result(rates)
+      class(loads_type), intent(in) :: self     !! the loads
+      type(model_type), intent(in) :: model     !! the model
+      real(dp), intent(in) :: temperature(:)    !! (nodes) [temperature]
+      real(dp) :: rates(self%card_count)        !! (cards) by their running numbers [power]
+      integer, allocatable :: nodes(:)
+      real(dp), allocatable :: unit(:), mass(:, :)
+      integer :: i
+
+      rates = 0.0_dp
+      do i = 1, size(self%places%kind)
+         if (.not. self%applied%active(i)) cycle
+         if (self%places%kind(i) == load_film_coefficient) then
+            call film_side(model, self%places%item(i), self%places%component(i), nodes, mass)
+            unit = matmul(mass, sink_of(self, i) - temperature(nodes))
+         else
+            call unit_heat(model, self%places%kind(i), self%places%item(i), &
+               self%places%component(i), nodes, unit)
+         end if
+         associate (rate => rates(self%applied%card(i)))
+            rate = rate + self%applied%value(i)*sum(unit)
+         end associate
+      end do
+   end function card_heat
+
+   !> Temperatures that *TEMPERATURE gives in a step without heat; other nodes keep theirs.
+   pure subroutine set_temperatures(self, temperature)
+      class(loads_type), intent(in) :: self            !! the loads
+      real(dp), intent(inout) :: temperature(:)        !! (nodes) [temperature]
+      integer :: i
+
+      do i = 1, size(self%places%kind)
+         if (self%places%kind(i) /= load_temperature .or. .not. self%applied%active(i)) cycle
+         temperature(self%places%item(i)) = self%applied%value(i)
+      end do
+   end subroutine set_temperatures
 
    !> Value on the load axis: the prescribed value of LOAD=, or the time.
    pure function axis_value(self, model, time) result(value)

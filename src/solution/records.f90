@@ -2,6 +2,7 @@
 !> see of the solution.
 module records
    use kinds, only: dp, long
+   use text, only: string_type
    implicit none
    private
    public :: increment_record_type, contact_record_type, iteration_record_type
@@ -20,6 +21,7 @@ module records
       real(dp), allocatable :: pressure(:)             !! >= 0 in compression [stress]
       real(dp), allocatable :: shear(:)                !! on the slave, towards growing s [stress]
       real(dp), allocatable :: slip(:)                 !! of the slave since closing [length]
+      real(dp), allocatable :: smallest_gap(:)         !! smallest gamma so far [length]
       ! The next four are unallocated without heat.
       real(dp), allocatable :: conductance(:)          !! omega [power/(length^2 temperature)]
       real(dp), allocatable :: heat_flux(:)            !! slave to master [power/length^2]
@@ -49,6 +51,7 @@ module records
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and
    !> section.
    type :: field_record_type
+      ! Displacement, stress and reaction are unallocated before mechanics is solved.
       real(dp), allocatable :: displacement(:, :)   !! (2, nodes) [length]
       real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
       real(dp), allocatable :: stress(:, :)         !! (4, points) xx, yy, zz, xy [stress]
@@ -78,14 +81,18 @@ module records
       real(dp) :: residual_floor = 0.0_dp
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
-      real(dp) :: heat_imbalance = 0.0_dp    !! relative to the largest rate
-      real(dp) :: force_imbalance = 0.0_dp   !! relative to the largest force
-      !> Largest violation of the contact conditions by the recovered displacements, relative.
+      real(dp) :: heat_imbalance = 0.0_dp    !! of (3.4), relative to the largest rate
+      !> Of (3.3) at the end of the increment, relative to the largest rate.
+      real(dp) :: heat_imbalance_pointwise = 0.0_dp
+      real(dp) :: force_imbalance = 0.0_dp   !! relative to the largest force; NaN where kept
+      !> Largest violation of the contact conditions by the recovered displacements, relative; NaN
+      !> where they are kept.
       real(dp) :: contact_violation = 0.0_dp
       type(contact_record_type), allocatable :: contacts(:)     !! one an interface
       type(iteration_record_type), allocatable :: iterations(:) !! unallocated without coupling
       type(field_record_type) :: fields                         !! fields
       type(work_record_type) :: work                            !! re-factorisation
+      type(string_type), allocatable :: warnings(:)             !! unallocated for none
    end type increment_record_type
 
 end module records

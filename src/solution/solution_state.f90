@@ -2,6 +2,7 @@
 module solution_state
    use contact_system, only: contact_state_type
    use kinds, only: dp
+   use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
    public :: solution_state_type
@@ -11,13 +12,22 @@ module solution_state
       type(contact_state_type) :: contact           !! contact state of all pairs
       real(dp), allocatable :: closing(:)           !! (m) d_t at which a pair last closed [length]
       real(dp), allocatable :: omega(:)             !! (m) conductance
+      real(dp), allocatable :: omega_start(:)       !! (m) omega_i that (3.4) took last
       real(dp), allocatable :: omega_before(:)      !! (m) conductance an increment earlier
       real(dp), allocatable :: jump(:)              !! (m) T_xi - T_eta [temperature]
       real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
       real(dp), allocatable :: displacement(:)      !! (2 nodes) [length]
+      real(dp), allocatable :: smallest_gap(:)      !! (m) smallest gap so far [length]
+      !> (4, points) of the last increment that solved mechanics; unallocated before it [stress]
+      real(dp), allocatable :: stress(:, :)
+      real(dp), allocatable :: reaction(:, :)       !! (2, nodes) likewise [force]
       real(dp), allocatable :: heat_load(:)         !! (nodes) Q of (3.3) [power]
+      type(sparse_matrix_type) :: film !! (nodes, nodes) F, films beside K [power/temperature]
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
       real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]
+      logical :: has_mechanics = .false.            !! whether mechanics was ever solved
+      !> Whether the last increment solved heat by a scheme that keeps an imbalance for ever.
+      logical :: keeps_imbalance = .false.
    end type solution_state_type
 
 end module solution_state

@@ -172,7 +172,7 @@ def test_zone_curves_along_s_are_those_of_the_file_and_keep_nan(draw, tmp_path):
     path = tmp_path / "case.vtkhdf"
     write_result(path, loads=(2.0, 300.0, 600.0))
     draw("zones", path, "--along", "s")
-    drawn = table(tmp_path, "case.zones.csv")
+    drawn = table(tmp_path, "case.zones-along-s.csv")
     with h5py.File(path) as file:
         stick = file["contact/CYLINDER/edge_stick"][()]
     assert np.isnan(stick[0]) and not np.isnan(stick[1:]).any()
@@ -236,9 +236,9 @@ def test_fields_are_those_of_the_file_at_the_load(draw, result, tmp_path):
     quantities = ("temperature", "von_mises", "yy")
     assert draw("fields", result) == three("case.fields")
     assert draw("fields", result, "--load", 540, "--region", "contact", "--scale", 2) == three(
-        "case.fields-540-contact"
+        "case.fields-540-contact-scale-2"
     )
-    drawn = table(tmp_path, "case.fields-540-contact.csv")
+    drawn = table(tmp_path, "case.fields-540-contact-scale-2.csv")
     with h5py.File(result) as file:
         data, count = file["VTKHDF/PointData"], int(file["VTKHDF/NumberOfPoints"][0])
         step = int(np.flatnonzero(file["VTKHDF/Steps/Values"][()] == 540.0)[0])
@@ -341,6 +341,18 @@ def test_every_contact_has_a_picture_of_its_own(draw, fail, tmp_path):
     ]
     assert draw("profiles", path, "--contact", "RIGHT") == three("case.profiles-RIGHT")
     assert "no contact 'RIHGT', nearest: 'RIGHT'" in fail("zones", path, "--contact", "RIHGT")
+
+
+def test_pictures_of_other_options_have_other_names(draw, tmp_path):
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, loads=(300.0, 600.0, 300.0))
+    assert draw("profiles", path, "--range", 0, 2.5) == three("case.profiles-range-0-2.5")
+    assert draw("profiles", path, "--along", "s") == three("case.profiles-along-s")
+    for number in (1, 3):
+        assert draw("fields", path, "--increment", number) == three(
+            f"case.fields-300-increment-{number}"
+        )
+    assert draw("fields", path, "--increment", 2) == three("case.fields-600")
 
 
 @pytest.mark.parametrize("units", ["cm MPa W C", ""])

@@ -189,7 +189,7 @@ def test_the_file_holds_the_card_images_and_the_run(results, stored):
         assert run_attributes[f"seconds_{name}"] > 0, name
     for name in "heat contact friction coupling".split():
         assert name in run_attributes["modelled"]
-    checks = sum(line.endswith(("   PASS", "   FAIL")) for line in listing_of(results))
+    checks = sum(line.endswith((" PASS", " FAIL")) for line in listing_of(results))
     assert run_attributes["verify_passed"] == checks > 0
     assert run_attributes["verify_failed"] == 0
     assert run_attributes["version"]

@@ -1,0 +1,143 @@
+!> Lengths, weights and tangents along a line of sides with two or three nodes, open or closed to a
+!> ring.
+module chain_geometry
+   use kinds, only: dp
+   use quadrature, only: gauss_point_3, gauss_weight_3
+   use shape_functions, only: side_shape, side_slope
+   implicit none
+   private
+   public :: arc_lengths, edge_lengths, tributary_lengths, tributary_rings, chain_tangents
+
+   real(dp), parameter :: two_pi = 6.283185307179586477_dp
+
+contains
+
+   !> Number of sides of a line.
+   pure integer function side_total(nodes, side_nodes, closed)
+      integer, intent(in) :: nodes, side_nodes
+      logical, intent(in) :: closed
+
+      side_total = (nodes - merge(0, 1, closed))/(side_nodes - 1)
+   end function side_total
+
+   !> Places of the nodes of a side along the line; the last side of a ring ends at the first node.
+   pure function places(side, side_nodes, nodes) result(place)
+      integer, intent(in) :: side, side_nodes, nodes
+      integer :: place(side_nodes)
+      integer :: q
+
+      place = [(mod((side - 1)*(side_nodes - 1) + q, nodes) + 1, q=0, side_nodes - 1)]
+   end function places
+
+   !> Length of a side between two of its points.
+   pure function length_between(x, from, to) result(length)
+      real(dp), intent(in) :: x(:, :), from, to
+      real(dp) :: length
+      integer :: g
+
+      length = 0.0_dp
+      do g = 1, 3
+         length = length + 0.5_dp*(to - from)*gauss_weight_3(g)*norm2(matmul(x, &
+            side_slope(size(x, 2), 0.5_dp*(from + to + (to - from)*gauss_point_3(g)))))
+      end do
+   end function length_between
+
+   !> Arc length of each node from the first.
+   pure function arc_lengths(x, side_nodes, closed) result(s)
+      real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
+      integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
+      logical, intent(in) :: closed       !! whether it is a ring
+      real(dp) :: s(size(x, 2))           !! (nodes) [length]
+      integer :: place(side_nodes), q, side
+
+      s(1) = 0.0_dp
+      do side = 1, side_total(size(x, 2), side_nodes, closed)
+         place = places(side, side_nodes, size(x, 2))
+         do q = 2, side_nodes
+            if (place(q) == 1) cycle
+            s(place(q)) = s(place(q - 1)) + length_between(x(:, place), &
+               2*(q - 2.0_dp)/(side_nodes - 1) - 1, 2*(q - 1.0_dp)/(side_nodes - 1) - 1)
+         end do
+      end do
+   end function arc_lengths
+
+   !> Length of the longest side that each node belongs to.
+   pure function edge_lengths(x, side_nodes, closed) result(edge)
+      real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
+      integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
+      logical, intent(in) :: closed       !! whether it is a ring
+      real(dp) :: edge(size(x, 2))        !! (nodes) [length]
+      integer :: place(side_nodes), side
+
+      edge = 0.0_dp
+      do side = 1, side_total(size(x, 2), side_nodes, closed)
+         place = places(side, side_nodes, size(x, 2))
+         edge(place) = max(edge(place), length_between(x(:, place), -1.0_dp, 1.0_dp))
+      end do
+   end function edge_lengths
+
+   !> Integral of each node's shape function along the line. A constant pressure so has constant
+   !> nodal force over weight, which is what makes the lumped recovery pass the patch test.
+   pure function tributary_lengths(x, side_nodes, closed) result(weight)
+      real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
+      integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
+      logical, intent(in) :: closed       !! whether it is a ring
+      real(dp) :: weight(size(x, 2))      !! (nodes) [length]
+
+      weight = integrals(x, side_nodes, closed, .false.)
+   end function tributary_lengths
+
+   !> The same over the surface that the line sweeps round the axis x = 0: times 2 pi x.
+   pure function tributary_rings(x, side_nodes, closed) result(weight)
+      real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
+      integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
+      logical, intent(in) :: closed       !! whether it is a ring
+      real(dp) :: weight(size(x, 2))      !! (nodes) [length^2]
+
+      weight = integrals(x, side_nodes, closed, .true.)
+   end function tributary_rings
+
+   pure function integrals(x, side_nodes, closed, about_axis) result(weight)
+      real(dp), intent(in) :: x(:, :)
+      integer, intent(in) :: side_nodes
+      logical, intent(in) :: closed, about_axis
+      real(dp) :: weight(size(x, 2))
+      real(dp) :: factor, psi(side_nodes)
+      integer :: g, place(side_nodes), side
+
+      weight = 0.0_dp
+      do side = 1, side_total(size(x, 2), side_nodes, closed)
+         place = places(side, side_nodes, size(x, 2))
+         do g = 1, 3
+            psi = side_shape(side_nodes, gauss_point_3(g))
+            factor = 1.0_dp
+            if (about_axis) factor = two_pi*dot_product(psi, x(1, place))
+            weight(place) = weight(place) + factor*gauss_weight_3(g)*psi* &
+               norm2(matmul(x(:, place), side_slope(side_nodes, gauss_point_3(g))))
+         end do
+      end do
+   end function integrals
+
+   !> Unit tangents at the nodes along the line; at a shared corner the direction midway.
+   pure function chain_tangents(x, side_nodes, closed) result(tangent)
+      real(dp), intent(in) :: x(:, :)      !! (2, nodes) the line [length]
+      integer, intent(in) :: side_nodes    !! nodes of a side, 2 or 3
+      logical, intent(in) :: closed        !! whether it is a ring
+      real(dp) :: tangent(2, size(x, 2))   !! (2, nodes)
+      real(dp) :: along(2)
+      integer :: place(side_nodes), node, q, side
+
+      tangent = 0.0_dp
+      do side = 1, side_total(size(x, 2), side_nodes, closed)
+         place = places(side, side_nodes, size(x, 2))
+         do q = 1, side_nodes
+            along = matmul(x(:, place), side_slope(side_nodes, 2*(q - 1.0_dp)/(side_nodes - 1) - 1))
+            tangent(:, place(q)) = tangent(:, place(q)) + along/norm2(along)
+         end do
+      end do
+      do node = 1, size(x, 2)
+         tangent(:, node) = tangent(:, node)/max(norm2(tangent(:, node)), tiny(1.0_dp))
+      end do
+   end function chain_tangents
+
+end module chain_geometry

@@ -1,0 +1,180 @@
+!> Whether two lines of nodes can be paired, and how it is said where they cannot.
+module pair_checks
+   use chain_geometry, only: chain_tangents
+   use contact_definitions, only: contact_definition_type
+   use errors, only: error_type, set_error, status_deck
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use surface_chains, only: surface_chain_type
+   use text, only: to_text
+   implicit none
+   private
+   public :: check_lines, check_sides, check_weights, check_opposite
+
+   !> Cosine between outward normals from which on faces look the same way: curved faces that part
+   !> far from the contact may stand at right angles there.
+   real(dp), parameter :: same_way = 0.1_dp
+
+   character(*), parameter :: way_out = '; mesh both surfaces with the same divisions, so that '// &
+      'their nodes face each other'
+
+contains
+
+   !> The two lines are of one kind and have equally many nodes; nodes of both are no more than
+   !> common ends.
+   subroutine check_lines(mesh, definition, slave, master, error)
+      type(mesh_type), intent(in) :: mesh                     !! the mesh
+      type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: slave           !! line of the slave
+      type(surface_chain_type), intent(in) :: master !! line of the master, along the slave's
+      type(error_type), allocatable, intent(out) :: error     !! what does not fit
+      character(:), allocatable :: message
+
+      associate (slave_name => mesh%surfaces(definition%slave)%name, &
+         master_name => mesh%surfaces(definition%master)%name)
+         if (slave%side_nodes /= master%side_nodes) then
+            message = 'surface '//slave_name//' has sides of '//to_text(slave%side_nodes)// &
+               ' nodes, surface '//master_name//' of '//to_text(master%side_nodes)// &
+               '; mesh both with elements with midside nodes, or both without'
+         else if (slave%closed .neqv. master%closed) then
+            message = 'one of the surfaces '//slave_name//' and '//master_name// &
+               ' is a closed ring, the other one an open line; let both be rings or both open'
+         else if (size(slave%nodes) /= size(master%nodes)) then
+            message = to_text(size(slave%nodes))//' slave nodes but '// &
+               to_text(size(master%nodes))//' master nodes; '//without_partner(mesh, slave%nodes, &
+               master%nodes)//way_out
+         else
+            message = shared_node(mesh, slave, master)
+         end if
+      end associate
+      if (len(message) > 0) call set_error(error, status_deck, &
+         'contact pair '//definition%name//': '//message)
+   end subroutine check_lines
+
+   !> Names the first node of the longer line that has no partner: to the node of the other line
+   !> that is nearest to it, another one is nearer.
+   function without_partner(mesh, slave, master) result(message)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: slave(:), master(:)
+      character(:), allocatable :: message
+
+      if (size(slave) > size(master)) then
+         message = 'slave node '//to_text(first_alone(mesh, slave, master))
+      else
+         message = 'master node '//to_text(first_alone(mesh, master, slave))
+      end if
+      message = message//' has no partner'
+   end function without_partner
+
+   pure integer function first_alone(mesh, long, short)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: long(:), short(:)
+      integer :: k, partner
+
+      do k = 1, size(long)
+         partner = nearest_place(mesh, short, long(k))
+         if (nearest_place(mesh, long, short(partner)) /= k) exit
+      end do
+      first_alone = mesh%node_number(long(min(k, size(long))))
+   end function first_alone
+
+   !> Place of the node that is nearest to another node.
+   pure integer function nearest_place(mesh, nodes, node)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: nodes(:), node
+
+      nearest_place = minloc((mesh%coordinates(1, nodes) - mesh%coordinates(1, node))**2 + &
+         (mesh%coordinates(2, nodes) - mesh%coordinates(2, node))**2, dim=1)
+   end function nearest_place
+
+   !> Says which node both lines have, unless both end in it; empty where there is none.
+   function shared_node(mesh, slave, master) result(message)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: slave, master
+      character(:), allocatable :: message
+      logical, allocatable :: of_slave(:)
+      integer :: inner, k, n
+
+      message = ''
+      n = size(slave%nodes)
+      inner = 0
+      allocate (of_slave(size(mesh%node_number)), source=.false.)
+      of_slave(slave%nodes) = .true.
+      do k = 1, n
+         if (of_slave(master%nodes(k))) then
+            if (.not. slave%closed .and. (k == 1 .or. k == n) .and. &
+               slave%nodes(k) == master%nodes(k)) cycle
+            message = 'node '//to_text(mesh%node_number(master%nodes(k)))//' belongs to both '// &
+               'surfaces; only common ends, as at the tip of a crack, may: end them there'
+            return
+         end if
+         inner = inner + 1
+      end do
+      if (inner == 0) message = 'both surfaces consist of the same nodes'
+   end function shared_node
+
+   !> Refuses faces that look the same way.
+   subroutine check_sides(mesh, name, slave, master, turned, first, last, error)
+      type(mesh_type), intent(in) :: mesh                 !! the mesh
+      character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: slave       !! line of the slave
+      type(surface_chain_type), intent(in) :: master      !! line of the master
+      logical, intent(in) :: turned(2) !! whether slave and master run against their chains
+      integer, intent(in) :: first, last                  !! pairs that are looked at
+      type(error_type), allocatable, intent(out) :: error !! the first such pair
+      real(dp) :: cosine
+      integer :: k
+
+      associate (slave_tangent => chain_tangents(mesh%coordinates(:, slave%nodes), &
+         slave%side_nodes, slave%closed), &
+         master_tangent => chain_tangents(mesh%coordinates(:, master%nodes), &
+         master%side_nodes, master%closed))
+         do k = first, last
+            cosine = dot_product(slave_tangent(:, k), master_tangent(:, k))
+            if (turned(1) .neqv. turned(2)) cosine = -cosine
+            if (cosine <= same_way) cycle
+            call set_error(error, status_deck, 'contact pair '//name//': at slave node '// &
+               to_text(mesh%node_number(slave%nodes(k)))//' and master node '// &
+               to_text(mesh%node_number(master%nodes(k)))//' both surfaces face the same way; '// &
+               'name the faces that look at each other')
+            return
+         end do
+      end associate
+   end subroutine check_sides
+
+   !> Every node has a weight; 0 is that of a corner on the axis.
+   subroutine check_weights(mesh, name, slave, weight, about_axis, error)
+      type(mesh_type), intent(in) :: mesh                 !! the mesh
+      character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
+      integer, intent(in) :: slave(:)                     !! (m) slave nodes
+      real(dp), intent(in) :: weight(:)                   !! (m) [length^2]
+      logical, intent(in) :: about_axis                   !! whether the model is axisymmetric
+      type(error_type), allocatable, intent(out) :: error !! the node with the smallest weight
+
+      if (all(weight > 0.0_dp .or. (about_axis .and. weight >= 0.0_dp))) return
+      call set_error(error, status_deck, 'contact pair '//name// &
+         ': no length of the face belongs to slave node '// &
+         to_text(mesh%node_number(slave(minloc(weight, dim=1))))// &
+         '; its midside nodes are too far from the middle')
+   end subroutine check_weights
+
+   !> Refuses a pair whose tangential offset exceeds half of what is allowed it.
+   subroutine check_opposite(mesh, name, slave, master, tangent, twice_allowed, error)
+      type(mesh_type), intent(in) :: mesh                 !! the mesh
+      character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
+      integer, intent(in) :: slave(:), master(:)          !! (m) nodes
+      real(dp), intent(in) :: tangent(:, :)               !! (2, m) unit tangents
+      real(dp), intent(in) :: twice_allowed(:)            !! (m) element edge or gap [length]
+      type(error_type), allocatable, intent(out) :: error !! the first such pair
+      real(dp) :: offset(size(slave))
+      integer :: k
+
+      offset = abs(sum(tangent*(mesh%coordinates(:, master) - mesh%coordinates(:, slave)), dim=1))
+      k = findloc(offset > 0.5_dp*twice_allowed, .true., dim=1)
+      if (k == 0) return
+      call set_error(error, status_deck, 'contact pair '//name//': slave node '// &
+         to_text(mesh%node_number(slave(k)))//' and master node '// &
+         to_text(mesh%node_number(master(k)))//' are not opposite each other'//way_out)
+   end subroutine check_opposite
+
+end module pair_checks

@@ -1,0 +1,246 @@
+!> Data cards of *DLOAD, *DFLUX and *FILM: element or set, label, values.
+module deck_builder_element_loads
+   use card_values, only: check_extra, field_place, need_field
+   use cards, only: data_card_type
+   use deck_context, only: deck_context_type, read_target
+   use deck_report, only: deck_report_type
+   use element_kinds, only: element_corner_count
+   use kinds, only: dp
+   use load_requests, only: request_type
+   use model, only: model_type
+   use steps, only: load_body_force, load_body_heat, load_centrifugal, load_face_heat, &
+      load_film_coefficient, load_film_sink, load_gravity, load_pressure
+   use text, only: append, nearest_known, string_type, to_text, to_upper
+   implicit none
+   private
+   public :: build_element_load, report_label, need_vector
+
+contains
+
+   !> Takes one data card.
+   subroutine build_element_load(keyword, data, request, film_amplitude, model, context, report)
+      character(*), intent(in) :: keyword                  !! DLOAD, DFLUX or FILM
+      type(data_card_type), intent(in) :: data             !! the card
+      type(request_type), intent(inout) :: request         !! step, amplitude, card and place
+      integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
+      type(model_type), intent(in) :: model                !! mesh and sets
+      type(deck_context_type), intent(inout) :: context    !! receives the requests
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: label, labels
+      logical :: valid
+
+      valid = .true.
+      call read_target(data, 1, 'element', context%element_index, model%mesh%element_sets, report, &
+         request%item, request%set, valid)
+      call need_field(data, 2, 'label of the load', report, label, valid)
+      if (len(label) == 0) return
+      label = to_upper(label)
+      request%component = 1
+      select case (keyword)
+      case ('DLOAD')
+         labels = 'P1/P2/P3/P4/BX/BY/GRAV/CENTRIF'
+      case ('DFLUX')
+         labels = 'S1/S2/S3/S4/BF'
+      case default
+         labels = 'F1/F2/F3/F4'
+      end select
+      if (index('/'//labels//'/', '/'//label//'/') == 0) then
+         call report_label(keyword, label, labels, data, report)
+         return
+      end if
+      if (scan(label(2:), '1234') == 1) then
+         request%component = index('1234', label(2:2))
+         call check_face(data, request, model, context, report, valid)
+      end if
+      select case (label)
+      case ('GRAV')
+         call build_gravity(data, request, context, report, valid)
+      case ('CENTRIF')
+         call build_rotation(data, request, context, report, valid)
+      case ('F1', 'F2', 'F3', 'F4')
+         call build_film(data, request, film_amplitude, context, report, valid)
+      case default
+         call build_simple_load(label, data, request, context, report, valid)
+      end select
+   end subroutine build_element_load
+
+   !> Reports a label that a keyword does not know.
+   subroutine report_label(keyword, label, labels, data, report)
+      character(*), intent(in) :: keyword                  !! keyword
+      character(*), intent(in) :: label                    !! what was written
+      character(*), intent(in) :: labels                   !! what is known, separated by slashes
+      type(data_card_type), intent(in) :: data             !! the card; the label is field 2
+      type(deck_report_type), intent(inout) :: report      !! receives the error
+      type(string_type), allocatable :: names(:)
+      integer :: first, slash
+
+      first = 1
+      do
+         slash = index(labels(first:)//'/', '/')
+         call append(names, labels(first:first + slash - 2))
+         first = first + slash
+         if (first > len(labels)) exit
+      end do
+      call report%error(field_place(data, 2), 'unknown load '//label//' of *'//keyword// &
+         nearest_known(label, names))
+   end subroutine report_label
+
+   !> Takes three fields in a row; of fields that are missing the first is reported.
+   subroutine need_vector(data, first, what, report, vector, valid)
+      type(data_card_type), intent(in) :: data             !! the card
+      integer, intent(in) :: first                         !! position of the first field
+      character(*), intent(in) :: what                     !! what they are
+      type(deck_report_type), intent(inout) :: report      !! receives the error
+      real(dp), intent(out) :: vector(3)                   !! their values, zero after an error
+      logical, intent(inout) :: valid   !! becomes false after an error; then nothing more is read
+      integer :: i
+
+      vector = 0.0_dp
+      do i = 1, 3
+         if (valid) call need_field(data, first + i - 1, what//' '//'xyz'(i:i), report, vector(i), &
+            valid)
+      end do
+   end subroutine need_vector
+
+   !> Every element of the request has the side.
+   subroutine check_face(data, request, model, context, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      type(deck_context_type), intent(in) :: context
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      integer, allocatable :: elements(:)
+      integer :: i
+
+      if (.not. valid) return
+      elements = [request%item]
+      if (request%set > 0) elements = model%mesh%element_sets(request%set)%members
+      do i = 1, size(elements)
+         if (.not. context%element_valid(elements(i))) cycle
+         associate (sides => element_corner_count(model%mesh%element_kind(elements(i))))
+            if (request%component <= sides) cycle
+            call report%error(field_place(data, 2), 'element '// &
+               to_text(model%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
+         end associate
+         valid = .false.
+         return
+      end do
+   end subroutine check_face
+
+   !> A load with one value.
+   subroutine build_simple_load(label, data, request, context, report, valid)
+      character(*), intent(in) :: label
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      character(:), allocatable :: what
+
+      select case (label)
+      case ('BX', 'BY')
+         request%kind = load_body_force
+         request%component = index('XY', label(2:2))
+         what = 'force per volume'
+      case ('BF')
+         request%kind = load_body_heat
+         what = 'heat per volume'
+      case ('P1', 'P2', 'P3', 'P4')
+         request%kind = load_pressure
+         what = 'pressure'
+      case default
+         request%kind = load_face_heat
+         what = 'heat flux'
+      end select
+      call need_field(data, 3, what, report, request%value, valid)
+      call check_extra(data, 3, 'element or set, '//label//', '//what, report)
+      if (valid) call context%loads%add(request)
+   end subroutine build_simple_load
+
+   !> Magnitude and direction; along x and along y the gravity is a load of its own.
+   subroutine build_gravity(data, request, context, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      real(dp) :: magnitude, direction(3)
+      integer :: i
+
+      call need_field(data, 3, 'magnitude', report, magnitude, valid)
+      call need_vector(data, 4, 'direction', report, direction, valid)
+      call check_extra(data, 6, 'element or set, GRAV, magnitude, direction x, y, z', report)
+      if (.not. valid) return
+      if (abs(direction(3)) > 0.0_dp) then
+         call report%error(field_place(data, 6), 'gravity acts in the plane: z must be 0')
+      else if (norm2(direction) <= 0.0_dp) then
+         call report%error(field_place(data, 4), 'the direction is zero')
+      else
+         request%kind = load_gravity
+         do i = 1, 2
+            if (abs(direction(i)) <= 0.0_dp) cycle
+            request%component = i
+            request%value = magnitude*direction(i)/norm2(direction)
+            call context%loads%add(request)
+         end do
+      end if
+   end subroutine build_gravity
+
+   !> Speed squared, a point and the direction of the axis, which must be the y axis.
+   subroutine build_rotation(data, request, context, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      real(dp) :: point(3), direction(3)
+
+      call need_field(data, 3, 'speed squared', report, request%value, valid)
+      call need_vector(data, 4, 'point of the axis', report, point, valid)
+      call need_vector(data, 7, 'direction of the axis', report, direction, valid)
+      call check_extra(data, 9, &
+         'element or set, CENTRIF, speed squared, point x, y, z, direction x, y, z', report)
+      if (.not. valid) return
+      if (request%value < 0.0_dp) then
+         call report%error(field_place(data, 3), 'the square of a speed is not negative')
+      else if (norm2(point([1, 3])) > 0.0_dp) then
+         call report%error(field_place(data, 4), 'the axis must be the y axis: x and z are 0 on it')
+      else if (norm2(direction) <= 0.0_dp) then
+         call report%error(field_place(data, 7), 'the direction is zero')
+      else if (norm2(direction([1, 3])) > 0.0_dp) then
+         call report%error(field_place(data, 7), 'the axis must be the y axis')
+      else
+         request%kind = load_centrifugal
+         call context%loads%add(request)
+      end if
+   end subroutine build_rotation
+
+   !> Sink temperature and film coefficient, each with its amplitude.
+   subroutine build_film(data, request, film_amplitude, context, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(in) :: request
+      integer, intent(in) :: film_amplitude
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      type(request_type) :: sink, film
+
+      sink = request
+      film = request
+      film%amplitude = film_amplitude
+      sink%kind = load_film_sink
+      film%kind = load_film_coefficient
+      call need_field(data, 3, 'sink temperature', report, sink%value, valid)
+      call need_field(data, 4, 'film coefficient', report, film%value, valid)
+      call check_extra(data, 4, 'element or set, face, sink temperature, film coefficient', report)
+      if (.not. valid) return
+      if (film%value <= 0.0_dp) then
+         call report%error(field_place(data, 4), 'a film coefficient must be positive')
+         return
+      end if
+      call context%loads%add(film)
+      call context%loads%add(sink)
+   end subroutine build_film
+
+end module deck_builder_element_loads

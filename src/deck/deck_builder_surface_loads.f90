@@ -1,0 +1,117 @@
+!> Data cards of *DSLOAD: surface, label, values.
+module deck_builder_surface_loads
+   use card_values, only: check_extra, field_place, need_field
+   use cards, only: data_card_type
+   use deck_builder_element_loads, only: need_vector, report_label
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use kinds, only: dp
+   use load_requests, only: request_type
+   use mesh, only: surface_type
+   use model, only: model_type
+   use steps, only: load_pressure, load_traction
+   use text, only: nearest_known, string_type, to_upper
+   implicit none
+   private
+   public :: build_surface_load
+
+contains
+
+   !> Takes one data card.
+   subroutine build_surface_load(data, request, model, context, report)
+      type(data_card_type), intent(in) :: data             !! the card
+      type(request_type), intent(inout) :: request         !! step, amplitude, card and place
+      type(model_type), intent(in) :: model                !! surfaces
+      type(deck_context_type), intent(inout) :: context    !! receives the requests
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: label
+      integer :: surface
+      logical :: valid
+
+      valid = .true.
+      call read_surface(data, model%mesh%surfaces, report, surface, valid)
+      call need_field(data, 2, 'P or TRVEC', report, label, valid)
+      if (len(label) == 0) return
+      label = to_upper(label)
+      request%set = 0
+      select case (label)
+      case ('P')
+         call need_field(data, 3, 'pressure', report, request%value, valid)
+         call check_extra(data, 3, 'surface, P, pressure', report)
+         request%kind = load_pressure
+         if (valid) call add_faces(model%mesh%surfaces(surface), request, 1, 0, context)
+      case ('TRVEC')
+         call build_traction(data, request, model, surface, context, report, valid)
+      case default
+         call report_label('DSLOAD', label, 'P/TRVEC', data, report)
+      end select
+   end subroutine build_surface_load
+
+   subroutine read_surface(data, surfaces, report, surface, valid)
+      type(data_card_type), intent(in) :: data
+      type(surface_type), intent(in) :: surfaces(:)
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: surface
+      logical, intent(inout) :: valid
+      type(string_type) :: names(size(surfaces))
+      character(:), allocatable :: name
+      integer :: i
+
+      surface = 0
+      call need_field(data, 1, 'surface', report, name, valid)
+      if (len(name) == 0) return
+      name = to_upper(name)
+      do i = 1, size(surfaces)
+         names(i)%value = surfaces(i)%name
+         if (names(i)%value == name) surface = i
+      end do
+      if (surface > 0) return
+      valid = .false.
+      call report%error(field_place(data, 1), 'unknown surface '//name//nearest_known(name, names))
+   end subroutine read_surface
+
+   !> Magnitude and direction of a traction vector.
+   subroutine build_traction(data, request, model, surface, context, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: surface
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      real(dp) :: magnitude, direction(3)
+      integer :: i
+
+      call need_field(data, 3, 'magnitude', report, magnitude, valid)
+      call need_vector(data, 4, 'direction', report, direction, valid)
+      call check_extra(data, 6, 'surface, TRVEC, magnitude, direction x, y, z', report)
+      if (.not. valid) return
+      if (abs(direction(3)) > 0.0_dp) then
+         call report%error(field_place(data, 6), 'tractions act in the plane: z must be 0')
+      else if (norm2(direction) <= 0.0_dp) then
+         call report%error(field_place(data, 4), 'the direction is zero')
+      else
+         request%kind = load_traction
+         do i = 1, 2
+            request%value = magnitude*direction(i)/norm2(direction)
+            call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, context)
+         end do
+      end if
+   end subroutine build_traction
+
+   !> One request a face, its component a multiple of the face's number and an offset.
+   subroutine add_faces(surface, request, multiple, offset, context)
+      type(surface_type), intent(in) :: surface
+      type(request_type), intent(inout) :: request
+      integer, intent(in) :: multiple, offset
+      type(deck_context_type), intent(inout) :: context
+      integer :: i
+
+      do i = 1, size(surface%faces, 2)
+         request%item = surface%faces(1, i)
+         request%component = multiple*surface%faces(2, i) + offset
+         call context%loads%add(request)
+      end do
+   end subroutine add_faces
+
+end module deck_builder_surface_loads

@@ -1,0 +1,156 @@
+!> What only shows of loads once all cards are read: whether they act on something, and in a step
+!> that has use for them.
+module load_checks
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use element_kinds, only: axisymmetric
+   use load_requests, only: request_type
+   use model, only: model_type
+   use steps, only: analysis_static, dof_temperature, load_body_heat, load_centrifugal, &
+      load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
+      load_temperature
+   implicit none
+   private
+   public :: check_loads, first_heat
+
+contains
+
+   !> Checks the requests before the model is refined.
+   subroutine check_loads(context, model, report)
+      type(deck_context_type), intent(in) :: context       !! requests
+      type(model_type), intent(in) :: model                !! the model
+      type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
+      logical :: used(0:size(model%mesh%node_number))
+      integer :: i, card
+
+      used = .false.
+      used([model%mesh%element_nodes]) = .true.
+      card = 0
+      do i = 1, context%loads%count
+         associate (request => context%loads%items(i))
+            ! A data card may make several requests.
+            if (request%card == card) cycle
+            card = request%card
+            select case (request%kind)
+            case (load_force, load_nodal_heat)
+               call check_nodes(request, model, used, report)
+            case (load_gravity)
+               call check_density(request, model, 'GRAV', report)
+            case (load_centrifugal)
+               call check_density(request, model, 'CENTRIF', report)
+               call check_axis(request, model, report)
+            case (load_temperature)
+               if (model%steps(request%step)%analysis /= analysis_static) call report%error( &
+                  request%place, 'the step solves for temperatures; *BOUNDARY with degree of '// &
+                  'freedom 11 prescribes them')
+            end select
+            if (is_heat(request%kind)) call check_effect(request, model, 'a heat load', report)
+         end associate
+      end do
+      do i = 1, context%boundaries%count
+         associate (request => context%boundaries%items(i))
+            if (request%component == dof_temperature) call check_effect(request, model, &
+               'a temperature', report)
+         end associate
+      end do
+   end subroutine check_loads
+
+   !> Index of the first step in which heat is loaded or a temperature prescribed; that behind the
+   !> last step when there is none.
+   pure integer function first_heat(context, model)
+      type(deck_context_type), intent(in) :: context   !! requests
+      type(model_type), intent(in) :: model            !! steps
+      integer :: i
+
+      first_heat = size(model%steps) + 1
+      do i = 1, context%boundaries%count
+         if (context%boundaries%items(i)%component == dof_temperature) then
+            first_heat = min(first_heat, max(1, context%boundaries%items(i)%step))
+         end if
+      end do
+      do i = 1, context%loads%count
+         if (is_heat(context%loads%items(i)%kind)) then
+            first_heat = min(first_heat, context%loads%items(i)%step)
+         end if
+      end do
+   end function first_heat
+
+   pure logical function is_heat(kind)
+      integer, intent(in) :: kind
+
+      is_heat = any(kind == [load_nodal_heat, load_face_heat, load_body_heat, &
+         load_film_coefficient])
+   end function is_heat
+
+   !> What acts on nodes acts on elements.
+   subroutine check_nodes(request, model, used, report)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: used(0:)
+      type(deck_report_type), intent(inout) :: report
+
+      if (request%set > 0) then
+         if (all(used(model%mesh%node_sets(request%set)%members))) return
+      else if (used(request%item)) then
+         return
+      end if
+      if (request%kind == load_force) then
+         call report%error(request%place, 'a force on a node that no element has')
+      else
+         call report%error(request%place, 'heat on a node that no element has')
+      end if
+   end subroutine check_nodes
+
+   !> Every material of the loaded elements has a density.
+   subroutine check_density(request, model, label, report)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      character(*), intent(in) :: label
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: elements(:)
+      integer :: i, section, m
+
+      elements = elements_of(request, model)
+      do i = 1, size(elements)
+         section = model%mesh%element_section(elements(i))
+         if (section == 0) cycle
+         m = model%sections(section)%material
+         if (m == 0) cycle
+         if (model%materials(m)%has_density) cycle
+         call report%error(request%place, 'material '//model%materials(m)%name// &
+            ' has no *DENSITY, which '//label//' needs')
+         return
+      end do
+   end subroutine check_density
+
+   !> CENTRIF turns a body of revolution round its axis.
+   subroutine check_axis(request, model, report)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+
+      if (all(model%mesh%element_plane(elements_of(request, model)) == axisymmetric)) return
+      call report%error(request%place, 'CENTRIF is for axisymmetric elements only')
+   end subroutine check_axis
+
+   pure function elements_of(request, model) result(elements)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      integer, allocatable :: elements(:)
+
+      elements = [request%item]
+      if (request%set > 0) elements = model%mesh%element_sets(request%set)%members
+   end function elements_of
+
+   !> Warns of what comes after the last step that solves heat.
+   subroutine check_effect(request, model, what, report)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      character(*), intent(in) :: what
+      type(deck_report_type), intent(inout) :: report
+
+      if (any(model%steps(max(1, request%step):)%analysis /= analysis_static)) return
+      call report%warning(request%place, what//' without effect: no step from here on solves heat')
+   end subroutine check_effect
+
+end module load_checks

@@ -1,0 +1,235 @@
+!> What only shows once all elements are read: whether their planes agree, whether none is turned
+!> over, whether they meet along whole sides.
+module mesh_checks
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use element_kinds, only: axisymmetric, element_corner_count, element_node_count, side_node_count, &
+      side_nodes
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use quadrature, only: integration_rule, most_points, point_count
+   use shape_functions, only: element_gradients
+   use sorting, only: sort_order
+   use text, only: to_text
+   implicit none
+   private
+   public :: check_planes, check_jacobians, check_sides
+
+   !> One side of one element.
+   type :: side_type
+      integer :: element = 0   !! element index
+      integer :: face = 0      !! its side, 1, 2, ...
+      integer :: low = 0       !! the corner with the smaller index
+      integer :: high = 0      !! the other
+      integer :: middle = 0    !! midside node, 0 if there is none
+   end type side_type
+
+contains
+
+   !> Elements are all axisymmetric or none is; the radius is not negative.
+   subroutine check_planes(context, mesh, report)
+      type(deck_context_type), intent(in) :: context       !! places for messages
+      type(mesh_type), intent(in) :: mesh                  !! the mesh
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: e, q, first
+      logical :: turns(size(mesh%element_plane))
+
+      turns = mesh%element_plane == axisymmetric
+      first = findloc(context%element_valid, .true., dim=1)
+      do e = 1, size(turns)
+         if (.not. context%element_valid(e)) cycle
+         if (turns(e) .neqv. turns(first)) then
+            call report%error(context%element_place(e), 'element '// &
+               to_text(mesh%element_number(e))//' and element '// &
+               to_text(mesh%element_number(first))// &
+               ': axisymmetric and plane elements do not go together')
+            return
+         end if
+      end do
+      do e = 1, size(turns)
+         if (.not. (turns(e) .and. context%element_valid(e))) cycle
+         do q = 1, element_node_count(mesh%element_kind(e))
+            if (mesh%coordinates(1, mesh%element_nodes(q, e)) >= 0.0_dp) cycle
+            call report%error(context%element_place(e), 'element '// &
+               to_text(mesh%element_number(e))//' is axisymmetric: x is the radius, but node '// &
+               to_text(mesh%node_number(mesh%element_nodes(q, e)))//' has x < 0')
+            exit
+         end do
+      end do
+   end subroutine check_planes
+
+   !> The Jacobian is positive at the Gauss points of every element.
+   subroutine check_jacobians(context, mesh, report)
+      type(deck_context_type), intent(in) :: context       !! places for messages
+      type(mesh_type), intent(in) :: mesh                  !! the mesh
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: advice
+      integer :: e
+
+      do e = 1, size(mesh%element_number)
+         if (.not. context%element_valid(e)) cycle
+         associate (kind => mesh%element_kind(e))
+            if (is_sound(kind, &
+               mesh%coordinates(:, mesh%element_nodes(:element_node_count(kind), e)))) cycle
+            advice = ': its corners must go round anticlockwise'
+            if (side_node_count(kind) == 3) advice = advice// &
+               ', its midside nodes lie near the middle'
+         end associate
+         call report%error(context%element_place(e), 'the Jacobian of element '// &
+            to_text(mesh%element_number(e))//' is not positive'//advice)
+      end do
+   end subroutine check_jacobians
+
+   pure logical function is_sound(kind, coordinates)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: coordinates(:, :)
+      real(dp) :: points(2, most_points), weights(most_points)
+      real(dp) :: gradients(2, size(coordinates, 2)), jacobian
+      integer :: g
+
+      is_sound = .false.
+      call integration_rule(kind, points, weights)
+      do g = 1, point_count(kind)
+         call element_gradients(kind, coordinates, points(:, g), gradients, jacobian)
+         if (.not. jacobian > 0.0_dp) return
+      end do
+      is_sound = .true.
+   end function is_sound
+
+   !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is free.
+   subroutine check_sides(context, mesh, report)
+      type(deck_context_type), intent(in) :: context       !! places for messages
+      type(mesh_type), intent(in) :: mesh                  !! the mesh
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(side_type) :: sides(4*size(mesh%element_number))
+      integer, allocatable :: order(:)
+      integer :: uses(4, size(mesh%element_number)), first, last, n
+
+      call list_sides(context, mesh, sides, n)
+      order = sort_order(sides(:n)%high)
+      order = order(sort_order(sides(order)%low))
+      uses = 0
+      first = 1
+      do while (first <= n)
+         last = first
+         do while (last < n)
+            if (sides(order(last + 1))%low /= sides(order(first))%low) exit
+            if (sides(order(last + 1))%high /= sides(order(first))%high) exit
+            last = last + 1
+         end do
+         call check_meeting(context, mesh, sides(order(first:last)), uses, report)
+         first = last + 1
+      end do
+      call check_middles(context, mesh, sides(:n), report)
+      call check_faces(context, mesh, uses, report)
+   end subroutine check_sides
+
+   !> The sides of all elements whose nodes are known, in the order of the elements.
+   pure subroutine list_sides(context, mesh, sides, n)
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(side_type), intent(inout) :: sides(:)
+      integer, intent(out) :: n
+      integer :: e, f, nodes(3)
+
+      n = 0
+      do e = 1, size(mesh%element_number)
+         if (.not. context%element_valid(e)) cycle
+         associate (kind => mesh%element_kind(e))
+            do f = 1, element_corner_count(kind)
+               n = n + 1
+               nodes(:side_node_count(kind)) = mesh%element_nodes(side_nodes(kind, f), e)
+               sides(n) = side_type(e, f, minval(nodes([1, side_node_count(kind)])), &
+                  maxval(nodes([1, side_node_count(kind)])), 0)
+               if (side_node_count(kind) == 3) sides(n)%middle = nodes(2)
+            end do
+         end associate
+      end do
+   end subroutine list_sides
+
+   !> Checks the elements that meet between two corners.
+   subroutine check_meeting(context, mesh, sides, uses, report)
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(side_type), intent(in) :: sides(:)
+      integer, intent(inout) :: uses(:, :)
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: fault
+      integer :: i
+
+      do i = 1, size(sides)
+         uses(sides(i)%face, sides(i)%element) = size(sides)
+      end do
+      do i = 2, size(sides)
+         if (i > 2) then
+            fault = 'is the third on the side'
+         else if (sides(1)%middle == sides(2)%middle) then
+            cycle
+         else if (min(sides(1)%middle, sides(2)%middle) == 0) then
+            fault = 'has another number of nodes than its neighbour '// &
+               to_text(mesh%element_number(sides(1)%element))//' on the side'
+         else
+            fault = 'has another midside node than its neighbour '// &
+               to_text(mesh%element_number(sides(1)%element))//' on the side'
+         end if
+         call report%error(context%element_place(sides(i)%element), 'element '// &
+            to_text(mesh%element_number(sides(i)%element))//' '//fault//' between nodes '// &
+            to_text(mesh%node_number(sides(i)%low))//' and '// &
+            to_text(mesh%node_number(sides(i)%high)))
+      end do
+   end subroutine check_meeting
+
+   !> A midside node is no corner, and belongs to one side.
+   subroutine check_middles(context, mesh, sides, report)
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(side_type), intent(in) :: sides(:)
+      type(deck_report_type), intent(inout) :: report
+      logical :: corner(size(mesh%node_number))
+      integer :: first(size(mesh%node_number)), i
+
+      corner = .false.
+      corner(sides%low) = .true.
+      corner(sides%high) = .true.
+      first = 0
+      do i = 1, size(sides)
+         associate (node => sides(i)%middle)
+            if (node == 0) cycle
+            if (first(node) == 0) first(node) = i
+            if (.not. corner(node) .and. sides(first(node))%low == sides(i)%low .and. &
+               sides(first(node))%high == sides(i)%high) cycle
+            call report%error(context%element_place(sides(i)%element), 'element '// &
+               to_text(mesh%element_number(sides(i)%element))// &
+               ' does not share the side with midside node '//to_text(mesh%node_number(node))// &
+               ' with its neighbour')
+         end associate
+      end do
+   end subroutine check_middles
+
+   !> Faces of surfaces exist and are free.
+   subroutine check_faces(context, mesh, uses, report)
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: uses(:, :)   !! (4, elements) elements that meet at each side
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: face
+      integer :: e, f, i, s
+
+      do s = 1, size(mesh%surfaces)
+         do i = 1, size(mesh%surfaces(s)%faces, 2)
+            e = mesh%surfaces(s)%faces(1, i)
+            f = mesh%surfaces(s)%faces(2, i)
+            if (.not. context%element_valid(e)) cycle
+            face = 'face S'//to_text(f)//' of element '//to_text(mesh%element_number(e))// &
+               ' in surface '//mesh%surfaces(s)%name
+            if (f > element_corner_count(mesh%element_kind(e))) then
+               call report%error(context%surface_place(s), face// &
+                  ' does not exist: the element is a triangle')
+            else if (uses(f, e) > 1) then
+               call report%error(context%surface_place(s), face//' lies inside a body')
+            end if
+         end do
+      end do
+   end subroutine check_faces
+
+end module mesh_checks

@@ -1,0 +1,90 @@
+!> Properties of a material at a point of an element, along x, y and z: turned from the axes of the
+!> material, and condensed in plane stress.
+module point_properties
+   use element_kinds, only: plane_stress
+   use kinds, only: dp
+   use materials, only: material_type
+   use orientations, only: material_axes, orientation_type, strain_rotation
+   use quadrature, only: integration_rule, most_points, point_count
+   use shape_functions, only: element_shape
+   implicit none
+   private
+   public :: elasticity_in, thermal_modulus_in, conductivity_in, axes_at_points
+
+contains
+
+   !> Axes 1 and 2 of the material at the integration points of an element, as columns.
+   pure function axes_at_points(kind, coordinates, orientations, orientation) result(axes)
+      integer, intent(in) :: kind                             !! kind of the element
+      real(dp), intent(in) :: coordinates(:, :)               !! (2, nodes of the kind) [length]
+      type(orientation_type), intent(in) :: orientations(:)   !! all orientations
+      integer, intent(in) :: orientation                      !! which, or 0 for x and y
+      real(dp) :: axes(2, 2, most_points)                     !! used up to point_count(kind)
+      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
+      integer :: g
+
+      axes = 0.0_dp
+      call integration_rule(kind, points, weights)
+      do g = 1, size(weights)
+         axes(:, :, g) = material_axes(orientations, orientation, &
+            matmul(coordinates, element_shape(kind, points(:, g))))
+      end do
+   end function axes_at_points
+
+   !> E of (1.1): stresses xx, yy, zz, xy from strains xx, yy, zz and the angle xy. In plane stress
+   !> eps_zz is eliminated by sigma_zz = 0, and its row and column are zero.
+   pure function elasticity_in(plane, material, axes) result(e)
+      integer, intent(in) :: plane                  !! plane_strain, ...
+      type(material_type), intent(in) :: material   !! the material
+      real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
+      real(dp) :: e(4, 4)                           !! [stress]
+      real(dp) :: across(4)
+      integer :: j
+
+      e = in_global_axes(material, axes)
+      if (plane /= plane_stress) return
+      across = e(:, 3)/e(3, 3)
+      do j = 1, 4
+         e(:, j) = e(:, j) - across*e(3, j)
+      end do
+      e(3, :) = 0.0_dp
+      e(:, 3) = 0.0_dp
+   end function elasticity_in
+
+   !> beta = E:alpha of (1.1): the stress that holds back a unit temperature, in plane stress with
+   !> sigma_zz = 0.
+   pure function thermal_modulus_in(plane, material, axes) result(beta)
+      integer, intent(in) :: plane                  !! plane_strain, ...
+      type(material_type), intent(in) :: material   !! the material
+      real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
+      real(dp) :: beta(4)                           !! xx, yy, zz, xy [stress/temperature]
+      real(dp) :: e(4, 4)
+
+      beta = matmul(material%elasticity, [material%expansion, 0.0_dp])
+      beta = matmul(transpose(strain_rotation(axes)), beta)
+      if (plane /= plane_stress) return
+      e = in_global_axes(material, axes)
+      beta = beta - e(:, 3)*(beta(3)/e(3, 3))
+      beta(3) = 0.0_dp
+   end function thermal_modulus_in
+
+   !> K of (1.4).
+   pure function conductivity_in(material, axes) result(k)
+      type(material_type), intent(in) :: material   !! the material
+      real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
+      real(dp) :: k(2, 2)                           !! [power/(length temperature)]
+
+      k = matmul(axes, transpose(axes*spread(material%conductivity, 1, 2)))
+   end function conductivity_in
+
+   pure function in_global_axes(material, axes) result(e)
+      type(material_type), intent(in) :: material
+      real(dp), intent(in) :: axes(2, 2)
+      real(dp) :: e(4, 4)
+      real(dp) :: rotation(4, 4)
+
+      rotation = strain_rotation(axes)
+      e = matmul(transpose(rotation), matmul(material%elasticity, rotation))
+   end function in_global_axes
+
+end module point_properties

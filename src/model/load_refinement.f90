@@ -1,0 +1,129 @@
+!> Loads of a model that is refined: on a face they go to the two children at it, on an element to
+!> all four; those on nodes stay there, but for temperatures, which have values at new nodes too.
+module load_refinement
+   use element_kinds, only: element_corner_count
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use mesh_division, only: child_element, division_type, refined_members, refined_values
+   use steps, only: load_body_force, load_body_heat, load_centrifugal, &
+      load_face_heat, load_film_coefficient, load_film_sink, load_gravity, load_pressure, &
+      load_temperature, load_traction, load_type, step_type
+   implicit none
+   private
+   public :: refine_loads
+
+contains
+
+   !> Refines the loads of all steps.
+   subroutine refine_loads(division, mesh, steps)
+      type(division_type), intent(in) :: division   !! the division
+      type(mesh_type), intent(in) :: mesh           !! the mesh before
+      type(step_type), intent(inout) :: steps(:)    !! the steps
+      type(load_type), allocatable :: refined(:)
+      integer :: s
+
+      do s = 1, size(steps)
+         if (.not. allocated(steps(s)%loads)) cycle
+         call refine_step(division, mesh, steps(s)%loads, refined)
+         call move_alloc(refined, steps(s)%loads)
+      end do
+   end subroutine refine_loads
+
+   subroutine refine_step(division, mesh, loads, refined)
+      type(division_type), intent(in) :: division
+      type(mesh_type), intent(in) :: mesh
+      type(load_type), intent(in) :: loads(:)
+      type(load_type), allocatable, intent(out) :: refined(:)
+      type(load_type), allocatable :: added(:)
+      integer :: children(4), i, n, parts
+
+      call add_temperatures(division, mesh, loads, added)
+      allocate(refined(4*size(loads) + size(added)))
+      n = 0
+      do i = 1, size(loads)
+         call find_children(division%elements, mesh%element_kind, loads(i), children, parts)
+         if (parts == 0) then
+            parts = 1
+            children(1) = loads(i)%item
+         end if
+         refined(n + 1:n + parts) = loads(i)
+         refined(n + 1:n + parts)%item = children(:parts)
+         n = n + parts
+      end do
+      refined(n + 1:n + size(added)) = added
+      refined = refined(:n + size(added))
+   end subroutine refine_step
+
+   !> Children that a load on an element goes to; none for a load on a node.
+   pure subroutine find_children(elements, kinds, load, children, parts)
+      integer, intent(in) :: elements
+      integer, intent(in) :: kinds(:)
+      type(load_type), intent(in) :: load
+      integer, intent(out) :: children(4)
+      integer, intent(out) :: parts
+      integer :: child, face
+
+      children = 0
+      parts = 0
+      face = load%component
+      select case (load%kind)
+      case (load_body_force, load_gravity, load_centrifugal, load_body_heat)
+         parts = 4
+         children = [(child_element(elements, load%item, child), child=1, 4)]
+      case (load_pressure, load_traction, load_face_heat, load_film_coefficient, load_film_sink)
+         parts = 2
+         ! A traction's component counts two directions a face.
+         if (load%kind == load_traction) face = (load%component + 1)/2
+         children(:2) = [child_element(elements, load%item, face), child_element(elements, &
+            load%item, mod(face, element_corner_count(kinds(load%item))) + 1)]
+      end select
+   end subroutine find_children
+
+   !> Temperatures of the new nodes: a new node has one where all nodes of its side or element have
+   !> one on the same amplitude.
+   subroutine add_temperatures(division, mesh, loads, added)
+      type(division_type), intent(in) :: division
+      type(mesh_type), intent(in) :: mesh
+      type(load_type), intent(in) :: loads(:)
+      type(load_type), allocatable, intent(out) :: added(:)
+      logical, allocatable :: waiting(:), members(:)
+      real(dp), allocatable :: values(:)
+      integer :: first, i, node
+
+      allocate(added(0))
+      waiting = loads%kind == load_temperature
+      do while (any(waiting))
+         first = findloc(waiting, .true., dim=1)
+         allocate(values(division%nodes), source=0.0_dp)
+         allocate(members(division%nodes), source=.false.)
+         do i = first, size(loads)
+            if (.not. waiting(i) .or. loads(i)%amplitude /= loads(first)%amplitude) cycle
+            values(loads(i)%item) = values(loads(i)%item) + loads(i)%value
+            members(loads(i)%item) = .true.
+            waiting(i) = .false.
+         end do
+         values = refined_values(division, mesh, values)
+         members = refined_members(division, mesh, members)
+         members(:division%nodes) = .false.
+         call append(pack([(node, node=1, size(members))], members), values, loads(first), added)
+         deallocate(values, members)
+      end do
+   end subroutine add_temperatures
+
+   subroutine append(nodes, values, like, loads)
+      integer, intent(in) :: nodes(:)
+      real(dp), intent(in) :: values(:)
+      type(load_type), intent(in) :: like
+      type(load_type), allocatable, intent(inout) :: loads(:)
+      type(load_type), allocatable :: more(:)
+      integer :: before
+
+      before = size(loads)
+      allocate(more(before + size(nodes)), source=like)
+      more(:before) = loads
+      more(before + 1:)%item = nodes
+      more(before + 1:)%value = values(nodes)
+      call move_alloc(more, loads)
+   end subroutine append
+
+end module load_refinement

@@ -1,0 +1,84 @@
+!> Heat balances of an increment: of the discrete equation (3.4), and of the state at its end.
+module heat_balance
+   use balances, only: heat_residual, imbalance, scheme_pair_heat
+   use controls, only: thermal_scheme_type
+   use films, only: net_heat, scheme_net_heat
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use loads, only: loads_type
+   use model, only: model_type
+   use records, only: increment_record_type
+   use solution_state, only: solution_state_type
+   implicit none
+   private
+   public :: balance_heat
+
+   !> Part of K T below which a rate is no scale to measure by: only rounding is left of it.
+   real(dp), parameter :: noise = 1.0e-6_dp
+
+contains
+
+   !> Heat that enters by loads and prescribed temperatures, and both balances of heat.
+   subroutine balance_heat(operators, model, loads, scheme, carrying, previous, next, record)
+      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+      type(model_type), intent(in) :: model                   !! the model
+      type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
+      type(thermal_scheme_type), intent(in) :: scheme         !! coefficients of (3.4)
+      real(dp), intent(in) :: carrying(:)                     !! (m) omega that the flux is of
+      type(solution_state_type), intent(in) :: previous       !! state at the start
+      type(solution_state_type), intent(in) :: next           !! state at the end
+      type(increment_record_type), intent(inout) :: record    !! receives rates and balances
+      real(dp), allocatable :: conducted(:), heat(:), residual(:), pair_heat(:)
+      real(dp) :: scale
+
+      pair_heat = operators%pairs%weight*carrying*next%jump
+      conducted = operators%thermal%matrix%multiply(next%temperature)
+      heat = net_heat(next%heat_load, next%film, next%temperature)
+      residual = heat_residual(conducted, heat, operators%pairs, pair_heat)
+      call sum_rates(model, loads, next%temperature, residual, record)
+      associate (held => loads%temperature%active, weight => operators%pairs%weight, &
+         body => model%mesh%node_body)
+         scale = max(record%heat_in, record%heat_out, abs(sum(pair_heat)), &
+            maxval(abs(residual), mask=held), maxval(abs(heat)), &
+            noise*maxval(abs(operators%thermal%matrix%value))*maxval(abs(next%temperature)), &
+            tiny(1.0_dp))
+         record%fields%reaction_heat = merge(residual, 0.0_dp, held)
+         residual = heat_residual(conducted, heat, operators%pairs, weight*next%omega*next%jump)
+         record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, scale)
+         associate (whole => scheme%a(1) + scheme%b(1))
+            conducted = (scheme%a(1)*conducted + scheme%b(1)* &
+               operators%thermal%matrix%multiply(previous%temperature))/whole
+            pair_heat = scheme_pair_heat(scheme, weight, next%omega_start, next%omega, &
+               previous%jump, next%jump)/whole
+            heat = scheme_net_heat(scheme, previous%heat_load, next%heat_load, previous%film, &
+               next%film, previous%temperature, next%temperature)/whole
+         end associate
+         residual = heat_residual(conducted, heat, operators%pairs, pair_heat)
+         record%heat_imbalance = imbalance(conducted, residual, held, body, scale)
+      end associate
+   end subroutine balance_heat
+
+   !> Net rates, one per load card and per card of prescribed temperatures, summed by their sign.
+   pure subroutine sum_rates(model, loads, temperature, residual, record)
+      type(model_type), intent(in) :: model
+      type(loads_type), intent(in) :: loads
+      real(dp), intent(in) :: temperature(:)
+      real(dp), intent(in) :: residual(:)
+      type(increment_record_type), intent(inout) :: record
+      real(dp) :: net(0:maxval(loads%temperature%card))
+      real(dp), allocatable :: rates(:)
+      integer :: i
+
+      net = 0.0_dp
+      do i = 1, size(residual)
+         if (.not. loads%temperature%active(i)) cycle
+         associate (rate => net(loads%temperature%card(i)))
+            rate = rate + residual(i)
+         end associate
+      end do
+      rates = [net, loads%card_heat(model, temperature)]
+      record%heat_in = sum(rates, mask=rates > 0.0_dp)
+      record%heat_out = -sum(rates, mask=rates < 0.0_dp)
+   end subroutine sum_rates
+
+end module heat_balance

@@ -1,0 +1,227 @@
+!> Rigid motions of the bodies that supports and contacts leave free.
+!>
+!> A body of a plane model shifts along x and y and turns about the middle of its nodes; one of an
+!> axisymmetric model shifts along the axis y. Every support and every direction in which a contact
+!> holds is one linear condition on these few unknowns; the motions that are free span the null
+!> space of all conditions. It comes from a singular value decomposition and is brought to echelon
+!> form, so that a motion names as few bodies as possible. Turns count by the displacement that they
+!> give at the farthest node of the body.
+module rigid_motions
+   use blas_lapack, only: dgesvd
+   use kinds, only: dp
+   use text, only: to_text
+   implicit none
+   private
+   public :: contact_tie_type, free_motion_type, find_free_motions
+
+   real(dp), parameter :: rank_tolerance = 1.0e-9_dp !! of the largest singular value
+   real(dp), parameter :: nothing = 1.0e-6_dp        !! component of a motion that counts as none
+
+   !> What a contact holds: two nodes have one displacement along a direction.
+   type :: contact_tie_type
+      integer :: slave = 0                      !! node index
+      integer :: master = 0                     !! node index
+      real(dp) :: direction(2) = 0.0_dp         !! unit vector
+   end type contact_tie_type
+
+   !> A motion that nothing hinders.
+   type :: free_motion_type
+      integer :: body = 0                       !! the first body that moves
+      logical :: turns = .false.                !! it turns; else it moves on a line
+      character(:), allocatable :: way          !! such as 'along x' or 'about (1, 2)'
+      character(:), allocatable :: company      !! other bodies that move with it, or empty
+   end type free_motion_type
+
+   !> The bodies as rigid ones.
+   type :: rigid_bodies_type
+      real(dp), allocatable :: middle(:, :)     !! (2, bodies) mean of the nodes [length]
+      real(dp), allocatable :: extent(:)        !! (bodies) distance of the farthest node [length]
+   end type rigid_bodies_type
+
+contains
+
+   !> The free motions of all bodies, ordered by their first body.
+   subroutine find_free_motions(coordinates, node_body, on_axis, held, ties, motions)
+      real(dp), intent(in) :: coordinates(:, :)       !! (2, nodes) x and y [length]
+      integer, intent(in) :: node_body(:)             !! (nodes) body, or 0
+      logical, intent(in) :: on_axis(:)               !! (bodies) axisymmetric: along y only
+      logical, intent(in) :: held(:)                  !! (2 nodes) prescribed displacements
+      type(contact_tie_type), intent(in) :: ties(:)   !! what the contacts hold
+      type(free_motion_type), allocatable, intent(out) :: motions(:) !! none where all is held
+      type(rigid_bodies_type) :: bodies
+      real(dp), allocatable :: rows(:, :), basis(:, :)
+      integer :: body, c, i, n, node
+
+      bodies = measure(coordinates, node_body, size(on_axis))
+      allocate (rows(count(held) + size(ties) + 2*count(on_axis), 3*size(on_axis)), source=0.0_dp)
+      n = 0
+      do body = 1, size(on_axis)
+         if (.not. on_axis(body)) cycle
+         rows(n + 1, 3*body - 2) = 1.0_dp
+         rows(n + 2, 3*body) = 1.0_dp
+         n = n + 2
+      end do
+      do node = 1, size(node_body)
+         do c = 1, 2
+            if (.not. held(2*(node - 1) + c)) cycle
+            n = n + 1
+            call enter(node, merge([1.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], c == 1))
+         end do
+      end do
+      do i = 1, size(ties)
+         n = n + 1
+         call enter(ties(i)%slave, ties(i)%direction)
+         call enter(ties(i)%master, -ties(i)%direction)
+      end do
+      basis = null_space(rows)
+      call bring_to_echelon(basis)
+      allocate (motions(size(basis, 2)))
+      do i = 1, size(motions)
+         motions(i) = motion_of(bodies, reshape(basis(:, i), [3, size(on_axis)]))
+      end do
+   contains
+      !> Adds the displacement of a node along a direction to the last row.
+      subroutine enter(at, direction)
+         integer, intent(in) :: at
+         real(dp), intent(in) :: direction(2)
+         real(dp) :: arm(2)
+
+         if (node_body(at) == 0) return
+         associate (b => node_body(at))
+            arm = (coordinates(:, at) - bodies%middle(:, b))/bodies%extent(b)
+            rows(n, 3*b - 2:3*b) = rows(n, 3*b - 2:3*b) + &
+               [direction, direction(2)*arm(1) - direction(1)*arm(2)]
+         end associate
+      end subroutine enter
+   end subroutine find_free_motions
+
+   !> Middle and extent of all bodies.
+   pure function measure(coordinates, node_body, count) result(bodies)
+      real(dp), intent(in) :: coordinates(:, :)
+      integer, intent(in) :: node_body(:)
+      integer, intent(in) :: count
+      type(rigid_bodies_type) :: bodies
+      integer :: nodes(count), node
+
+      allocate (bodies%middle(2, count), bodies%extent(count), source=0.0_dp)
+      nodes = 0
+      do node = 1, size(node_body)
+         if (node_body(node) == 0) cycle
+         associate (b => node_body(node))
+            nodes(b) = nodes(b) + 1
+            bodies%middle(:, b) = bodies%middle(:, b) + coordinates(:, node)
+         end associate
+      end do
+      bodies%middle = bodies%middle/spread(real(nodes, dp), 1, 2)
+      do node = 1, size(node_body)
+         if (node_body(node) == 0) cycle
+         associate (b => node_body(node))
+            bodies%extent(b) = max(bodies%extent(b), &
+               norm2(coordinates(:, node) - bodies%middle(:, b)))
+         end associate
+      end do
+   end function measure
+
+   !> Orthonormal basis of the vectors that all rows map to zero.
+   function null_space(rows) result(basis)
+      real(dp), intent(in) :: rows(:, :)
+      real(dp), allocatable :: basis(:, :)
+      real(dp) :: copy(max(size(rows, 1), 1), size(rows, 2)), none(1, 1), best(1)
+      real(dp) :: values(size(rows, 2)), right(size(rows, 2), size(rows, 2))
+      real(dp), allocatable :: work(:)
+      integer :: info, m, n
+
+      copy = 0.0_dp
+      copy(:size(rows, 1), :) = rows
+      m = size(copy, 1)
+      n = size(copy, 2)
+      call dgesvd('N', 'A', m, n, copy, m, values, none, 1, right, n, best, -1, info)
+      allocate (work(int(best(1))))
+      call dgesvd('N', 'A', m, n, copy, m, values, none, 1, right, n, work, size(work), info)
+      values(min(m, n) + 1:) = 0.0_dp
+      associate (rank => count(values > rank_tolerance*values(1)))
+         basis = transpose(right(rank + 1:, :))
+      end associate
+   end function null_space
+
+   !> Reduced echelon form of the columns of a basis: each has a leading component of its own, 1,
+   !> that the others do not have.
+   pure subroutine bring_to_echelon(basis)
+      real(dp), intent(inout) :: basis(:, :)
+      integer :: column, i, k, pivot
+
+      column = 1
+      do i = 1, size(basis, 1)
+         if (column > size(basis, 2)) exit
+         pivot = column - 1 + maxloc(abs(basis(i, column:)), dim=1)
+         if (abs(basis(i, pivot)) <= nothing) cycle
+         basis(:, [column, pivot]) = basis(:, [pivot, column])
+         basis(:, column) = basis(:, column)/basis(i, column)
+         do k = 1, size(basis, 2)
+            if (k /= column) basis(:, k) = basis(:, k) - basis(i, k)*basis(:, column)
+         end do
+         column = column + 1
+      end do
+   end subroutine bring_to_echelon
+
+   !> A motion in words.
+   pure function motion_of(bodies, vector) result(motion)
+      type(rigid_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: vector(:, :)   !! (3, bodies) shifts, turn times extent
+      type(free_motion_type) :: motion
+      character(:), allocatable :: way
+      logical :: turns
+      integer :: b
+
+      motion%company = ''
+      do b = 1, size(vector, 2)
+         if (maxval(abs(vector(:, b))) <= nothing*maxval(abs(vector))) cycle
+         call describe(vector(:, b), bodies%middle(:, b), bodies%extent(b), turns, way)
+         if (motion%body == 0) then
+            motion%body = b
+            motion%turns = turns
+            motion%way = way
+         else if ((turns .eqv. motion%turns) .and. way == motion%way) then
+            motion%company = motion%company//' together with body '//to_text(b)
+         else if (turns) then
+            motion%company = motion%company//' while body '//to_text(b)//' turns '//way
+         else
+            motion%company = motion%company//' while body '//to_text(b)//' moves '//way
+         end if
+      end do
+   end function motion_of
+
+   !> The motion of one body in words.
+   pure subroutine describe(vector, middle, extent, turns, way)
+      real(dp), intent(in) :: vector(3), middle(2), extent
+      logical, intent(out) :: turns
+      character(:), allocatable, intent(out) :: way
+      real(dp) :: direction(2)
+
+      turns = abs(vector(3)) > nothing*maxval(abs(vector))
+      if (turns) then
+         way = 'about '//point(middle + extent*[-vector(2), vector(1)]/vector(3), extent)
+         return
+      end if
+      direction = vector(:2)/norm2(vector(:2))
+      if (abs(direction(2)) <= nothing) then
+         way = 'along x'
+      else if (abs(direction(1)) <= nothing) then
+         way = 'along y'
+      else
+         way = 'along '//point(direction, 1.0_dp)
+      end if
+   end subroutine describe
+
+   !> A point or a direction as it is printed, without the rounding of the decomposition.
+   pure function point(x, scale) result(words)
+      real(dp), intent(in) :: x(2)
+      real(dp), intent(in) :: scale
+      character(:), allocatable :: words
+
+      associate (rounded => merge(0.0_dp, x, abs(x) <= nothing*scale))
+         words = '('//to_text(rounded(1))//', '//to_text(rounded(2))//')'
+      end associate
+   end function point
+
+end module rigid_motions

@@ -1,0 +1,66 @@
+!> How far from equilibrium heat starts, which some schemes of (3.4) keep for ever.
+module scheme_start
+   use balances, only: heat_residual
+   use contact_operator, only: increment_data_type
+   use interface_operators, only: interface_operators_type
+   use films, only: net_heat
+   use kinds, only: dp
+   use loads, only: loads_type
+   use records, only: increment_record_type
+   use scheme_properties, only: amplification
+   use solution_state, only: solution_state_type
+   use text, only: append, to_text
+   implicit none
+   private
+   public :: warn_of_imbalance
+
+   real(dp), parameter :: undamped = 1.0_dp - 1.0e-9_dp   !! amplification of which this is warned
+   real(dp), parameter :: equilibrium = 1.0e-6_dp         !! largest imbalance that counts as none
+   real(dp), parameter :: noise = 1.0e-6_dp !! part of K T below which a rate is no scale
+
+contains
+
+   !> Warns where heat starts out of equilibrium, (K + G) T /= Q, with a scheme that never damps
+   !> that, and notes in the state whether the scheme is such a one.
+   subroutine warn_of_imbalance(operators, loads, data, previous, next, record)
+      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+      type(loads_type), intent(in) :: loads                   !! loads of the increment
+      type(increment_data_type), intent(in) :: data           !! scheme, conductance, jumps
+      type(solution_state_type), intent(in) :: previous       !! state at the start
+      type(solution_state_type), intent(inout) :: next        !! state at the end
+      type(increment_record_type), intent(inout) :: record    !! receives the warning
+      real(dp) :: factor, imbalance
+
+      factor = amplification(data%scheme)
+      next%keeps_imbalance = abs(factor) >= undamped
+      if (.not. next%keeps_imbalance .or. previous%keeps_imbalance) return
+      imbalance = start_imbalance(operators, loads%temperature%active, data, previous)
+      if (imbalance <= equilibrium) return
+      call append(record%warnings, 'increment '//to_text(record%increment)// &
+         ': heat starts out of equilibrium, (K + G) T - Q is '//to_text(imbalance)// &
+         ' of the largest rate; the scheme of (3.4), amplification '//to_text(factor)// &
+         ', never damps that (*THERMAL SCHEME, TYPE=IMPLICIT does)')
+   end subroutine warn_of_imbalance
+
+   !> Largest residual of (K + G) T - Q in any row that is not prescribed, at the start of an
+   !> increment, relative to the largest rate.
+   pure function start_imbalance(operators, held, data, previous) result(relative)
+      type(interface_operators_type), intent(in) :: operators
+      logical, intent(in) :: held(:)
+      type(increment_data_type), intent(in) :: data
+      type(solution_state_type), intent(in) :: previous
+      real(dp) :: relative
+      real(dp) :: conducted(size(held)), residual(size(held)), pair_heat(size(data%omega_old))
+      real(dp) :: scale
+
+      conducted = operators%thermal%matrix%multiply(previous%temperature)
+      pair_heat = operators%pairs%weight*data%omega_old*data%jump_old
+      residual = heat_residual(conducted, net_heat(previous%heat_load, previous%film, &
+         previous%temperature), operators%pairs, pair_heat)
+      scale = max(maxval(abs(conducted)), maxval(abs(previous%heat_load)), &
+         maxval([0.0_dp, abs(pair_heat)]), noise*maxval(abs(operators%thermal%matrix%value))* &
+         maxval(abs(previous%temperature)), tiny(1.0_dp))
+      relative = maxval([0.0_dp, pack(abs(residual), .not. held)])/scale
+   end function start_imbalance
+
+end module scheme_start

@@ -1,0 +1,141 @@
+"""Bodies that only contact and friction hold, and bodies that nothing holds."""
+
+import h5py
+import numpy as np
+import pytest
+from blocks import block, solid, write
+from deck_runs import run, solve
+
+XS = [0.0, 0.3, 1.0]
+UPPER, LOWER = [0.0, 0.4, 0.5], [-1.0, -0.3, 0.0]
+MESH = [*block("UPPER", XS, UPPER, 1, 0.05), *block("LOWER", XS, LOWER, 101, -0.05)]
+RAISED = [*block("UPPER", XS, [y + 0.02 for y in UPPER], 1), *block("LOWER", XS, LOWER, 101)]
+FACES = ["*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "UPPER.BOTTOM, LOWER.TOP"]
+PRESSURE, MU = 12.5, 0.3
+SOLIDS = [*solid("UPPER", 1e4, 0.3), *solid("LOWER", 2e3, 0.45)]
+ELASTIC = [*solid("UPPER", 1e4, 0.0), *solid("LOWER", 1e4, 0.0)]
+PRESS = ["*DLOAD", f"3, P3, {PRESSURE}", f"4, P3, {PRESSURE}"]
+FLOOR = ["*BOUNDARY", "LOWER.BOTTOM, 1, 2, 0."]
+
+
+def interaction(friction):
+    """Return the cards of the surface interaction."""
+    cards = ["*SURFACE INTERACTION, NAME=FACES"]
+    return cards + (["*FRICTION", f"{friction}, 1.E5"] if friction else [])
+
+
+def step(*cards, increment="1., 1."):
+    """Return the cards of a static step."""
+    return ["*STEP", "*STATIC", increment, *(c for part in cards for c in part), "*END STEP"]
+
+
+def read(result, pair, *names):
+    """Return datasets of a contact pair at the last increment."""
+    with h5py.File(result) as file:
+        return [file[f"contact/{pair}/{name}"][-1] for name in names]
+
+
+def refuse(deck, status):
+    """Run a deck that must fail; return what it says."""
+    process = run("run", "--quiet", deck, "--out", deck.parent)
+    assert process.returncode == status, process.stderr
+    return process.stderr
+
+
+def pushed_aside(path, force, friction=MU):
+    """Press a block that has no support of its own on the floor and push its nodes aside.
+
+    The force acts on all nodes of the sole alike, so that it does not tilt the block.
+    """
+    sole = 5  # pairs
+    push = ["*CLOAD", f"UPPER.SOLE, 1, {force / sole!r}"]
+    nset = ["*NSET, NSET=UPPER.SOLE", "UPPER.BOTTOM"]
+    return write(path, MESH, nset, SOLIDS, interaction(friction), FACES, step(FLOOR, PRESS, push))
+
+
+def test_frictionless_block_is_held_by_the_pressure(tmp_path):
+    """Uniform pressure is the exact solution."""
+    held = ["UPPER.LEFT, 1, 1, 0.", "LOWER.BOTTOM, 2, 2, 0.", "LOWER.LEFT, 1, 1, 0."]
+    for mesh in MESH, RAISED:
+        deck = write(tmp_path / "press.inp", mesh, SOLIDS, interaction(0.0), FACES,
+                     step(["*BOUNDARY", *held], PRESS))
+        pressure, gap, status = read(solve(deck), "FACE", "pressure", "gap", "status")
+        np.testing.assert_allclose(pressure, PRESSURE, rtol=1e-10)
+        assert np.all(gap == 0.0)
+        assert np.all(status == 1)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.6, 0.95, -0.6])
+def test_friction_holds_a_block_against_a_push(tmp_path, share):
+    """Equilibrium: normal force p b, shear force the push."""
+    push = share * MU * PRESSURE
+    result = solve(pushed_aside(tmp_path / "push.inp", push))
+    normal, shear, pressure, traction = read(
+        result, "FACE", "normal_force", "shear_force", "pressure", "shear"
+    )
+    assert normal == pytest.approx(PRESSURE, rel=1e-9)
+    assert shear == pytest.approx(-push, rel=1e-9)
+    assert np.all(np.abs(traction) <= MU * pressure * (1 + 1e-9))
+
+
+@pytest.mark.parametrize("share", [1.05, -3.0])
+def test_a_push_beyond_friction_slides_the_block(tmp_path, share):
+    text = refuse(pushed_aside(tmp_path / "slide.inp", share * MU * PRESSURE), 2)
+    assert "body 1 (of UPPER, first node 1) slides along x" in text
+
+
+def test_a_block_that_is_pulled_off_is_named(tmp_path):
+    pull = ["*DLOAD", f"3, P3, {-PRESSURE}", f"4, P3, {-PRESSURE}"]
+    deck = write(tmp_path / "pull.inp", MESH, SOLIDS, interaction(MU), FACES, step(FLOOR, pull))
+    assert "body 1 (of UPPER, first node 1) moves along" in refuse(deck, 2)
+
+
+@pytest.mark.parametrize("friction", [0.0, MU])
+def test_a_block_pressed_after_a_gap_rests_on_the_floor(tmp_path, friction):
+    """It has fallen freely; friction, which counts from the instant of closing, has no resultant."""
+    held = ["*BOUNDARY", "LOWER.BOTTOM, 1, 2, 0."] + ["UPPER.LEFT, 1, 1, 0."] * (friction == 0.0)
+    deck = write(tmp_path / "drop.inp", RAISED, ELASTIC, interaction(friction), FACES,
+                 step(held, PRESS, increment="0.25, 1."))
+    normal, shear, pressure, gap = read(
+        solve(deck), "FACE", "normal_force", "shear_force", "pressure", "gap"
+    )
+    assert normal == pytest.approx(PRESSURE, rel=1e-10)
+    assert shear == pytest.approx(0.0, abs=1e-10 * PRESSURE)
+    np.testing.assert_allclose(pressure, PRESSURE, rtol=1e-10 if friction == 0.0 else 1e-2)
+    assert np.all(gap == 0.0)
+
+
+def clamped(path, push, friction=MU):
+    """Clamp a block between two platens that approach by 0.001 each; push its middle down."""
+    mesh = [*block("MIDDLE", XS, [0.0, 0.5, 1.0], 1), *block("LOWER", XS, LOWER, 101),
+            *block("UPPER", XS, [1.0, 1.4, 1.5], 201)]
+    materials = [card for name in ("MIDDLE", "LOWER", "UPPER") for card in solid(name, 1e4, 0.0)]
+    faces = ["*CONTACT PAIR, INTERACTION=FACES, NAME=BELOW", "MIDDLE.BOTTOM, LOWER.TOP",
+             "*CONTACT PAIR, INTERACTION=FACES, NAME=ABOVE", "MIDDLE.TOP, UPPER.BOTTOM"]
+    approach = ["*BOUNDARY", "LOWER.BOTTOM, 1, 1, 0.", "LOWER.BOTTOM, 2, 2, 0.001",
+                "UPPER.TOP, 1, 1, 0.", "UPPER.TOP, 2, 2, -0.001"]
+    cards = [step(approach)]
+    if push:
+        force = ["*CLOAD", f"MIDDLE.BOTTOM, 1, {push / 10!r}", f"MIDDLE.TOP, 1, {push / 10!r}"]
+        cards.append(step(force))
+    return write(path, mesh, materials, interaction(friction), faces, *cards)
+
+
+CLAMP = 1e4 * 0.002 / 2.5  # E times the approach over the height, nu = 0
+
+
+def test_friction_alone_clamps_a_block(tmp_path):
+    for pair in "BELOW", "ABOVE":
+        result = solve(clamped(tmp_path / "clamp.inp", 0.0))
+        pressure, shear = read(result, pair, "pressure", "shear")
+        np.testing.assert_allclose(pressure, CLAMP, rtol=1e-9)
+        np.testing.assert_allclose(shear, 0.0, atol=1e-8 * CLAMP)
+
+
+def test_clamped_block_carries_a_push_up_to_the_friction_of_both_faces(tmp_path):
+    limit = 2 * MU * CLAMP
+    result = solve(clamped(tmp_path / "hold.inp", 0.9 * limit))
+    forces = [read(result, pair, "shear_force")[0] for pair in ("BELOW", "ABOVE")]
+    assert sum(forces) == pytest.approx(-0.9 * limit, rel=1e-9)
+    text = refuse(clamped(tmp_path / "slip.inp", 1.1 * limit), 2)
+    assert "body 1 (of MIDDLE, first node 1) slides along x" in text

@@ -1,0 +1,118 @@
+"""Two rods between rigid walls: heat across their gap, or under their pressure, in closed form.
+
+The first rod has the length L1, its far end at the temperature T1; the second L2 and T2. The ends
+meet over a gap g0 when nothing is warm. All motion across the rods is held and nu = 0, the area is
+one. The heat flux from the first to the second is
+
+    q = (T1 - T2)/(R0 + 1/omega),    R0 = L1/k1 + L2/k2,
+
+temperatures are linear in each rod, and so the free expansion is
+
+    e = a1 L1 T1 + a2 L2 T2 + e1 q,    e1 = -a1 L1^2/(2 k1) + a2 L2^2/(2 k2).
+
+Open: gamma = g0 - e > 0 and omega = omega(gamma). Closed: p = (e - g0)/(L1/E1 + L2/E2) >= 0 and
+omega = omega(p). With s = g0 - e, positive for a gap, both are one equation for s, solved here by
+bisection: no derivative of a law is asked for.
+"""
+
+from bisect import bisect_right
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Rods:
+    """Lengths, conductivities, expansions and moduli of both rods, end temperatures and gap."""
+
+    length: tuple[float, float]
+    conductivity: tuple[float, float]
+    expansion: tuple[float, float]
+    young: tuple[float, float]
+    temperature: tuple[float, float]
+    gap: float
+
+    @property
+    def resistance(self):
+        """Return R0."""
+        return sum(l / k for l, k in zip(self.length, self.conductivity, strict=True))
+
+    @property
+    def compliance(self):
+        """Return L1/E1 + L2/E2."""
+        return sum(l / e for l, e in zip(self.length, self.young, strict=True))
+
+    def flux(self, omega):
+        """Return q for a conductance."""
+        if omega == 0.0:
+            return 0.0
+        return (self.temperature[0] - self.temperature[1]) / (self.resistance + 1 / omega)
+
+    def separation(self, flux):
+        """Return s = g0 - e for a heat flux."""
+        (l1, l2), (k1, k2), (a1, a2) = self.length, self.conductivity, self.expansion
+        t1, t2 = self.temperature
+        slope = -a1 * l1**2 / (2 * k1) + a2 * l2**2 / (2 * k2)
+        return self.gap - (a1 * l1 * t1 + a2 * l2 * t2 + slope * flux)
+
+
+@dataclass(frozen=True)
+class State:
+    """The solution: one of gap and pressure is zero."""
+
+    gap: float
+    pressure: float
+    conductance: float
+    flux: float
+    face_temperature: tuple[float, float]
+
+
+def gas(a, b):
+    """Return omega(gamma) = a/(b + gamma)."""
+    return lambda gap: a / (b + gap)
+
+
+def power(c0, c1, n):
+    """Return omega(p) = c0 + c1 p^n."""
+    return lambda pressure: c0 + c1 * pressure**n
+
+
+def table(*rows):
+    """Return omega of rows (omega, abscissa): linear between them, end values held outside."""
+    omegas, places = zip(*rows, strict=True)
+
+    def law(at):
+        i = bisect_right(places, at)
+        if i == 0 or i == len(places):
+            return omegas[min(i, len(places) - 1)]
+        part = (at - places[i - 1]) / (places[i] - places[i - 1])
+        return omegas[i - 1] * (1 - part) + omegas[i] * part
+
+    return law
+
+
+def solve(rods, open_law, closed_law):
+    """Return the solution. A law that is missing is None: without the open one no heat crosses a
+    gap, without the closed one a closed pair has the open value at no gap.
+
+    The laws must be continuous at gamma = p = 0 unless the solution lies clear of it, and the
+    solution must be the only one: heat leaves the rod that expands more."""
+
+    def conductance(s):
+        if s > 0.0:
+            return open_law(s) if open_law else 0.0
+        return closed_law(-s / rods.compliance) if closed_law else open_law(0.0)
+
+    def excess(s):
+        return s - rods.separation(rods.flux(conductance(s)))
+
+    reach = 2 * max(abs(rods.separation(rods.flux(w))) for w in (0.0, 1e30))
+    low, high = -reach, reach
+    if not excess(low) < 0.0 < excess(high):
+        raise ValueError("no solution is enclosed")
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
+    s = high if low < 0.0 < high else middle
+    omega = conductance(s)
+    flux = rods.flux(omega)
+    faces = (rods.temperature[0] - flux * rods.length[0] / rods.conductivity[0],
+             rods.temperature[1] + flux * rods.length[1] / rods.conductivity[1])
+    return State(max(s, 0.0), max(-s, 0.0) / rods.compliance, omega, flux, faces)
