@@ -185,7 +185,7 @@ def test_centrifugal_force(tmp_path, plane, inner):
             rows += [("U1", where, "LAST", moved, 1e-3 if r else 1e-14, "REL" if r else "ABS"),
                      ("S33", where, "LAST", hoop, 1e-2)]
             if plane == "strain":
-                rows += [("S22", where, "LAST", axial, 1e-2)]
+                rows += [("S22", where, "LAST", axial, 3e-2)]
         return deck, rows
 
     follows(tmp_path, make, 3.0, 3.2)
@@ -361,7 +361,7 @@ def test_thermal_stresses_of_a_tube(tmp_path):
                                                       POISSON, expansion, "strain")
             axial = lame.axial_stress(radial, hoop, POISSON, "strain", expansion * rise, YOUNG)
             rows += [("U1", where, "LAST", moved, 1e-4), ("S33", where, "LAST", hoop, 1e-2),
-                     ("S22", where, "LAST", axial, 1e-2)]
+                     ("S22", where, "LAST", axial, 3e-2)]
         return [*cards, *material("BODY", (YOUNG, POISSON), expansion, K),
                 "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.",
                 "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.",
