@@ -21,9 +21,9 @@ contains
       traction = with_axis_limit(traction, weight, position_x, even)
    end function tractions
 
-   !> The values, those of weight 0 replaced by the limit of the profile: an even one by the parabola
-   !> without slope on the axis through the next two pairs, no further than 0 where these have one
-   !> sign, an odd one by 0. Values whose neighbours are too few keep the nearest one.
+   !> The values, those of weight 0 replaced by the limit of the profile: an even one by the
+   !> parabola without slope on the axis through the next two pairs, no further than 0 where these
+   !> have one sign, an odd one by 0. With a single neighbour the limit is that one's value.
    pure function with_axis_limit(values, weight, position_x, even) result(limited)
       real(dp), intent(in) :: values(:)      !! (m) along one interface
       real(dp), intent(in) :: weight(:)      !! (m) tributary areas, >= 0 [length^2]

@@ -51,8 +51,8 @@ contains
          'contact pair '//definition%name//': '//message)
    end subroutine check_lines
 
-   !> Names the first node of the longer line that has no partner: to the node of the other line that
-   !> is nearest to it, another one is nearer.
+   !> Names the first node of the longer line that has no partner: to the node of the other line
+   !> that is nearest to it, another one is nearer.
    function without_partner(mesh, slave, master) result(message)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: slave(:), master(:)
@@ -72,20 +72,20 @@ contains
       integer :: k, partner
 
       do k = 1, size(long)
-         partner = nearest(mesh, short, long(k))
-         if (nearest(mesh, long, short(partner)) /= k) exit
+         partner = nearest_place(mesh, short, long(k))
+         if (nearest_place(mesh, long, short(partner)) /= k) exit
       end do
       first_alone = mesh%node_number(long(min(k, size(long))))
    end function first_alone
 
    !> Place of the node that is nearest to another node.
-   pure integer function nearest(mesh, nodes, node)
+   pure integer function nearest_place(mesh, nodes, node)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: nodes(:), node
 
-      nearest = minloc((mesh%coordinates(1, nodes) - mesh%coordinates(1, node))**2 + &
+      nearest_place = minloc((mesh%coordinates(1, nodes) - mesh%coordinates(1, node))**2 + &
          (mesh%coordinates(2, nodes) - mesh%coordinates(2, node))**2, dim=1)
-   end function nearest
+   end function nearest_place
 
    !> Says which node both lines have, unless both end in it; empty where there is none.
    function shared_node(mesh, slave, master) result(message)

@@ -12,10 +12,10 @@ contains
       integer, intent(in) :: slave(:)    !! (m) slave nodes
       integer, intent(in) :: master(:)   !! (m) master nodes
       integer :: pair                    !! 1..m or 0
-      integer, allocatable :: parent(:)
+      integer :: parent(max(maxval(slave), maxval(master), 0))
       integer :: a, b, k
 
-      parent = [(k, k=1, max(maxval(slave), maxval(master), 0))]
+      parent = [(k, k=1, size(parent))]
       do pair = 1, size(slave)
          a = slave(pair)
          b = master(pair)

@@ -20,9 +20,9 @@ module surface_chains
 
 contains
 
-   !> Nodes along a surface: corner, midside if there is one, corner, ... Each side is followed by the
-   !> one that begins at its second corner, so the line runs with the body on its left. A ring begins
-   !> at the corner that precedes all others.
+   !> Nodes along a surface: corner, midside if there is one, corner, ... Each side is followed by
+   !> the one that begins at its second corner, so the line runs with the body on its left. A ring
+   !> begins at the corner that precedes all others.
    !> Errors: no sides, sides of 2 and of 3 nodes, sides that do not form one line.
    subroutine chain_faces(mesh, surface, chain, error)
       type(mesh_type), intent(in) :: mesh                 !! the mesh
@@ -62,8 +62,9 @@ contains
          if (side == first .and. i < count_sides) exit
       end do
       if (i <= count_sides) then
-         call set_error(error, status_deck, 'surface '//surface%name//' is not one line of faces, '// &
-            'each beginning where another one ends; name the pieces as surfaces of their own')
+         call set_error(error, status_deck, 'surface '//surface%name// &
+            ' is not one line of faces, each beginning where another one ends; '// &
+            'name the pieces as surfaces of their own')
          return
       end if
       chain%closed = side == first

@@ -112,21 +112,22 @@ contains
       real(dp), intent(in) :: force_scale            !! largest force [force]
       real(dp) :: violation                          !! relative
       real(dp) :: force(2), relative(2), gap, normal_force, shear_force, slip, cone
+      real(dp) :: left(size(unbalanced))
       integer :: c, k, s, m
 
       violation = 0.0_dp
+      ! A node may be in several pairs: what they leave over goes to each of them.
+      left = force_residual(unbalanced, 0.0_dp*unbalanced, pairs, state)
       do k = 1, size(pairs%slave)
+         force = state%shear_force(k)*pairs%tangent(:, k) - state%force(k)*pairs%normal(:, k)
          do c = 1, 2
             s = 2*pairs%slave(k) - 2 + c
             m = 2*pairs%master(k) - 2 + c
             relative(c) = displacement(s) - displacement(m)
             if (.not. supported(s)) then
-               force(c) = unbalanced(s)
+               force(c) = force(c) + left(s)
             else if (.not. supported(m)) then
-               force(c) = -unbalanced(m)
-            else
-               force(c) = state%shear_force(k)*pairs%tangent(c, k) - &
-                  state%force(k)*pairs%normal(c, k)
+               force(c) = force(c) - left(m)
             end if
          end do
          gap = (pairs%initial_gap(k) - dot_product(relative, pairs%normal(:, k)))/length_scale

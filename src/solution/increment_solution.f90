@@ -57,7 +57,7 @@ contains
       next%contact%reference = previous%contact%tangential
       operators%contact%closing = closing_law_type()
       call operators%contact%forget_factors()
-      if (.not. solves_heat(step%analysis)) call loads%set_temperatures(next%temperature)
+      if (.not. solves_heat(step%analysis)) call give_temperatures(operators, loads, previous, next)
       call load_mechanics(operators, loads, model, data, next)
       if (solves_heat(step%analysis) .and. size(next%omega) > 0) then
          if (is_explicit(step%scheme)) then
@@ -74,6 +74,21 @@ contains
       end if
       next%has_mechanics = .true.
    end subroutine solve_pairs
+
+   !> Temperatures that a step without heat gives, and the jumps between them.
+   subroutine give_temperatures(operators, loads, previous, next)
+      type(interface_operators_type), intent(in) :: operators
+      type(loads_type), intent(in) :: loads
+      type(solution_state_type), intent(in) :: previous
+      type(solution_state_type), intent(inout) :: next
+
+      call loads%set_temperatures(next%temperature)
+      associate (s => operators%pairs%slave, m => operators%pairs%master, t => next%temperature)
+         where (abs(t(s) - previous%temperature(s)) + abs(t(m) - previous%temperature(m)) > 0.0_dp)
+            next%jump = t(s) - t(m)
+         end where
+      end associate
+   end subroutine give_temperatures
 
    !> The jumps of an increment without mechanics: the conductance is that of the contact state that
    !> stays, at both ends of the increment.

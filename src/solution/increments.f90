@@ -183,8 +183,8 @@ contains
       call self%reduce(model, error)
       if (allocated(error)) return
       next = self%state
+      if (any(solves_heat(model%steps%analysis))) call take_heat(self, model, next)
       if (self%with_heat) then
-         call take_heat(self, model, next)
          call self%operators%set_film(left_films(model%steps(self%step)%scheme, &
             self%state%film, next%film), model, error)
          if (allocated(error)) return
@@ -231,7 +231,8 @@ contains
       end associate
    end subroutine advance
 
-   !> Heat loads and films at the end of the increment that the loads stand at.
+   !> Heat loads and films at the end of the increment that the loads stand at; (3.4) asks for them
+   !> at the start of the next one, whether this one solves heat or not.
    subroutine take_heat(self, model, next)
       class(simulation_type), intent(in) :: self
       type(model_type), intent(in) :: model

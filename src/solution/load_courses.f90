@@ -18,6 +18,7 @@ module load_courses
    !> anew or ended.
    type :: load_course_type
       logical, allocatable :: active(:)      !! (n) whether the load is given
+      logical, allocatable :: permanent(:)   !! (n) active whatever the cards say
       logical, allocatable :: at_once(:)     !! (n) whether it never ramps
       real(dp), allocatable :: rest(:)       !! (n) value to which a load fades
       real(dp), allocatable :: start(:)      !! (n) value at the start of the step
@@ -41,7 +42,8 @@ contains
       class(load_course_type), intent(inout) :: self !! the loads
       real(dp), intent(in) :: initial(:)             !! (n) values before anything is given
 
-      allocate (self%active(size(initial)), self%at_once(size(initial)), source=.false.)
+      allocate (self%active(size(initial)), self%at_once(size(initial)), &
+         self%permanent(size(initial)), source=.false.)
       allocate (self%amplitude(size(initial)), self%card(size(initial)), source=0)
       self%rest = initial
       self%start = initial
@@ -90,7 +92,7 @@ contains
       class(load_course_type), intent(inout) :: self !! the loads
       integer, intent(in) :: i                       !! number of the load
 
-      self%active(i) = .false.
+      self%active(i) = self%permanent(i)
       self%amplitude(i) = 0
       self%card(i) = 0
       self%target(i) = self%value(i)

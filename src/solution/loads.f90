@@ -1,9 +1,11 @@
 !> All loads and supports of a model at the present instant.
 module loads
+   use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
    use load_courses, only: load_course_type, step_clock_type
    use load_integrals, only: film_side, unit_forces, unit_heat
    use load_places, only: entries_of, find_places, load_places_type
+   use mesh, only: mesh_type
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use steps, only: analysis_static, dof_temperature, load_film_coefficient, load_film_sink, &
@@ -46,6 +48,7 @@ contains
 
       allocate (zero(2*size(model%mesh%node_number)), source=0.0_dp)
       call self%displacement%prepare(zero)
+      call hold_axis(model%mesh, self%displacement)
       call self%temperature%prepare(model%initial_temperature)
       self%places = find_places(model%steps)
       call self%applied%prepare(values_at(self%places, model%initial_temperature))
@@ -57,6 +60,22 @@ contains
          self%card_count = max(self%card_count, maxval([0, model%steps(s)%loads%card]))
       end do
    end subroutine prepare
+
+   !> Nodes on the axis of an axisymmetric body stay there.
+   pure subroutine hold_axis(mesh, displacement)
+      type(mesh_type), intent(in) :: mesh
+      type(load_course_type), intent(inout) :: displacement
+      integer :: e, node, q
+
+      do e = 1, size(mesh%element_number)
+         if (mesh%element_plane(e) /= axisymmetric) cycle
+         do q = 1, element_node_count(mesh%element_kind(e))
+            node = mesh%element_nodes(q, e)
+            if (mesh%coordinates(1, node) <= 0.0_dp) displacement%permanent(2*node - 1) = .true.
+         end do
+      end do
+      displacement%active = displacement%permanent
+   end subroutine hold_axis
 
    !> Values of loads that are not given: the nodes' temperatures for *TEMPERATURE, else zero.
    pure function values_at(places, temperature) result(values)

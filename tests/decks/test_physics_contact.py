@@ -164,23 +164,26 @@ def cracked(pressure, friction, aside=0.0):
     xs, down, up = [0.0, 0.5, 1.0, 2.0], [-1.0, -0.4, 0.0], [0.0, 0.4, 1.0]
     lower = mesh("LOWER", xs, down)
     upper = mesh("UPPER", xs, up, first=101)
-    nodes = nodes_of(lower) | nodes_of(upper)
     double = {n: m for m, p in nodes_of(lower).items() for n, q in nodes_of(upper).items()
               if p == q and p[0] >= 1.0}   # the tip and beyond: one body
     cards, inside = [], ""
-    for card in upper:
+    for card in [*lower, *upper]:
         if card.startswith("*"):
             inside = card.split(",")[0]
-        elif inside == "*NODE" and int(card.split(",")[0]) in double:
+            if card in ("*SURFACE, NAME=LOWER.TOP", "*SURFACE, NAME=UPPER.BOTTOM"):
+                inside = "inner faces"
+        if inside == "inner faces" or card.startswith("*"):
+            cards += [card] * (inside != "inner faces")
             continue
-        elif inside == "*ELEMENT":
+        if inside == "*NODE" and int(card.split(",")[0]) in double:
+            continue
+        if inside == "*ELEMENT":
             element, *around = map(int, card.split(","))
             card = ", ".join(map(str, [element, *(double.get(n, n) for n in around)]))
         elif inside == "*NSET":
             card = str(double.get(int(card), int(card)))
         cards.append(card)
-    assert nodes
-    deck = [*lower, *cards, *material("LOWER", (YOUNG, 0.3)), *material("UPPER", (YOUNG, 0.3)),
+    deck = [*cards, *material("LOWER", (YOUNG, 0.3)), *material("UPPER", (YOUNG, 0.3)),
             "*SURFACE, NAME=CRACK.UP", "101, S1", "102, S1", "*SURFACE, NAME=CRACK.LOW", "4, S3",
             "5, S3", *SMOOTH, *(["*FRICTION", f"{friction!r}"] if friction else []),
             "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=CRACK", "CRACK.UP, CRACK.LOW",
