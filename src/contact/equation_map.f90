@@ -79,9 +79,9 @@ contains
       end do
    end subroutine make_map
 
-   !> Puts the pairs in an order in which each one's leading node, of one component, comes before the
-   !> following one. Prescribed nodes lead; where there is none, the master that comes first. Pairs
-   !> that are prescribed on both nodes come last, as order 0.
+   !> Puts the pairs in an order in which each one's leading node, of one component, comes before
+   !> the following one. Prescribed nodes lead; where there is none, the master that comes first.
+   !> Pairs that are prescribed on both nodes come last, as order 0.
    subroutine order_pairs(components, c, prescribed, slave, master, order, from_slave, follows, &
       length, error)
       integer, intent(in) :: components, c

@@ -39,19 +39,20 @@ contains
       type(model_type), intent(in) :: model
       type(run_summary_type), intent(inout) :: run
       logical :: has_heat, has_mechanics, has_contact, has_friction, has_law
+      integer :: i
 
       has_heat = any(solves_heat(model%steps%analysis))
       has_mechanics = any(solves_mechanics(model%steps%analysis))
       has_contact = size(model%contacts) > 0
       has_friction = .false.
       has_law = .false.
-      if (has_contact) then
-         associate (interactions => model%interactions(model%contacts%interaction))
-            has_friction = any(interactions%friction > 0.0_dp)
-            has_law = any(interactions%law%open_kind /= law_none .or. &
-               interactions%law%closed_kind /= law_none)
+      do i = 1, size(model%contacts)
+         associate (interaction => model%interactions(model%contacts(i)%interaction))
+            has_friction = has_friction .or. interaction%friction > 0.0_dp
+            has_law = has_law .or. interaction%law%open_kind /= law_none .or. &
+               interaction%law%closed_kind /= law_none
          end associate
-      end if
+      end do
       run%modelled = ''
       run%reasons = ''
       call name('elasticity', has_mechanics, steps_that(solves_mechanics(model%steps%analysis)), &

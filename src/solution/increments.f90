@@ -217,12 +217,8 @@ contains
          call make_record(self%operators, model, self%points, self%loads, step, self%state, next, &
             record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
-         if (record%contact_violation > sound_violation) then
-            call set_error(error, status_internal, 'increment '//to_text(record%increment)// &
-               ': the recovered displacements violate the contact conditions by '// &
-               to_text(record%contact_violation))
-            return
-         end if
+         if (self%with_mechanics) call check_violation(record, error)
+         if (allocated(error)) return
          self%state = next
          self%step_time = clock%step_time
          self%increments = self%increments + 1
@@ -230,6 +226,17 @@ contains
          record%last_of_step = step_is_over(self, step)
       end associate
    end subroutine advance
+
+   !> The recovered displacements keep the contact conditions.
+   subroutine check_violation(record, error)
+      type(increment_record_type), intent(in) :: record
+      type(error_type), allocatable, intent(out) :: error
+
+      if (record%contact_violation <= sound_violation) return
+      call set_error(error, status_internal, 'increment '//to_text(record%increment)// &
+         ': the recovered displacements violate the contact conditions by '// &
+         to_text(record%contact_violation))
+   end subroutine check_violation
 
    !> Heat loads and films at the end of the increment that the loads stand at; (3.4) asks for them
    !> at the start of the next one, whether this one solves heat or not.
@@ -329,8 +336,8 @@ contains
       end if
    end function bytes_of_factors
 
-   !> Enters the next step. A field is numbered again only where it is solved and its supports differ
-   !> from those that were numbered last; only then are its factors formed again.
+   !> Enters the next step. A field is numbered again only where it is solved and its supports
+   !> differ from those that were numbered last; only then are its factors formed again.
    subroutine enter_step(self, model, error)
       class(simulation_type), intent(inout) :: self
       type(model_type), intent(in) :: model

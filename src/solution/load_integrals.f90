@@ -109,7 +109,8 @@ contains
       integer, intent(in) :: element
       integer, allocatable :: nodes(:)
 
-      nodes = model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(element)), element)
+      nodes = model%mesh%element_nodes( &
+         :element_node_count(model%mesh%element_kind(element)), element)
    end function nodes_of_element
 
    pure function thickness(model, element) result(length)
