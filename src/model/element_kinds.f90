@@ -29,8 +29,8 @@ module element_kinds
 
 contains
 
-   !> Local nodes of side S1, S2, ...: first corner, midside node if there is one, second corner; the
-   !> body lies on their left.
+   !> Local nodes of side S1, S2, ...: first corner, midside node if there is one, second corner;
+   !> the body lies on their left.
    pure function side_nodes(kind, side) result(nodes)
       integer, intent(in) :: kind               !! kind of the element
       integer, intent(in) :: side               !! 1..element_corner_count(kind)
