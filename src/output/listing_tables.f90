@@ -69,8 +69,8 @@ contains
 
       write (unit, '(/, a)') 'VERIFICATION'
       write (unit, '(a6, 2x, a10, 1x, a24, 1x, a16, a11, 2a14, 2a10, a9)') 'card', &
-         'kind      ', 'quantity                ', 'where           ', 'time', 'expected', 'found', &
-         'deviation', 'allowed', 'verdict'
+         'kind      ', 'quantity                ', 'where           ', 'time', 'expected', &
+         'found', 'deviation', 'allowed', 'verdict'
       do i = 1, size(checks)
          call print_verdict(unit, checks(i), outcomes(i))
       end do

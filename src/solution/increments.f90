@@ -329,8 +329,8 @@ contains
       end if
    end function bytes_of_factors
 
-   !> Enters the next step. A field is numbered again only where it is solved and its supports differ
-   !> from those that were numbered last; only then are its factors formed again.
+   !> Enters the next step. A field is numbered again only where it is solved and its supports
+   !> differ from those that were numbered last; only then are its factors formed again.
    subroutine enter_step(self, model, error)
       class(simulation_type), intent(inout) :: self
       type(model_type), intent(in) :: model
