@@ -2,11 +2,9 @@
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use axis_limits, only: tractions, with_axis_limit
-   use balances, only: contact_violation, force_residual, heat_residual, imbalance, &
-      scheme_pair_heat
+   use balances, only: contact_violation, force_residual, imbalance
    use contact_operator, only: kept_contact, thermal_forces
    use contact_system, only: contact_state_type, contact_system_type
-   use controls, only: thermal_scheme_type
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
    use heat_balance, only: balance_heat
    use interface_operators, only: interface_operators_type
@@ -22,8 +20,8 @@ module increment_records
    private
    public :: make_record
 
-   !> Part of K u, of K T or of the gaps below which a force, a rate or a displacement is no scale
-   !> to measure by: where nothing is loaded only rounding is left of them.
+   !> Part of K u or of the gaps below which a force or a displacement is no scale to measure by:
+   !> where nothing is loaded only rounding is left of them.
    real(dp), parameter :: noise = 1.0e-6_dp
 
 contains

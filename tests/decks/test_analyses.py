@@ -151,6 +151,23 @@ def test_sizes_are_the_largest_of_all_steps(orders):
     assert attributes["factor_bytes"] > 0
 
 
+def test_supports_that_a_later_step_removes_make_its_problem_the_larger_one(tmp_path):
+    pressure = 1e6
+    freed = HELD.replace("*BOUNDARY", "*BOUNDARY, OP=NEW")
+    freed += f"*DLOAD\n3, P3, {pressure}\n4, P3, {pressure}"
+    steps = [(STATIC, HELD + pushed(PUSH)), (STATIC, freed), (STATIC, pushed(PUSH))]
+    result = solve(rods(tmp_path / "freed.inp", steps))
+    with h5py.File(result) as file:
+        # u_x of all 42 nodes is held, u_y of 10, then of 5, then of 10 again.
+        assert file["run"].attrs["equations_mechanical"] == 42 - 5
+        found = file["contact/FACE/pressure"][()]
+    first = (PUSH - MESHED_GAP) / COMPLIANCE
+    # A wall that is held sets the pressure by its place, a free one carries that of *DLOAD.
+    np.testing.assert_allclose(found[0], first, rtol=1e-8)
+    np.testing.assert_allclose(found[1], pressure, rtol=1e-8)
+    np.testing.assert_allclose(found[2], first, rtol=1e-8)
+
+
 def names(result):
     """Return the names of all datasets that may be absent."""
     with h5py.File(result) as file:

@@ -131,7 +131,11 @@ def test_von_mises_is_that_of_the_stress(stored):
 
 def test_datasets_have_the_shapes_that_are_promised(stored):
     shapes = {
-        (): ("time load iterations heat_in heat_out heat_imbalance force_imbalance", "history"),
+        (): (
+            "time load iterations heat_in heat_out heat_imbalance heat_imbalance_pointwise"
+            " force_imbalance",
+            "history",
+        ),
         (PAIRS,): (
             "gap pressure shear slip status conductance heat_flux slave_temperature"
             " master_temperature",
