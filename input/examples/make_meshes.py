@@ -89,7 +89,10 @@ def fuel_pellet():
     cards, radii, height = [], spaced(0.0, 4.1, 6, 0.4), 10.0
     for k in range(3):
         rows = [height * k + v for v in [0.0, 0.7, 2.0, 3.5, 5.0, 6.5, 8.0, 9.3, 10.0]]
-        cards += block(f"PELLET{k + 1}", radii, rows, 1000 * k + 1, "CAX8")
+        name, first = f"PELLET{k + 1}", 1000 * k + 1
+        cards += block(name, radii, rows, first, "CAX8")
+        for end, face in (("FOOT", "BOTTOM"), ("HEAD", "TOP")):   # without the outermost element
+            cards += part(f"{name}.{end}", radii, rows, first, 0.0, radii[-2], face)
     rows = sorted({height * k + v for k in range(3) for v in [0.0, 0.7, 2.0, 3.5, 5.0, 6.5, 8.0, 9.3, 10.0]})
     wall = spaced(4.12, 4.70, 2)
     cards += block("TUBE", wall, rows, 4001, "CAX8")
