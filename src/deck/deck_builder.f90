@@ -84,7 +84,8 @@ contains
       model%warnings = report%warnings()
    end subroutine build_model
 
-   !> A step in which, and before which, no temperature is prescribed and no heat loaded solves none.
+   !> A step in which, and before which, no temperature is prescribed and no heat loaded solves no
+   !> heat.
    subroutine drop_idle_heat(context, model)
       type(deck_context_type), intent(inout) :: context
       type(model_type), intent(inout) :: model
@@ -93,7 +94,8 @@ contains
       do s = 1, first_heat(context, model) - 1
          if (model%steps(s)%analysis /= analysis_coupled) cycle
          model%steps(s)%analysis = analysis_static
-         call context%note('step '//to_text(s)//' solves no heat: no temperature is prescribed, no heat loaded')
+         call context%note('step '//to_text(s)//' solves no heat: no temperature '// &
+            'is prescribed, no heat loaded')
       end do
    end subroutine drop_idle_heat
 

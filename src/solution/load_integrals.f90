@@ -109,7 +109,9 @@ contains
       integer, intent(in) :: element
       integer, allocatable :: nodes(:)
 
-      nodes = model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(element)), element)
+      associate (n => element_node_count(model%mesh%element_kind(element)))
+         nodes = model%mesh%element_nodes(:n, element)
+      end associate
    end function nodes_of_element
 
    pure function thickness(model, element) result(length)
