@@ -108,6 +108,8 @@ contains
             ends(load_film_coefficient) = .true.
          case ('TEMPERATURE')
             ends(load_temperature) = .true.
+         case default
+            return
          end select
       end associate
    end subroutine end_loads

@@ -2,7 +2,7 @@
 module deck_builder_surfaces
    use card_parameters, only: choose, need_parameter, parameter_place
    use card_values, only: check_extra, field_place, field_text, need_field
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
@@ -12,7 +12,7 @@ module deck_builder_surfaces
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: build_surfaces, read_face
+   public :: build_surfaces
 
 contains
 
@@ -70,7 +70,7 @@ contains
          valid = .true.
          call read_target(cards%data(j), 1, 'element', context%element_index, mesh%element_sets, &
             report, element, set, valid)
-         call read_face(cards, j, 'S', report, face, valid)
+         call read_face(cards%data(j), report, face, valid)
          call check_extra(cards%data(j), 2, 'element or set, face', report)
          if (.not. valid) cycle
          call check_face(cards, j, mesh, element, set, face, report, valid)
@@ -110,27 +110,24 @@ contains
       end do
    end subroutine check_face
 
-   !> Reads the second field of a card as a letter and the number of a face.
-   subroutine read_face(cards, data, letter, report, face, valid)
-      type(cards_type), intent(in) :: cards              !! the cards
-      integer, intent(in) :: data                        !! index of the data card
-      character(1), intent(in) :: letter                 !! S on *SURFACE, P on *DLOAD
-      type(deck_report_type), intent(inout) :: report    !! receives errors
+   !> Reads the second field of a card as S and the number of a face.
+   subroutine read_face(data, report, face, valid)
+      type(data_card_type), intent(in) :: data
+      type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: face                       !! 1..4, 0 after an error
-      logical, intent(inout) :: valid                    !! becomes false after an error
+      logical, intent(inout) :: valid
       character(:), allocatable :: label
 
       face = 0
-      call need_field(cards%data(data), 2, 'face '//letter//'1 to '//letter//'4', report, label, &
-         valid)
+      call need_field(data, 2, 'face S1 to S4', report, label, valid)
       if (len(label) == 0) return
       label = to_upper(label)
       if (len(label) == 2) then
-         if (label(1:1) == letter) face = index('1234', label(2:2))
+         if (label(1:1) == 'S') face = index('1234', label(2:2))
       end if
       if (face > 0) return
-      call report%error(field_place(cards%data(data), 2), ''''//field_text(cards%data(data), 2)// &
-         ''' is no face; faces are '//letter//'1 to '//letter//'4')
+      call report%error(field_place(data, 2), ''''//field_text(data, 2)// &
+         ''' is no face; faces are S1 to S4')
       valid = .false.
    end subroutine read_face
 

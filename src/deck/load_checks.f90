@@ -43,6 +43,8 @@ contains
                if (model%steps(request%step)%analysis /= analysis_static) call report%error( &
                   request%place, 'the step solves for temperatures; *BOUNDARY with degree of '// &
                   'freedom 11 prescribes them')
+            case default
+               continue
             end select
             if (is_heat(request%kind)) call check_effect(request, model, 'a heat load', report)
          end associate

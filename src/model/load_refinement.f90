@@ -76,6 +76,8 @@ contains
          if (load%kind == load_traction) face = (load%component + 1)/2
          children(:2) = [child_element(elements, load%item, face), child_element(elements, &
             load%item, mod(face, element_corner_count(kinds(load%item))) + 1)]
+      case default
+         return
       end select
    end subroutine find_children
 

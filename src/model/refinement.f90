@@ -95,7 +95,7 @@ contains
             nodes(:4, :) = quad4_children(division, element_nodes(:, e), e)
          case (triangle6)
             nodes(:6, :) = triangle6_children(division, element_nodes(:, e), e)
-         case (triangle3)
+         case default
             nodes(:3, :) = triangle3_children(division, element_nodes(:, e), e)
          end select
          do child = 1, 4

@@ -21,7 +21,7 @@ contains
    !> Places of all steps.
    pure function find_places(steps) result(places)
       type(step_type), intent(in) :: steps(:)   !! the steps
-      type(load_places_type) :: places !! places, with the entries that the fullest step has
+      type(load_places_type) :: places          !! each with the entries of its fullest step
       type(load_type), allocatable :: loads(:), all(:)
       integer, allocatable :: ranks(:), order(:)
       logical, allocatable :: first(:)

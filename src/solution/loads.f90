@@ -21,7 +21,7 @@ module loads
       type(load_course_type) :: temperature    !! (nodes) prescribed temperatures [temperature]
       type(load_course_type) :: applied        !! (places) loads, each in the unit of its kind
       type(load_places_type) :: places         !! (places) what they act on
-      integer :: film_count = 0 !! sides with a film: so far behind a film is its sink
+      integer :: film_count = 0                !! sides with a film; so far behind is its sink
       integer :: card_count = 0                !! number of the last data card of a load
    contains
       procedure :: prepare
