@@ -1,32 +1,18 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY.
 module deck_builder_materials
    use card_parameters, only: choose, need_parameter, parameter_place
-   use card_values, only: check_extra, field_place, has_field, need_field, take_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: cards_type, keyword_card_type
+   use deck_builder_elasticity, only: build_elasticity
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
-   use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
-      is_positive_definite, isotropic_elasticity, orthotropic_elasticity
    use kinds, only: dp
    use materials, only: material_type
    use model, only: model_type
+   use property_constants, only: read_constants, refuse_not_positive
    implicit none
    private
    public :: build_materials, find_material
-
-   character(*), parameter :: varies = 'properties that vary with temperature are refused: '// &
-      'bodies are linear, and reduced once to their contact unknowns'
-
-   integer, parameter :: per_card = 8   !! constants of a property on a card
-
-   character(*), parameter :: engineering_names(9) = [character(4) :: 'E1', 'E2', 'E3', 'nu12', &
-      'nu13', 'nu23', 'G12', 'G13', 'G23']
-   character(*), parameter :: orthotropic_names(9) = [character(5) :: 'D1111', 'D1122', 'D2222', &
-      'D1133', 'D2233', 'D3333', 'D1212', 'D1313', 'D2323']
-   character(*), parameter :: anisotropic_names(21) = [character(5) :: 'D1111', 'D1122', &
-      'D2222', 'D1133', 'D2233', 'D3333', 'D1112', 'D2212', 'D3312', 'D1212', 'D1113', 'D2213', &
-      'D3313', 'D1213', 'D1313', 'D1123', 'D2223', 'D3323', 'D1223', 'D1323', 'D2323']
 
 contains
 
@@ -105,154 +91,6 @@ contains
          return
       end select
    end subroutine build_property
-
-   !> Reads the constants of a property, eight on a card, and the temperature behind the last.
-   subroutine read_constants(cards, card, names, context, report, constants, valid)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: names(:)              !! of the constants
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      real(dp), intent(out) :: constants(:)
-      logical, intent(out) :: valid
-      integer :: i, last, place
-
-      valid = .true.
-      constants = 0.0_dp
-      last = card%first_data + (size(constants) - 1)/per_card
-      do i = 1, size(constants)
-         place = card%first_data + (i - 1)/per_card
-         if (place > card%last_data) then
-            call report%error(cards%data(card%last_data)%end, 'missing card behind this one: '// &
-               trim(names(i)))
-            valid = .false.
-            return
-         end if
-         call need_field(cards%data(place), mod(i - 1, per_card) + 1, trim(names(i)), report, &
-            constants(i), valid)
-         if (.not. has_field(cards%data(place), mod(i - 1, per_card) + 1)) return
-         if (place == last) cycle
-         if (mod(i, per_card) == 0) call check_extra(cards%data(place), per_card, &
-            'eight constants', report)
-      end do
-      call read_temperature(cards%data(last), mod(size(constants) - 1, per_card) + 2, &
-         joined(names(per_card*(last - card%first_data) + 1:)), context, report)
-      if (card%last_data > last) call report%error(field_place(cards%data(last + 1), 1), varies)
-   end subroutine read_constants
-
-   pure function joined(names) result(list)
-      character(*), intent(in) :: names(:)
-      character(:), allocatable :: list
-      integer :: i
-
-      list = trim(names(1))
-      do i = 2, size(names)
-         list = list//', '//trim(names(i))
-      end do
-   end function joined
-
-   subroutine refuse_not_positive(cards, card, names, constants, which, report)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: names(:)
-      real(dp), intent(in) :: constants(:)
-      integer, intent(in) :: which(:)                   !! constants that must be positive
-      type(deck_report_type), intent(inout) :: report
-      integer :: i
-
-      do i = 1, size(which)
-         if (constants(which(i)) > 0.0_dp) cycle
-         call report%error(field_place(cards%data(card%first_data + (which(i) - 1)/per_card), &
-            mod(which(i) - 1, per_card) + 1), trim(names(which(i)))//' must be positive')
-      end do
-   end subroutine refuse_not_positive
-
-   !> Reads the temperature behind a property: one row of it means nothing.
-   subroutine read_temperature(data, position, layout, context, report)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position
-      character(*), intent(in) :: layout
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      real(dp) :: temperature
-      logical :: valid
-
-      valid = .true.
-      call take_field(data, position, 'temperature', report, temperature, valid)
-      call check_extra(data, position, layout//', temperature', report)
-      if (has_field(data, position)) then
-         call context%note('the temperature field of a single property row is read and not needed')
-      end if
-   end subroutine read_temperature
-
-   subroutine build_elasticity(cards, card, context, report, material)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      type(material_type), intent(inout) :: material
-      character(:), allocatable :: kind
-      real(dp) :: constants(21), d(6, 6)
-      logical :: valid
-
-      kind = 'ISO'
-      call choose(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/'// &
-         'ANISOTROPIC', '', report, kind)
-      material%has_elasticity = .true.
-      select case (kind)
-      case ('ENGINEERING CONSTANTS')
-         call read_constants(cards, card, engineering_names, context, report, constants(:9), valid)
-         if (.not. valid) return
-         if (.not. all(constants([1, 2, 3, 7, 8, 9]) > 0.0_dp)) then
-            call refuse_not_positive(cards, card, engineering_names, constants, &
-               [1, 2, 3, 7, 8, 9], report)
-            return
-         end if
-         d = engineering_elasticity(constants(:9))
-      case ('ORTHO', 'ORTHOTROPIC')
-         call read_constants(cards, card, orthotropic_names, context, report, constants(:9), valid)
-         if (.not. valid) return
-         d = orthotropic_elasticity(constants(:9))
-      case ('ANISO', 'ANISOTROPIC')
-         call read_constants(cards, card, anisotropic_names, context, report, constants, valid)
-         if (.not. valid) return
-         d = anisotropic_elasticity(constants)
-      case default
-         call build_isotropic(cards, card, context, report, material)
-         return
-      end select
-      if (couples_out_of_plane(d)) then
-         call report%error(field_place(cards%data(card%first_data), 1), &
-            'couplings of the shear 13 or 23 with strains in the plane are refused: '// &
-            'the plane would warp')
-      else if (.not. is_positive_definite(d)) then
-         call report%error(field_place(cards%data(card%first_data), 1), &
-            'these constants are not positive definite: some strain would release energy')
-      end if
-      material%elasticity = d(:4, :4)
-   end subroutine build_elasticity
-
-   subroutine build_isotropic(cards, card, context, report, material)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      type(material_type), intent(inout) :: material
-      character(15), parameter :: names(2) = [character(15) :: 'Young''s modulus', &
-         'Poisson''s ratio']
-      real(dp) :: constants(2)
-      logical :: valid
-
-      call read_constants(cards, card, names, context, report, constants, valid)
-      if (.not. valid) return
-      call refuse_not_positive(cards, card, names, constants, [1], report)
-      if (constants(2) <= -1.0_dp .or. constants(2) >= 0.5_dp) then
-         call report%error(field_place(cards%data(card%first_data), 2), &
-            'Poisson''s ratio must lie between -1 and 0.5')
-         return
-      end if
-      material%elasticity = isotropic_elasticity(constants(1), constants(2))
-   end subroutine build_isotropic
 
    subroutine build_expansion(cards, card, context, report, material)
       type(cards_type), intent(in) :: cards

@@ -4,8 +4,7 @@ module deck_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use elasticity, only: equivalent_poisson
-   use element_elasticity, only: has_mean_dilatation
-   use element_kinds, only: axisymmetric, plane_stress, quad8_reduced
+   use element_kinds, only: axisymmetric, plane_stress, quad8, triangle3
    use kinds, only: dp, long
    use load_checks, only: check_loads
    use mesh, only: mesh_type
@@ -20,7 +19,7 @@ module deck_checks
    !> The entries of all elements' 16 x 16 matrices are numbered in default integers.
    integer, parameter :: most_elements = 2**23 - 1
 
-   !> Largest equivalent Poisson's ratio that fully integrated elements follow without locking.
+   !> Largest equivalent Poisson's ratio that is not warned of where elements lock.
    real(dp), parameter :: most_compressible = 0.49_dp
 
 contains
@@ -118,8 +117,7 @@ contains
             if (mesh%element_section(e) == 0 .or. .not. context%element_valid(e)) cycle
             if (model%sections(mesh%element_section(e))%material /= m) cycle
             if (mesh%element_plane(e) == plane_stress) cycle
-            if (mesh%element_kind(e) == quad8_reduced) cycle
-            if (has_mean_dilatation(mesh%element_kind(e), mesh%element_plane(e))) cycle
+            if (mesh%element_kind(e) /= quad8 .and. mesh%element_kind(e) /= triangle3) cycle
             call report%warning(context%material_place(m), 'material '//model%materials(m)%name// &
                ' is nearly incompressible: elements such as '//to_text(mesh%element_number(e))// &
                ' are too stiff with it; take '//trim(merge('CAX8R', 'CPE8R', &

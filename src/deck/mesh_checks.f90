@@ -3,8 +3,8 @@
 module mesh_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use element_kinds, only: axisymmetric, element_corner_count, element_node_count, side_node_count, &
-      side_nodes
+   use element_kinds, only: axisymmetric, element_corner_count, element_node_count, &
+      side_node_count, side_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
    use quadrature, only: integration_rule, most_points, point_count
@@ -96,7 +96,8 @@ contains
       is_sound = .true.
    end function is_sound
 
-   !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is free.
+   !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is
+   !> free.
    subroutine check_sides(context, mesh, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
       type(mesh_type), intent(in) :: mesh                  !! the mesh

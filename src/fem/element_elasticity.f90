@@ -13,14 +13,13 @@ module element_elasticity
    use side_integrals, only: area_factor
    implicit none
    private
-   public :: element_stiffness, element_thermal_load, stress_at, has_mean_dilatation
+   public :: element_stiffness, element_thermal_load, stress_at
 
 contains
 
    !> Whether elements of a kind take the mean dilatation in a plane.
    pure logical function has_mean_dilatation(kind, plane)
-      integer, intent(in) :: kind    !! kind of the element
-      integer, intent(in) :: plane   !! plane_strain, ...
+      integer, intent(in) :: kind, plane
 
       has_mean_dilatation = kind == quad4 .and. plane /= plane_stress
    end function has_mean_dilatation

@@ -19,7 +19,7 @@ module field_recovery
    !> The points at which averaged fields live: one per node and section.
    type :: point_map_type
       integer, allocatable :: node(:)               !! (points) node index
-      integer, allocatable :: element_points(:, :)  !! (8, elements) point of each element node, or 0
+      integer, allocatable :: element_points(:, :)  !! (8, elements) point of each node, or 0
       integer, allocatable :: sharing(:)            !! (points) elements that meet there
    end type point_map_type
 

@@ -123,7 +123,8 @@ contains
       end do
    end subroutine square_3
 
-   !> The three points of which two area coordinates are a, the first nearest to corner 1 if a < 1/3.
+   !> The three points of which two area coordinates are a, the first nearest to corner 1 if
+   !> a < 1/3.
    pure function orbit(a) result(points)
       real(dp), intent(in) :: a
       real(dp) :: points(2, 3)

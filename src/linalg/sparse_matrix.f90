@@ -71,7 +71,7 @@ contains
       self%value(self%length) = value
    end subroutine add
 
-   !> a A + b B of two matrices of one size; one that is not allocated counts as zero.
+   !> a A + b B of two matrices of one size; one without values counts as zero.
    pure function linear_combination(a, matrix_a, b, matrix_b) result(combined)
       real(dp), intent(in) :: a                          !! factor of the first
       type(sparse_matrix_type), intent(in) :: matrix_a   !! first matrix
@@ -79,20 +79,17 @@ contains
       type(sparse_matrix_type), intent(in) :: matrix_b   !! second matrix
       type(sparse_matrix_type) :: combined               !! their combination
       type(triplet_list_type) :: list
+      integer :: entries
 
-      call list%reserve(entry_count(matrix_a) + entry_count(matrix_b))
+      entries = 0
+      if (allocated(matrix_a%value)) entries = size(matrix_a%value)
+      if (allocated(matrix_b%value)) entries = entries + size(matrix_b%value)
+      call list%reserve(entries)
       call add_entries(list, a, matrix_a)
       call add_entries(list, b, matrix_b)
-      if (list%length > 0) combined = list%compress(max(matrix_a%row_count, &
+      if (entries > 0) combined = list%compress(max(matrix_a%row_count, &
          matrix_b%row_count), max(matrix_a%column_count, matrix_b%column_count))
    end function linear_combination
-
-   pure integer function entry_count(matrix)
-      type(sparse_matrix_type), intent(in) :: matrix
-
-      entry_count = 0
-      if (allocated(matrix%value)) entry_count = size(matrix%value)
-   end function entry_count
 
    pure subroutine add_entries(list, factor, matrix)
       type(triplet_list_type), intent(inout) :: list

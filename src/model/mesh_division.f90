@@ -168,7 +168,7 @@ contains
    pure integer function child_element(elements, parent, child)
       integer, intent(in) :: elements   !! number of elements before
       integer, intent(in) :: parent     !! the element
-      integer, intent(in) :: child      !! the child at that corner; 4 of a triangle is in its middle
+      integer, intent(in) :: child      !! the child at that corner; 4 of a triangle: in the middle
 
       child_element = elements + 3*(parent - 1) + child - 1
       if (child == 1) child_element = parent

@@ -35,7 +35,7 @@ contains
       integer(hid_t), intent(in) :: file                  !! the open file
       type(model_type), intent(in) :: model               !! the model
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
-      integer, intent(in) :: element_points(:, :)         !! (8, elements) their points, as the nodes
+      integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call create_group(file, grid_group, error)

@@ -59,7 +59,7 @@ contains
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
-      integer, intent(in) :: element_points(:, :)         !! (8, elements) their points, as the nodes
+      integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       logical :: has_heat, has_mechanics

@@ -28,9 +28,10 @@ def test_a_deck_is_never_overwritten_by_its_own_results(tmp_path):
         assert deck.read_bytes() == before
 
 
-def test_a_node_in_two_pairs_is_refused_by_its_number(tmp_path):
+def test_two_nodes_paired_twice_are_refused_by_their_numbers(tmp_path):
     twice = ["*CONTACT PAIR, INTERACTION=FACES, NAME=AGAIN", "CURVED, FLAT"]
     process = run("check", copy_deck(CYLINDER, tmp_path / "twice.inp", twice))
     assert process.returncode == 1
-    assert "node 1 belongs to two pairs" in process.stderr
+    assert "nodes 1 and" in process.stderr
+    assert "are paired by an earlier *CONTACT PAIR already" in process.stderr
     assert "*CONTACT PAIR, INTERACTION=FACES, NAME=AGAIN" in process.stderr
