@@ -1,4 +1,4 @@
-"""Contact in states known in closed form: clearances, several interfaces, corners, cracks, rings."""
+"""Contact in states known in closed form: clearances, corners, cracks, rings, interfaces."""
 
 import numpy as np
 import pytest
@@ -149,7 +149,8 @@ def test_node_in_two_pairs(tmp_path):
                 *static("*BOUNDARY", "BELOW.BOTTOM, 2", "BELOW.LEFT, 1", "BESIDE.RIGHT, 1",
                         "BESIDE.BOTTOM, 2", "*DLOAD", *(f"{e}, P3, {down!r}" for e in (3, 4)),
                         *(f"{e}, P4, {aside!r}" for e in (1, 3)))]
-        rows = [("pressure", "UNDER", "LAST", down, 1e-9), ("pressure", "SIDE", "LAST", aside, 1e-9)]
+        rows = [("pressure", "UNDER", "LAST", down, 1e-9),
+                ("pressure", "SIDE", "LAST", aside, 1e-9)]
         for body, stress in (("CORNER", (-aside, -down)), ("BELOW", (0.0, -down)),
                              ("BESIDE", (-aside, 0.0))):
             rows += [(name, body, "LAST", value, 1e-9, "ABS")

@@ -155,7 +155,8 @@ def test_body_force_along_x(tmp_path):
         rows = []
         for n, (x, _) in nodes_of(BLOCK).items():
             stress, moved = rotating.column(x, WIDTH, -f, modulus)
-            rows += [("S11", n, "LAST", stress, 1e-9, "ABS"), ("U1", n, "LAST", moved, 1e-13, "ABS")]
+            rows += [("S11", n, "LAST", stress, 1e-9, "ABS"),
+                     ("U1", n, "LAST", moved, 1e-13, "ABS")]
         return deck, rows
 
     follows(tmp_path, make, 2.0, -3.0)
@@ -242,7 +243,8 @@ def test_heat_into_nodes(tmp_path):
     def make(flux):
         rows = [f"{n}, 11, {share * flux!r}" for n, share in shares.items()]
         return bar(*heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", "*CFLUX", *rows)), [
-            *temperatures(lambda x: 20.0 + flux * x / K), ("heat_in", "", "LAST", 0.5 * flux, 1e-10)]
+            *temperatures(lambda x: 20.0 + flux * x / K),
+            ("heat_in", "", "LAST", 0.5 * flux, 1e-10)]
 
     follows(tmp_path, make, 30.0, 25.0)
 

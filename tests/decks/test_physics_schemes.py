@@ -1,9 +1,10 @@
 """Thermal schemes at constant conductance, and analyses one after the other."""
 
 import pytest
-from physics import follows, judge, material, mesh
+from physics import follows, judge, material, mesh, nodes_of
 
 import conduction
+from deck_runs import run
 
 XS = [0.0, 0.4, 1.0]
 YOUNG, EXPANSION, OMEGA, HOT, K = 1000.0, 1e-4, 0.7, 80.0, 2.0
@@ -56,8 +57,6 @@ def free(body, side):
 
 def sets():
     """Return the cards of the sets of nodes whose temperature is free."""
-    from physics import nodes_of
-
     nodes, cards = nodes_of(BODIES), []
     for body, side, first, y in (("UPPER", "TOP", 0, GAP + 0.5), ("LOWER", "BOTTOM", 101, -1.0)):
         cards += [f"*NSET, NSET={free(body, side)}"]
@@ -144,12 +143,9 @@ def test_initial_gap_holds_in_a_deck_without_mechanics(tmp_path):
     follows(tmp_path, make, 0.01, 0.012)
 
 
-def test_start_out_of_equilibrium_is_warned_of_by_crank_nicolson(tmp_path):
-    from physics import write
-
-    from deck_runs import run
-
-    deck, _ = amplified("CRANK-NICOLSON", "coupled")
-    process = run("run", write(tmp_path / "warned.inp", deck), "--out", tmp_path)
-    assert process.returncode == 0, process.stderr
-    assert "warning" in process.stderr + (tmp_path / "warned.lst").read_text().lower()
+@pytest.mark.parametrize(("scheme", "warned"), [("CRANK-NICOLSON", True), ("IMPLICIT", False)])
+def test_start_out_of_equilibrium_is_warned_of_by_crank_nicolson(tmp_path, scheme, warned):
+    deck, checks = amplified(scheme, "coupled")
+    judge(tmp_path, deck, checks, name=scheme)
+    process = run("run", tmp_path / f"{scheme}.inp", "--out", tmp_path)
+    assert ("CRANK-NICOLSON" in process.stderr and "warning" in process.stderr) == warned

@@ -1,0 +1,123 @@
+"""The examples pass their checks, and the values of these are those of tests/reference."""
+
+import subprocess
+import sys
+from math import log, pi
+
+import pytest
+from deck_runs import INPUT, data_cards, run
+from physics import DECKS  # noqa: F401  puts tests/reference on the path
+
+import conduction
+import crack
+import friction_strip
+import lame
+from rods import Rods, gas, power, solve
+
+EXAMPLES = INPUT / "examples"
+NAMES = sorted(path.stem for path in EXAMPLES.glob("*.inp"))
+
+
+def two_rods():
+    """The rods of tests/reference/rods.py, with this example's data."""
+    found = {}
+    for when, hot in (("200.", 200.0), ("500.", 500.0)):
+        rods = Rods((10.0, 10.0), (0.2, 0.2), (1.2e-5, 0.0), (2e5, 2e5), (hot, 0.0), 0.03)
+        state = solve(rods, gas(1.5e-3, 1e-3), power(1.5, 0.01, 1.0))
+        found |= {(name, "GAP", when): getattr(state, key)
+                  for name, key in (("gap", "gap"), ("heat_flux", "flux"),
+                                    ("conductance", "conductance"), ("pressure", "pressure"))}
+    return found
+
+
+def press_fit():
+    """Lame in plane stress."""
+    hub, rim, radii = (2.1e5, 0.3), (7.0e4, 0.33), (20.0, 40.0, 60.0)
+    p = lame.press_fit(*radii, hub, rim, 0.05, "stress")
+    inside, outside = (20.0, 40.0, 0.0, p), (40.0, 60.0, p)
+    return {("pressure", "SEAT", "LAST"): p, ("normal_force", "SEAT", "LAST"): p * 800 * pi,
+            ("S33", "HUB.LEFT", "LAST"): lame.cylinder(20.0, *inside)[1],
+            ("S33", "RIM.LEFT", "LAST"): lame.cylinder(40.0, *outside)[1],
+            ("S33", "RIM.RIGHT", "LAST"): lame.cylinder(60.0, *outside)[1],
+            ("U1", "HUB.LEFT", "LAST"): lame.displacement(
+                20.0, *lame.cylinder(20.0, *inside), *hub, "stress"),
+            ("U1", "RIM.RIGHT", "LAST"): lame.displacement(
+                60.0, *lame.cylinder(60.0, *outside), *rim, "stress")}
+
+
+def fuel_pellet():
+    """Free expansion, balances."""
+    heat = 0.5 * pi * 4.1**2 * 30
+    gap = 0.02 + 280 * (6e-6 * 4.12 - 1e-5 * 4.1) - 4.1 * 0.3 * 0.5 / 2e5
+    return {("gap", "WALL1", "1."): gap, ("normal_force", "ENDS12", "LAST"): 0.5 * pi * 4.1**2,
+            ("heat_in", "", "LAST"): heat, ("heat_out", "", "LAST"): heat,
+            ("NT", "TUBE.RIGHT", "LAST"): 300 + heat / (30 * 2 * pi * 4.7 * 0.03)}
+
+
+def cracked_plate():
+    """A crack in a strip; heat around it."""
+    from math import cos
+
+    a, width, height, k = 10.0, 40.0, 160.0, 0.05
+    longer = 4 * width / pi * log(1 / cos(pi * a / (2 * width)))
+    flux = k * 100.0 / (height + longer)
+    jump = crack.jump(0.0, a, flux, k) * crack.finite_width_heat(a, width)
+    return {("gap", "CRACK@0.", "2."):
+            crack.opening(0.0, a, 50.0, 2e5) * crack.finite_width(a, width),
+            ("slave_temperature", "CRACK@0.", "3."): 50.0 + jump / 2,
+            ("master_temperature", "CRACK@0.", "3."): 50.0 - jump / 2,
+            ("heat_in", "", "3."): flux * width}
+
+
+def turbine_joint():
+    """A wall of three layers."""
+    flux, _ = conduction.wall([12, 2, 15], [0.02, 0.35, 0.03], 600, 400,
+                              contacts=[2e-4 + 2e-5 * 60**0.95, 4e-3])
+    return {("heat_rate", name, "LAST"): 20 * flux for name in ("UPPER", "LOWER")}
+
+
+def thermal_cycling():
+    """A strip in one dimension."""
+    strip = 1.0, 1e5, 1e-5
+    found = {("shear_force", "SOLE", f"{time}."): -friction_strip.held_force(*strip, rise)
+             for time, rise in ((1, 60.0), (3, 60.0), (4, 90.0))}
+    for time, slip in ((1, friction_strip.slip_length(*strip, 60.0, 0.3, 10.0)),
+                       (2, friction_strip.reversed_slip_length(*strip, 60.0, 0.3, 10.0)),
+                       (3, friction_strip.reversed_slip_length(*strip, 60.0, 0.3, 10.0)),
+                       (4, friction_strip.slip_length(*strip, 90.0, 0.3, 10.0))):
+        found["edge_stick", "SOLE", f"{time}."] = 40.0 - slip
+    return found
+
+
+def brake_pad():
+    """Balances."""
+    return {("normal_force", "TRACK", "LAST"): 2.0 * 40, ("shear_force", "TRACK", "LAST"): 0.4 * 80,
+            ("heat_in", "", "LAST"): 0.5 * 20, ("heat_out", "", "LAST"): 0.5 * 20}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_example_passes_its_checks(tmp_path, name):
+    process = run("run", "--quiet", EXAMPLES / f"{name}.inp", "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert process.stderr == ""
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_checks_of_an_example_are_those_of_the_closed_forms(name):
+    expected = globals()[name]()
+    stated = {tuple(row[:3]): float(row[3])
+              for row in data_cards(EXAMPLES / f"{name}.inp", "*VERIFY")}
+    common = expected.keys() & stated.keys()
+    assert len(common) >= 2
+    for key in common:
+        assert stated[key] == pytest.approx(expected[key], rel=2e-5), key
+
+
+def test_meshes_are_those_that_the_script_writes(tmp_path):
+    script = tmp_path / "make_meshes.py"
+    script.write_text((EXAMPLES / "make_meshes.py").read_text())
+    subprocess.run([sys.executable, script], check=True, timeout=60)
+    written = sorted(tmp_path.glob("*.mesh"))
+    assert [path.name for path in written] == sorted(p.name for p in EXAMPLES.glob("*.mesh"))
+    for path in written:
+        assert path.read_text() == (EXAMPLES / path.name).read_text(), path.name
