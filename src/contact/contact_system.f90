@@ -22,7 +22,6 @@ module contact_system
    private
    public :: contact_system_type, contact_state_type, closing_law_type, condition_code
 
-
    !> Contact state of all pairs.
    type :: contact_state_type
       integer, allocatable :: status(:)       !! (m) status_open, status_slip or status_stick

@@ -1,5 +1,6 @@
 !> Data cards of *DLOAD, *DFLUX and *FILM: element or set, label, values.
 module deck_builder_element_loads
+   use card_vectors, only: need_plane_vector, need_vector
    use card_values, only: check_extra, field_place, need_field
    use cards, only: data_card_type
    use deck_context, only: deck_context_type, read_target
@@ -13,7 +14,7 @@ module deck_builder_element_loads
    use text, only: append, nearest_known, string_type, to_text, to_upper
    implicit none
    private
-   public :: build_element_load, report_label, need_vector
+   public :: build_element_load, report_label
 
 contains
 
@@ -85,23 +86,6 @@ contains
          nearest_known(label, names))
    end subroutine report_label
 
-   !> Takes three fields in a row; of fields that are missing the first is reported.
-   subroutine need_vector(data, first, what, report, vector, valid)
-      type(data_card_type), intent(in) :: data             !! the card
-      integer, intent(in) :: first                         !! position of the first field
-      character(*), intent(in) :: what                     !! what they are
-      type(deck_report_type), intent(inout) :: report      !! receives the error
-      real(dp), intent(out) :: vector(3)                   !! their values, zero after an error
-      logical, intent(inout) :: valid   !! becomes false after an error; then nothing more is read
-      integer :: i
-
-      vector = 0.0_dp
-      do i = 1, 3
-         if (valid) call need_field(data, first + i - 1, what//' '//'xyz'(i:i), report, vector(i), &
-            valid)
-      end do
-   end subroutine need_vector
-
    !> Every element of the request has the side.
    subroutine check_face(data, request, model, context, report, valid)
       type(data_card_type), intent(in) :: data
@@ -165,26 +149,19 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: valid
-      real(dp) :: magnitude, direction(3)
+      real(dp) :: vector(2)
       integer :: i
 
-      call need_field(data, 3, 'magnitude', report, magnitude, valid)
-      call need_vector(data, 4, 'direction', report, direction, valid)
+      call need_plane_vector(data, 3, report, vector, valid)
       call check_extra(data, 6, 'element or set, GRAV, magnitude, direction x, y, z', report)
       if (.not. valid) return
-      if (abs(direction(3)) > 0.0_dp) then
-         call report%error(field_place(data, 6), 'gravity acts in the plane: z must be 0')
-      else if (norm2(direction) <= 0.0_dp) then
-         call report%error(field_place(data, 4), 'the direction is zero')
-      else
-         request%kind = load_gravity
-         do i = 1, 2
-            if (abs(direction(i)) <= 0.0_dp) cycle
-            request%component = i
-            request%value = magnitude*direction(i)/norm2(direction)
-            call context%loads%add(request)
-         end do
-      end if
+      request%kind = load_gravity
+      do i = 1, 2
+         if (abs(vector(i)) <= 0.0_dp) cycle
+         request%component = i
+         request%value = vector(i)
+         call context%loads%add(request)
+      end do
    end subroutine build_gravity
 
    !> Speed squared, a point and the direction of the axis, which must be the y axis.

@@ -1,8 +1,9 @@
 !> Data cards of *DSLOAD: surface, label, values.
 module deck_builder_surface_loads
+   use card_vectors, only: need_plane_vector
    use card_values, only: check_extra, field_place, need_field
    use cards, only: data_card_type
-   use deck_builder_element_loads, only: need_vector, report_label
+   use deck_builder_element_loads, only: report_label
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
@@ -79,24 +80,17 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: valid
-      real(dp) :: magnitude, direction(3)
+      real(dp) :: vector(2)
       integer :: i
 
-      call need_field(data, 3, 'magnitude', report, magnitude, valid)
-      call need_vector(data, 4, 'direction', report, direction, valid)
+      call need_plane_vector(data, 3, report, vector, valid)
       call check_extra(data, 6, 'surface, TRVEC, magnitude, direction x, y, z', report)
       if (.not. valid) return
-      if (abs(direction(3)) > 0.0_dp) then
-         call report%error(field_place(data, 6), 'tractions act in the plane: z must be 0')
-      else if (norm2(direction) <= 0.0_dp) then
-         call report%error(field_place(data, 4), 'the direction is zero')
-      else
-         request%kind = load_traction
-         do i = 1, 2
-            request%value = magnitude*direction(i)/norm2(direction)
-            call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, context)
-         end do
-      end if
+      request%kind = load_traction
+      do i = 1, 2
+         request%value = vector(i)
+         call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, context)
+      end do
    end subroutine build_traction
 
    !> One request a face, its component a multiple of the face's number and an offset.

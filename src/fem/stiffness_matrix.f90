@@ -27,7 +27,7 @@ contains
       real(dp), allocatable :: k(:, :)
       real(dp) :: e(4, 4, most_points), axes(2, 2, most_points)
       integer, allocatable :: dofs(:)
-      integer :: element, g, i, j
+      integer :: element, g
 
       call list%reserve(sum(4*element_node_count(mesh%element_kind)**2))
       do element = 1, size(mesh%element_number)
@@ -42,11 +42,7 @@ contains
             k = element_stiffness(kind, plane, mesh%coordinates(:, nodes), e, section%thickness)
             dofs = element_dofs(nodes)
          end associate
-         do j = 1, size(dofs)
-            do i = 1, size(dofs)
-               call list%add(dofs(i), dofs(j), k(i, j))
-            end do
-         end do
+         call list%add_block(dofs, dofs, k)
       end do
       stiffness = list%compress(2*size(mesh%node_number), 2*size(mesh%node_number))
    end function assemble_stiffness
@@ -61,8 +57,7 @@ contains
       type(triplet_list_type) :: list
       real(dp), allocatable :: f(:, :)
       real(dp) :: beta(4, most_points), axes(2, 2, most_points)
-      integer, allocatable :: dofs(:)
-      integer :: element, g, i, j
+      integer :: element, g
 
       call list%reserve(sum(2*element_node_count(mesh%element_kind)**2))
       do element = 1, size(mesh%element_number)
@@ -76,13 +71,8 @@ contains
             end do
             f = element_thermal_load(kind, plane, mesh%coordinates(:, nodes), beta, &
                section%thickness)
-            dofs = element_dofs(nodes)
+            call list%add_block(element_dofs(nodes), nodes, f)
          end associate
-         do j = 1, size(f, 2)
-            do i = 1, size(dofs)
-               call list%add(dofs(i), mesh%element_nodes(j, element), f(i, j))
-            end do
-         end do
       end do
       load = list%compress(2*size(mesh%node_number), size(mesh%node_number))
    end function assemble_thermal_load

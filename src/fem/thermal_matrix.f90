@@ -36,7 +36,7 @@ contains
       type(triplet_list_type) :: list
       real(dp), allocatable :: k(:, :)
       real(dp) :: conductivity(2, 2, most_points), axes(2, 2, most_points)
-      integer :: element, g, i, j
+      integer :: element, g
 
       call list%reserve(sum(element_node_count(mesh%element_kind)**2))
       do element = 1, size(mesh%element_number)
@@ -50,11 +50,7 @@ contains
             end do
             k = conduction_matrix(kind, plane, mesh%coordinates(:, nodes), conductivity, &
                section%thickness)
-            do j = 1, size(nodes)
-               do i = 1, size(nodes)
-                  call list%add(nodes(i), nodes(j), k(i, j))
-               end do
-            end do
+            call list%add_block(nodes, nodes, k)
          end associate
       end do
       conduction = list%compress(size(mesh%node_number), size(mesh%node_number))

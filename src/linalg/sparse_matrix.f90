@@ -26,6 +26,7 @@ module sparse_matrix
    contains
       procedure :: reserve
       procedure :: add
+      procedure :: add_block
       procedure :: compress
    end type triplet_list_type
 
@@ -70,6 +71,21 @@ contains
       self%column(self%length) = column
       self%value(self%length) = value
    end subroutine add
+
+   !> Adds a block, such as an element's matrix.
+   pure subroutine add_block(self, rows, columns, block)
+      class(triplet_list_type), intent(inout) :: self !! the list
+      integer, intent(in) :: rows(:)                  !! (m) rows
+      integer, intent(in) :: columns(:)               !! (n) columns
+      real(dp), intent(in) :: block(:, :)             !! (m, n) values
+      integer :: i, j
+
+      do j = 1, size(columns)
+         do i = 1, size(rows)
+            call self%add(rows(i), columns(j), block(i, j))
+         end do
+      end do
+   end subroutine add_block
 
    !> a A + b B of two matrices of one size; one without values counts as zero.
    pure function linear_combination(a, matrix_a, b, matrix_b) result(combined)

@@ -1,6 +1,7 @@
 !> Bodies: elements that share nodes hang together.
 module bodies
    use element_kinds, only: element_node_count
+   use groups, only: find_root, join, separate_groups
    use mesh, only: mesh_type
    implicit none
    private
@@ -15,7 +16,7 @@ contains
       integer :: parent(size(mesh%node_number)), body(size(mesh%node_number))
       integer :: e, q, root
 
-      parent = [(q, q=1, size(parent))]
+      parent = separate_groups(size(parent))
       do e = 1, size(mesh%element_nodes, 2)
          do q = 2, element_node_count(mesh%element_kind(e))
             call join(parent, mesh%element_nodes(1, e), mesh%element_nodes(q, e))
@@ -40,29 +41,5 @@ contains
          mesh%node_body(q) = body(root)
       end do
    end subroutine find_bodies
-
-   !> Joins the groups of two nodes.
-   pure subroutine join(parent, a, b)
-      integer, intent(inout) :: parent(:)   !! (nodes) another node of the group, or itself
-      integer, intent(in) :: a, b           !! nodes
-      integer :: root_a, root_b
-
-      call find_root(parent, a, root_a)
-      call find_root(parent, b, root_b)
-      parent(max(root_a, root_b)) = min(root_a, root_b)
-   end subroutine join
-
-   !> The node that stands for a group; the way to it is halved on the walk.
-   pure subroutine find_root(parent, node, root)
-      integer, intent(inout) :: parent(:)   !! (nodes) another node of the group, or itself
-      integer, intent(in) :: node           !! node of the group
-      integer, intent(out) :: root          !! its root
-
-      root = node
-      do while (parent(root) /= root)
-         parent(root) = parent(parent(root))
-         root = parent(root)
-      end do
-   end subroutine find_root
 
 end module bodies

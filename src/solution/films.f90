@@ -7,7 +7,7 @@ module films
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    implicit none
    private
-   public :: has_entries, left_films, film_history, net_heat, scheme_net_heat
+   public :: left_films, film_history, net_heat, scheme_net_heat
 
 contains
 

@@ -35,7 +35,7 @@ contains
       conducted = operators%thermal%matrix%multiply(next%temperature)
       heat = net_heat(next%heat_load, next%film, next%temperature)
       residual = heat_residual(conducted, heat, operators%pairs, pair_heat)
-      call sum_rates(model, loads, next%temperature, residual, record)
+      call sum_rates(loads, next%temperature, residual, record)
       associate (held => loads%temperature%active, weight => operators%pairs%weight, &
          body => model%mesh%node_body)
          scale = max(record%heat_in, record%heat_out, abs(sum(pair_heat)), &
@@ -59,8 +59,7 @@ contains
    end subroutine balance_heat
 
    !> Net rates, one per load card and per card of prescribed temperatures, summed by their sign.
-   pure subroutine sum_rates(model, loads, temperature, residual, record)
-      type(model_type), intent(in) :: model
+   pure subroutine sum_rates(loads, temperature, residual, record)
       type(loads_type), intent(in) :: loads
       real(dp), intent(in) :: temperature(:)
       real(dp), intent(in) :: residual(:)
@@ -76,7 +75,7 @@ contains
             rate = rate + residual(i)
          end associate
       end do
-      rates = [net, loads%card_heat(model, temperature)]
+      rates = [net, loads%card_heat(temperature)]
       record%heat_in = sum(rates, mask=rates > 0.0_dp)
       record%heat_out = -sum(rates, mask=rates < 0.0_dp)
    end subroutine sum_rates

@@ -156,7 +156,7 @@ contains
       type(increment_data_type), intent(inout) :: data
       type(solution_state_type), intent(inout) :: next
 
-      next%force_load = loads%nodal_forces(model)
+      next%force_load = loads%nodal_forces()
       call operators%mechanical%set_load(next%force_load + thermal_forces(operators, &
          next%temperature - model%initial_temperature), loads%displacement%value)
       call operators%mechanical%condense_load()

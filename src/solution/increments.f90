@@ -10,21 +10,20 @@ module increments
    use films, only: left_films
    use interface_operators, only: interface_operators_type
    use kinds, only: dp, long
+   use increment_instants, only: next_instant, step_is_over
    use load_courses, only: step_clock_type
    use loads, only: loads_type
    use loose_bodies, only: bodies_heated_by_no_pair, bodies_held_by_no_pair
    use model, only: model_type
    use records, only: increment_record_type, status_open
    use solution_state, only: solution_state_type
-   use sparse_matrix, only: sparse_matrix_type
-   use steps, only: load_temperature, solves_heat, solves_mechanics, step_type
+   use steps, only: load_temperature, solves_heat, solves_mechanics
    use text, only: to_text
    use thermal_matrix, only: contact_diagonal
    implicit none
    private
    public :: simulation_type, run_seconds_type, run_size_type
 
-   real(dp), parameter :: remainder = 1.0e-6_dp !! part of an increment too small for one
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
 
    !> Where the time goes.
@@ -149,16 +148,9 @@ contains
       type(model_type), intent(in) :: model        !! the model
       logical :: done                              !! nothing is left
 
-      done = self%step == size(model%steps) .and. step_is_over(self, model%steps(self%step))
+      done = self%step == size(model%steps) .and. step_is_over(model%steps(self%step), &
+         self%step_time)
    end function finished
-
-   pure function step_is_over(self, step) result(over)
-      class(simulation_type), intent(in) :: self
-      type(step_type), intent(in) :: step
-      logical :: over
-
-      over = self%step_time >= step%period - remainder*step%first_increment
-   end function step_is_over
 
    !> Solves the next increment. On failure the state is that of the last good increment and the
    !> record holds the iterations of the failing one.
@@ -173,17 +165,22 @@ contains
       type(step_clock_type) :: clock
       real(dp) :: since
 
-      if (step_is_over(self, model%steps(self%step))) then
+      if (step_is_over(model%steps(self%step), self%step_time)) then
          self%step_start = self%step_start + model%steps(self%step)%period
          call enter_step(self, model, error)
          if (allocated(error)) return
       end if
-      clock = next_instant(self, model, model%steps(self%step))
+      clock = next_instant(model, model%steps(self%step), self%step_start, &
+         self%step_time)
       call self%loads%move_to(clock, model)
       call self%reduce(model, error)
       if (allocated(error)) return
       next = self%state
-      if (any(solves_heat(model%steps%analysis))) call take_heat(self, model, next)
+      ! (3.4) asks for them at the start of the next increment, whether this one solves heat or not.
+      if (any(solves_heat(model%steps%analysis))) then
+         next%heat_load = self%loads%heat_load()
+         next%film = self%loads%film_matrix()
+      end if
       if (self%with_heat) then
          call self%operators%set_film(left_films(model%steps(self%step)%scheme, &
             self%state%film, next%film), model, error)
@@ -223,7 +220,7 @@ contains
          self%step_time = clock%step_time
          self%increments = self%increments + 1
          self%increments_of_step = self%increments_of_step + 1
-         record%last_of_step = step_is_over(self, step)
+         record%last_of_step = step_is_over(step, self%step_time)
       end associate
    end subroutine advance
 
@@ -237,21 +234,6 @@ contains
          ': the recovered displacements violate the contact conditions by '// &
          to_text(record%contact_violation))
    end subroutine check_violation
-
-   !> Heat loads and films at the end of the increment that the loads stand at; (3.4) asks for them
-   !> at the start of the next one, whether this one solves heat or not.
-   subroutine take_heat(self, model, next)
-      class(simulation_type), intent(in) :: self
-      type(model_type), intent(in) :: model
-      type(solution_state_type), intent(inout) :: next
-
-      next%heat_load = self%loads%heat_load(model)
-      if (self%loads%has_film()) then
-         next%film = self%loads%film_matrix(model)
-      else
-         next%film = sparse_matrix_type()
-      end if
-   end subroutine take_heat
 
    !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
    !> place of whatever error followed from it.
@@ -279,7 +261,6 @@ contains
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model               !! the model
       type(error_type), allocatable, intent(out) :: error !! see above
-      type(solution_state_type) :: next
       logical :: heat, mechanics
       real(dp) :: since
 
@@ -294,11 +275,10 @@ contains
       self%seconds%assemble = self%seconds%assemble + (wall_seconds() - since)
       since = wall_seconds()
       if (heat) then
-         next = self%state
-         call self%loads%move_to(next_instant(self, model, model%steps(self%step)), model)
-         call take_heat(self, model, next)
+         call self%loads%move_to(next_instant(model, model%steps(self%step), self%step_start, &
+            self%step_time), model)
          self%operators%thermal%added = left_films(model%steps(self%step)%scheme, &
-            self%state%film, next%film)
+            self%state%film, self%loads%film_matrix())
       end if
       call self%operators%reduce(model, mechanics, heat, self%with_heat .and. &
          self%with_mechanics, error)
@@ -366,50 +346,6 @@ contains
          call self%operators%number(model, held, held_temperature, mechanics, heat, error)
       end associate
    end subroutine enter_step
-
-   !> The end of the next increment: the next multiple of the first increment, reckoned and not
-   !> added up, or without DIRECT an earlier instant on which the step must land.
-   pure function next_instant(self, model, step) result(clock)
-      class(simulation_type), intent(in) :: self
-      type(model_type), intent(in) :: model
-      type(step_type), intent(in) :: step
-      type(step_clock_type) :: clock
-      real(dp) :: least, offset
-      integer :: i, k
-
-      least = self%step_time + remainder*step%first_increment
-      clock%step_time = (floor(least/step%first_increment) + 1)*step%first_increment
-      if (.not. step%direct) then
-         do i = 1, size(model%verifications)
-            if (model%verifications(i)%at_last) cycle
-            clock%step_time = earlier(clock%step_time, least, &
-               model%verifications(i)%when - self%step_start)
-         end do
-         do i = 1, size(model%amplitudes)
-            associate (curve => model%amplitudes(i))
-               offset = merge(self%step_start, 0.0_dp, curve%total_time)
-               do k = 1, size(curve%times)
-                  clock%step_time = earlier(clock%step_time, least, curve%times(k) - offset)
-               end do
-            end associate
-         end do
-      end if
-      if (clock%step_time > step%period - remainder*step%first_increment) then
-         clock%step_time = step%period
-      end if
-      clock%period = step%period
-      clock%total_time = self%step_start + clock%step_time
-      clock%ramped = step%ramped
-   end function next_instant
-
-   !> The earlier of an instant and another one that lies behind the least.
-   pure function earlier(instant, least, other) result(first)
-      real(dp), intent(in) :: instant, least, other
-      real(dp) :: first
-
-      first = instant
-      if (other > least .and. other < instant) first = other
-   end function earlier
 
    !> Frees the factors.
    subroutine release(self)

@@ -14,6 +14,16 @@ module loads
    private
    public :: loads_type
 
+   integer, parameter :: most_side_nodes = 3   !! nodes of a quadratic side
+
+   !> A side with a film.
+   type :: film_side_type
+      integer :: coefficient = 0               !! place of its coefficient
+      integer :: sink = 0                      !! place of its sink temperature
+      integer, allocatable :: nodes(:)         !! (n) nodes
+      real(dp), allocatable :: mass(:, :)      !! (n, n) integral of psi^p psi^q [length^2]
+   end type film_side_type
+
    !> Courses of the loads; displacements by degree of freedom, temperatures by node, all other ones
    !> by the places on which the deck puts loads.
    type :: loads_type
@@ -21,7 +31,12 @@ module loads
       type(load_course_type) :: temperature    !! (nodes) prescribed temperatures [temperature]
       type(load_course_type) :: applied        !! (places) loads, each in the unit of its kind
       type(load_places_type) :: places         !! (places) what they act on
-      integer :: film_count = 0                !! sides with a film; so far behind is its sink
+      !> (2 nodes, places) nodal forces of unit loads [force per unit of the load]
+      type(sparse_matrix_type) :: unit_forces
+      !> (nodes, places) nodal heat of unit loads, for films of unit coefficient and sink [power]
+      type(sparse_matrix_type) :: unit_heat
+      real(dp), allocatable :: total_heat(:)   !! (places) sums of its columns
+      type(film_side_type), allocatable :: films(:)   !! sides with a film
       integer :: card_count = 0                !! number of the last data card of a load
    contains
       procedure :: prepare
@@ -29,7 +44,6 @@ module loads
       procedure :: move_to
       procedure :: nodal_forces
       procedure :: heat_load
-      procedure :: has_film
       procedure :: film_matrix
       procedure :: card_heat
       procedure :: set_temperatures
@@ -54,12 +68,69 @@ contains
       call self%applied%prepare(values_at(self%places, model%initial_temperature))
       ! As in CalculiX the sink of a film acts whole at once, while its coefficient ramps.
       self%applied%at_once = self%places%kind == load_film_sink
-      self%film_count = count(self%places%kind == load_film_coefficient)
       do s = 1, size(model%steps)
          if (.not. allocated(model%steps(s)%loads)) cycle
          self%card_count = max(self%card_count, maxval([0, model%steps(s)%loads%card]))
       end do
+      call integrate_films(self, model)
+      call integrate_units(self, model)
    end subroutine prepare
+
+   !> The sides with films; cards give coefficients and sinks for the same sides, in one order.
+   pure subroutine integrate_films(self, model)
+      class(loads_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      integer :: first, i, n
+
+      n = count(self%places%kind == load_film_coefficient)
+      first = findloc(self%places%kind, load_film_coefficient, dim=1)
+      allocate (self%films(n))
+      do i = 1, n
+         associate (film => self%films(i), place => first + i - 1)
+            film%coefficient = place
+            film%sink = place + n
+            call film_side(model, self%places%item(place), self%places%component(place), &
+               film%nodes, film%mass)
+         end associate
+      end do
+   end subroutine integrate_films
+
+   !> Nodal forces and heat of unit loads, integrated once.
+   pure subroutine integrate_units(self, model)
+      class(loads_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(triplet_list_type) :: forces, heat
+      integer, allocatable :: nodes(:)
+      real(dp), allocatable :: unit_force(:, :), unit(:)
+      integer :: i
+
+      associate (places => self%places, most_nodes => size(model%mesh%element_nodes, 1))
+         call forces%reserve(2*most_nodes*size(places%kind))
+         call heat%reserve(most_nodes*size(places%kind))
+         do i = 1, size(places%kind)
+            call unit_forces(model, places%kind(i), places%item(i), places%component(i), nodes, &
+               unit_force)
+            call forces%add_block(2*nodes - 1, [i], transpose(unit_force(1:1, :)))
+            call forces%add_block(2*nodes, [i], transpose(unit_force(2:2, :)))
+            call unit_heat(model, places%kind(i), places%item(i), places%component(i), nodes, unit)
+            call heat%add_block(nodes, [i], reshape(unit, [size(unit), 1]))
+         end do
+         do i = 1, size(self%films)
+            associate (film => self%films(i))
+               call heat%add_block(film%nodes, [film%coefficient], &
+                  reshape(sum(film%mass, dim=2), [size(film%nodes), 1]))
+            end associate
+         end do
+         self%unit_forces = forces%compress(2*size(model%mesh%node_number), size(places%kind))
+         self%unit_heat = heat%compress(size(model%mesh%node_number), size(places%kind))
+         allocate (self%total_heat(size(places%kind)), source=0.0_dp)
+         do i = 1, size(self%unit_heat%value)
+            associate (total => self%total_heat(self%unit_heat%column(i)))
+               total = total + self%unit_heat%value(i)
+            end associate
+         end do
+      end associate
+   end subroutine integrate_units
 
    !> Nodes on the axis of an axisymmetric body stay there.
    pure subroutine hold_axis(mesh, displacement)
@@ -165,112 +236,78 @@ contains
       call self%applied%move_to(clock, model%amplitudes)
    end subroutine move_to
 
-   !> Applied nodal forces: concentrated ones and those of pressures, tractions and body forces.
-   pure function nodal_forces(self, model) result(forces)
-      class(loads_type), intent(in) :: self              !! the loads
-      type(model_type), intent(in) :: model              !! the model
-      real(dp) :: forces(size(self%displacement%value))  !! (2 nodes) [force]
-      integer, allocatable :: nodes(:)
-      real(dp), allocatable :: unit(:, :)
-      integer :: i
+   !> Present strength of every load; a film counts by its coefficient times its sink.
+   pure function strength(self) result(values)
+      class(loads_type), intent(in) :: self
+      real(dp) :: values(size(self%places%kind))
 
-      forces = 0.0_dp
-      do i = 1, size(self%places%kind)
-         if (.not. self%applied%active(i)) cycle
-         call unit_forces(model, self%places%kind(i), self%places%item(i), &
-            self%places%component(i), nodes, unit)
-         forces(2*nodes - 1) = forces(2*nodes - 1) + self%applied%value(i)*unit(1, :)
-         forces(2*nodes) = forces(2*nodes) + self%applied%value(i)*unit(2, :)
-      end do
+      values = merge(self%applied%value, 0.0_dp, self%applied%active)
+      associate (films => self%films)
+         values(films%coefficient) = values(films%coefficient)*self%applied%value(films%sink)
+      end associate
+   end function strength
+
+   !> Applied nodal forces: concentrated ones and those of pressures, tractions and body forces.
+   pure function nodal_forces(self) result(forces)
+      class(loads_type), intent(in) :: self              !! the loads
+      real(dp) :: forces(size(self%displacement%value))  !! (2 nodes) [force]
+
+      forces = self%unit_forces%multiply(strength(self))
    end function nodal_forces
 
    !> Nodal heat of sources and fluxes, and of films with the bodies at temperature zero: Q of
    !> (3.3).
-   pure function heat_load(self, model) result(heat)
+   pure function heat_load(self) result(heat)
       class(loads_type), intent(in) :: self             !! the loads
-      type(model_type), intent(in) :: model             !! the model
       real(dp) :: heat(size(self%temperature%value))    !! (nodes) into the bodies [power]
-      integer, allocatable :: nodes(:)
-      real(dp), allocatable :: unit(:), mass(:, :)
-      integer :: i
 
-      heat = 0.0_dp
-      do i = 1, size(self%places%kind)
-         if (.not. self%applied%active(i)) cycle
-         if (self%places%kind(i) == load_film_coefficient) then
-            call film_side(model, self%places%item(i), self%places%component(i), nodes, mass)
-            unit = sink_of(self, i)*sum(mass, dim=2)
-         else
-            call unit_heat(model, self%places%kind(i), self%places%item(i), &
-               self%places%component(i), nodes, unit)
-         end if
-         heat(nodes) = heat(nodes) + self%applied%value(i)*unit
-      end do
+      heat = self%unit_heat%multiply(strength(self))
    end function heat_load
 
-   !> Sink temperature of a film: cards give coefficients and sinks for the same sides.
-   pure function sink_of(self, i) result(temperature)
-      class(loads_type), intent(in) :: self
-      integer, intent(in) :: i
-      real(dp) :: temperature
-
-      temperature = self%applied%value(i + self%film_count)
-   end function sink_of
-
-   !> Whether heat crosses a film at this instant.
-   pure logical function has_film(self)
+   !> What the films add to the conduction matrix, with both triangles; without values where no heat
+   !> crosses a film.
+   pure function film_matrix(self) result(matrix)
       class(loads_type), intent(in) :: self   !! the loads
-
-      has_film = any(self%places%kind == load_film_coefficient .and. self%applied%active .and. &
-         abs(self%applied%value) > 0.0_dp)
-   end function has_film
-
-   !> What the films add to the conduction matrix, with both triangles; no entries without a film.
-   pure function film_matrix(self, model) result(matrix)
-      class(loads_type), intent(in) :: self   !! the loads
-      type(model_type), intent(in) :: model   !! the model
       type(sparse_matrix_type) :: matrix      !! (nodes, nodes) [power/temperature]
       type(triplet_list_type) :: list
-      integer, allocatable :: nodes(:)
-      real(dp), allocatable :: mass(:, :)
-      integer :: i, p, q, n
+      real(dp) :: coefficient
+      integer :: i, n
 
       n = size(self%temperature%value)
-      call list%reserve(9*self%film_count)
-      do i = 1, size(self%places%kind)
-         if (self%places%kind(i) /= load_film_coefficient .or. .not. self%applied%active(i)) cycle
-         call film_side(model, self%places%item(i), self%places%component(i), nodes, mass)
-         do q = 1, size(nodes)
-            do p = 1, size(nodes)
-               call list%add(nodes(p), nodes(q), self%applied%value(i)*mass(p, q))
-            end do
-         end do
+      call list%reserve(most_side_nodes**2*size(self%films))
+      do i = 1, size(self%films)
+         associate (film => self%films(i))
+            if (.not. self%applied%active(film%coefficient)) cycle
+            coefficient = self%applied%value(film%coefficient)
+            if (abs(coefficient) <= 0.0_dp) cycle
+            call list%add_block(film%nodes, film%nodes, coefficient*film%mass)
+         end associate
       end do
-      matrix = list%compress(n, n)
+      if (list%length > 0) matrix = list%compress(n, n)
    end function film_matrix
 
    !> Net heat that each data card of a load brings into the bodies; zero for cards of mechanics.
-   pure function card_heat(self, model, temperature) result(rates)
+   pure function card_heat(self, temperature) result(rates)
       class(loads_type), intent(in) :: self     !! the loads
-      type(model_type), intent(in) :: model     !! the model
       real(dp), intent(in) :: temperature(:)    !! (nodes) [temperature]
       real(dp) :: rates(self%card_count)        !! (cards) by their running numbers [power]
-      integer, allocatable :: nodes(:)
-      real(dp), allocatable :: unit(:), mass(:, :)
+      real(dp) :: of_place(size(self%places%kind))
       integer :: i
 
+      of_place = self%total_heat*strength(self)
+      do i = 1, size(self%films)
+         associate (film => self%films(i))
+            if (.not. self%applied%active(film%coefficient)) cycle
+            of_place(film%coefficient) = of_place(film%coefficient) - &
+               self%applied%value(film%coefficient)* &
+               sum(matmul(film%mass, temperature(film%nodes)))
+         end associate
+      end do
       rates = 0.0_dp
-      do i = 1, size(self%places%kind)
+      do i = 1, size(of_place)
          if (.not. self%applied%active(i)) cycle
-         if (self%places%kind(i) == load_film_coefficient) then
-            call film_side(model, self%places%item(i), self%places%component(i), nodes, mass)
-            unit = matmul(mass, sink_of(self, i) - temperature(nodes))
-         else
-            call unit_heat(model, self%places%kind(i), self%places%item(i), &
-               self%places%component(i), nodes, unit)
-         end if
          associate (rate => rates(self%applied%card(i)))
-            rate = rate + self%applied%value(i)*sum(unit)
+            rate = rate + of_place(i)
          end associate
       end do
    end function card_heat
