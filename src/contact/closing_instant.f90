@@ -70,6 +70,7 @@ contains
       type(contact_state_type) :: held_state
       type(closing_law_type) :: law
       logical :: closes(size(state%status))
+      real(dp) :: compliance(2, 2)
       integer :: k
 
       change = 0.0_dp
@@ -85,7 +86,11 @@ contains
       if (allocated(error)) return
       do k = 1, size(closes)
          law = closing_law_type()
-         if (closes(k)) call make_law(held, previous, state, k, law)
+         if (closes(k)) then
+            call find_compliance(held, held_state, k, compliance, error)
+            if (allocated(error)) return
+            call make_law(compliance, previous, state, k, law)
+         end if
          change = max(change, law_change(system%closing(k), law))
          system%closing(k) = law
       end do
@@ -101,22 +106,53 @@ contains
       if (old%acts .neqv. new%acts) change = 1.0_dp
       if (.not. (old%acts .and. new%acts)) return
       change = max(abs(new%fraction - old%fraction), &
-         maxval(abs(new%compliance - old%compliance))/maxval(abs(new%compliance)))
+         maxval(abs(new%compliance - old%compliance))/ &
+         max(maxval(abs(new%compliance)), tiny(1.0_dp)))
    end function law_change
 
-   !> The closing law of one pair.
-   pure subroutine make_law(held, previous, state, k, law)
+   !> Compliance of one pair while all other closed pairs hold their places. A pair of a ring may
+   !> have none along a direction in which the others hold it, so it is opened there.
+   !> Error: only this pair holds a body.
+   subroutine find_compliance(held, held_state, k, compliance, error)
       type(contact_system_type), intent(in) :: held
+      type(contact_state_type), intent(in) :: held_state
+      integer, intent(in) :: k
+      real(dp), intent(out) :: compliance(2, 2)
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_system_type) :: opened
+      type(contact_state_type) :: opened_state
+      real(dp) :: response(size(held%schur, 1), 2), stiffness(2, 2)
+      integer :: places(2)
+
+      places = [held%normal(k), held%tangent(k)]
+      if (held%give(k) > 0.0_dp) then
+         opened = held
+         opened_state = held_state
+         opened_state%status(k) = status_open
+         call opened%factor_set(opened_state, error)
+         if (allocated(error)) return
+         response = 0.0_dp
+         response(places(1), 1) = 1.0_dp
+         response(places(2), 2) = 1.0_dp
+         call opened%solve_free(response)
+         compliance = response(places, :)
+      else
+         stiffness = held%stiffness(places)
+         compliance = reshape([stiffness(2, 2), -stiffness(2, 1), -stiffness(1, 2), &
+            stiffness(1, 1)], [2, 2])/ &
+            (stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1))
+      end if
+   end subroutine find_compliance
+
+   !> The closing law of one pair.
+   pure subroutine make_law(compliance, previous, state, k, law)
+      real(dp), intent(in) :: compliance(2, 2)
       type(contact_state_type), intent(in) :: previous
       type(contact_state_type), intent(in) :: state
       integer, intent(in) :: k
       type(closing_law_type), intent(out) :: law
-      real(dp) :: stiffness(2, 2), compliance(2, 2), overlap
+      real(dp) :: overlap
 
-      stiffness = held%stiffness([held%normal(k), held%tangent(k)])
-      compliance = reshape([stiffness(2, 2), -stiffness(2, 1), -stiffness(1, 2), &
-         stiffness(1, 1)], [2, 2])/ &
-         (stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1))
       overlap = dot_product(compliance(1, :), [state%force(k), -state%shear_force(k)])
       law%acts = .true.
       law%start = previous%tangential(k)
