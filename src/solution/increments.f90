@@ -202,7 +202,7 @@ contains
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (self%with_heat) call check_heat(self, model, next, error)
          if (allocated(error)) then
-            if (self%operators%contact%loose) error%message = error%message// &
+            if (self%operators%contact%driven) error%message = error%message// &
                bodies_held_by_no_pair(model, self%operators%pairs, &
                self%loads%displacement%active, next%contact%status)
             error%message = 'increment '//to_text(record%increment)//' (time '// &
