@@ -10,7 +10,7 @@ module deck_run
    use kinds, only: dp
    use model, only: model_type
    use progress, only: deck_outcome_type
-   use records, only: increment_record_type, iteration_record_type
+   use records, only: increment_record_type
    use run_description, only: describe_run
    use run_output, only: run_output_type
    use system_calls, only: make_folder
@@ -73,7 +73,6 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: output_error
       type(increment_record_type) :: record
-      type(iteration_record_type), allocatable :: passes(:)
 
       associate (pairs => simulation%operators%interfaces, points => simulation%points)
          call make_folder(command%folder)
@@ -91,11 +90,7 @@ contains
             call output%accept(record, model, pairs, error)
             if (allocated(error)) return
          end do
-         if (allocated(error)) then
-            allocate (passes(0))
-            if (allocated(record%iterations)) passes = record%iterations
-            call output%fail(error%message, passes)
-         end if
+         if (allocated(error)) call output%fail(error%message, record)
          call output%finish(model, pairs, output_error)
          if (allocated(output_error) .and. .not. allocated(error)) then
             call move_alloc(output_error, error)

@@ -3,12 +3,12 @@
 module listing
    use contact_pairs, only: contact_pairs_type, never_approached
    use errors, only: error_type, set_error, status_internal
-   use listing_increments, only: print_balances, print_increment, print_interface
+   use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
    use listing_tables, only: print_contact_table, print_iterations, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
-   use records, only: contact_record_type, increment_record_type, iteration_record_type
+   use records, only: contact_record_type, increment_record_type
    use run_summaries, only: or_blank, run_summary_type
    use text, only: append, string_type, to_text
    use verification, only: outcome_type
@@ -93,24 +93,27 @@ contains
       end do
    end subroutine add
 
-   !> Names the increment that failed and prints its passes.
-   subroutine add_failure(self, reason, iterations, accepted)
-      class(listing_type), intent(inout) :: self                !! the listing
-      character(*), intent(in) :: reason                        !! what went wrong
-      type(iteration_record_type), intent(in) :: iterations(:)  !! passes of that increment
-      integer, intent(in) :: accepted                           !! increments that were accepted
+   !> Says why the run ended early; prints the attempts at an increment that failed, and the passes
+   !> of the last one.
+   subroutine add_failure(self, reason, record, accepted)
+      class(listing_type), intent(inout) :: self             !! the listing
+      character(*), intent(in) :: reason                     !! what went wrong
+      type(increment_record_type), intent(in) :: record      !! that increment; empty for none
+      integer, intent(in) :: accepted                        !! increments that were accepted
 
       self%failure = reason
       call print_title(self%unit, 'ENDED EARLY')
       call print_wrapped(self%unit, '   ', reason)
       if (accepted > 0) then
-         write (self%unit, '(3x, a, i0, a)') 'The results hold the ', accepted, &
-            ' increments before it.'
+         write (self%unit, '(3x, 3a)') 'The results hold the increments up to number ', &
+            to_text(accepted), '.'
       else
          call print_wrapped(self%unit, '   ', 'No increment was accepted: this run has no '// &
             'result file and no .sta; those of an earlier run, if there are any, were left.')
       end if
-      if (size(iterations) > 0) call print_iterations(self%unit, iterations)
+      if (allocated(record%failed)) call print_attempts(self%unit, record%failed)
+      if (allocated(record%iterations)) call print_iterations(self%unit, &
+         pack(record%iterations, record%iterations%cut_backs == record%cut_backs))
    end subroutine add_failure
 
    !> Ends the listing: verdicts, times, zone diagrams, all warnings again.

@@ -2,14 +2,15 @@
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use kinds, only: dp
-   use records, only: contact_record_type, edges_kept, increment_record_type, status_open, &
-      status_stick
+   use listing_text, only: print_wrapped
+   use records, only: attempt_record_type, contact_record_type, edges_kept, &
+      increment_record_type, status_open, status_stick
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    use zone_diagram, only: zone_counts
    implicit none
    private
-   public :: print_increment, print_interface, print_balances
+   public :: print_increment, print_attempts, print_interface, print_balances
 
 contains
 
@@ -21,13 +22,27 @@ contains
 
       write (unit, '(/, a, i0, a, i0, 4a)') 'INCREMENT ', record%increment, '   STEP ', &
          record%step, '   TIME ', to_text(record%time), '   LOAD ', to_text(record%load)
+      if (allocated(record%failed)) call print_attempts(unit, record%failed)
       if (.not. allocated(record%iterations)) return
       passes = size(record%iterations)
       if (passes == 0) return
       write (unit, '(3x, 2(a, i0), 2(a, es9.2), a)') 'passes ', passes, '   cut-backs ', &
-         record%iterations(passes)%cut_backs, '   residual', record%iterations(passes)%residual, &
+         record%cut_backs, '   residual', record%iterations(passes)%residual, &
          '  (floor', record%residual_floor, ')'
    end subroutine print_increment
+
+   !> Prints the attempts at an increment that failed.
+   subroutine print_attempts(unit, attempts)
+      integer, intent(in) :: unit                            !! unit of the listing
+      type(attempt_record_type), intent(in) :: attempts(:)   !! these, in their order
+      integer :: i
+
+      do i = 1, size(attempts)
+         call print_wrapped(unit, '   ', 'attempt '//to_text(i)//' of size '// &
+            to_text(attempts(i)%increment_size)//', to time '//to_text(attempts(i)%time)// &
+            ', failed: '//attempts(i)%reason)
+      end do
+   end subroutine print_attempts
 
    !> Prints zones, edges and sums of an interface.
    subroutine print_interface(unit, name, contact)

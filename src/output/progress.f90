@@ -69,6 +69,7 @@ contains
       if (allocated(record%iterations)) then
          line = line//'  iterations '//to_text(size(record%iterations))
       end if
+      if (record%cut_backs > 0) line = line//'  cut-backs '//to_text(record%cut_backs)
       line = line//'  load '//to_text(record%load)
       if (sum(zones) > 0) line = line//'  I '//to_text(zones(1))//' II '//to_text(zones(2))// &
          ' III '//to_text(zones(3))

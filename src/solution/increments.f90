@@ -5,7 +5,7 @@ module increments
    use field_recovery, only: make_points, point_map_type
    use films, only: left_films
    use increment_checks, only: check_heat, check_violation
-   use increment_instants, only: next_instant, step_is_over
+   use increment_control, only: increment_control_type
    use increment_records, only: make_record
    use increment_solution, only: recover_fields, solve_pairs
    use initial_state, only: make_initial_state
@@ -15,7 +15,7 @@ module increments
    use loads, only: loads_type
    use loose_bodies, only: bodies_held_by_no_pair
    use model, only: model_type
-   use records, only: increment_record_type
+   use records, only: add_attempts, increment_record_type, note_failure
    use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
@@ -33,11 +33,7 @@ module increments
       type(point_map_type) :: points                !! where averaged fields live
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
-      integer :: step = 0                           !! present step
-      real(dp) :: step_time = 0.0_dp                !! time since its start [time]
-      real(dp) :: step_start = 0.0_dp               !! total time at its start [time]
-      integer :: increments_of_step = 0             !! increments of the present step so far
-      integer :: increments = 0                     !! increments so far
+      type(increment_control_type) :: control       !! place in the steps, size of increments
       type(run_seconds_type) :: seconds             !! where the time went
       type(run_size_type) :: sizes                  !! sizes over all steps
    contains
@@ -75,10 +71,8 @@ contains
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
 
-      self%step = self%step + 1
-      self%step_time = 0.0_dp
-      self%increments_of_step = 0
-      associate (step => model%steps(self%step))
+      call self%control%enter_step(model)
+      associate (step => model%steps(self%control%step))
          call self%loads%begin_step(step, self%state%displacement, self%state%temperature)
          call self%reduction%number(model, step, self%loads, self%operators, error)
       end associate
@@ -92,10 +86,9 @@ contains
       type(error_type), allocatable, intent(out) :: error !! see above
       type(sparse_matrix_type) :: film
 
-      associate (step => model%steps(self%step))
+      associate (step => model%steps(self%control%step))
          if (solves_heat(step%analysis) .and. .not. self%reduction%heat_is_reduced) then
-            call self%loads%move_to(next_instant(model, step, self%step_start, self%step_time), &
-               model)
+            call self%loads%move_to(self%control%next_instant(model), model)
             film = self%loads%film_matrix()
          end if
          call self%reduction%reduce(model, step, self%state%film, film, self%operators, &
@@ -109,51 +102,72 @@ contains
       type(model_type), intent(in) :: model        !! the model
       logical :: done                              !! nothing is left
 
-      done = self%step == size(model%steps) .and. step_is_over(model%steps(self%step), &
-         self%step_time)
+      done = self%control%step == size(model%steps) .and. self%control%step_is_over(model)
    end function finished
 
-   !> Solves the next increment. On failure the state is that of the last good increment and the
-   !> record holds the iterations of the failing one.
-   !> Errors: no convergence, more increments than INC allows, bodies that nothing holds, a failed
-   !> self-check.
+   !> Solves the next increment, cut back as often as it takes. On failure the state is that of the
+   !> last good increment and the record holds the attempts at the failing one with their passes.
+   !> Errors: no convergence with the smallest increment, more increments than INC allows, bodies
+   !> that nothing holds, a failed self-check.
    subroutine advance(self, model, record, error)
       class(simulation_type), intent(inout) :: self         !! the run
       type(model_type), intent(in) :: model                 !! the model
       type(increment_record_type), intent(out) :: record    !! the increment
       type(error_type), allocatable, intent(out) :: error   !! see above
+      type(increment_record_type) :: before
       type(solution_state_type) :: next
       type(step_clock_type) :: clock
+      real(dp) :: increment_size
 
-      if (step_is_over(model%steps(self%step), self%step_time)) then
-         self%step_start = self%step_start + model%steps(self%step)%period
+      if (self%control%step_is_over(model)) then
          call enter_step(self, model, error)
          if (allocated(error)) return
       end if
-      associate (step => model%steps(self%step))
-         if (self%increments_of_step == step%max_increments) then
-            call set_error(error, status_no_convergence, 'step '//to_text(self%step)// &
-               ' is not over after INC='//to_text(step%max_increments)//' increments')
-            return
-         end if
-         call self%reduce(model, error)
-         if (allocated(error)) return
-         clock = next_instant(model, step, self%step_start, self%step_time)
+      call check_count(self%control, model, error)
+      if (allocated(error)) return
+      call self%reduce(model, error)
+      if (allocated(error)) return
+      do
+         clock = self%control%next_instant(model)
+         increment_size = clock%step_time - self%control%step_time
          call attempt(self, model, clock, next, record, error)
-         if (allocated(error)) then
-            error%message = 'increment '//to_text(record%increment)//' (time '// &
-               to_text(record%time)//'): '//error%message
-            return
+         call add_attempts(before, record)
+         if (.not. allocated(error)) exit
+         if (error%status == status_no_convergence) then
+            call note_failure(record, increment_size, error%message)
+            if (self%control%can_cut_back(model, increment_size)) then
+               call self%control%cut_back(model, increment_size)
+               deallocate (error)
+               before = record
+               cycle
+            end if
+            error%message = error%message//'; '//self%control%why_not_again(model, increment_size)
          end if
-         self%state = next
-         self%step_time = clock%step_time
-         self%increments = self%increments + 1
-         self%increments_of_step = self%increments_of_step + 1
-         record%last_of_step = step_is_over(step, self%step_time)
-      end associate
+         error%message = 'increment '//to_text(record%increment)//' (time '// &
+            to_text(record%time)//'): '//error%message
+         return
+      end do
+      self%state = next
+      call self%control%accept(model, clock)
+      record%last_of_step = self%control%step_is_over(model)
    end subroutine advance
 
-   !> Tries an increment that ends at an instant. The state of the run stays.
+   !> A step takes no more increments than INC= allows; attempts that failed do not count.
+   subroutine check_count(control, model, error)
+      type(increment_control_type), intent(in) :: control
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (step => model%steps(control%step))
+         if (control%increments_of_step < step%max_increments) return
+         call set_error(error, status_no_convergence, 'step '//to_text(control%step)// &
+            ' is not over after INC='//to_text(step%max_increments)//' increments, at '// &
+            to_text(control%step_time)//' of its period '//to_text(step%period))
+      end associate
+   end subroutine check_count
+
+   !> Tries an increment that ends at an instant. The state of the run stays; what else an attempt
+   !> leaves behind, loads and factors, the next one sets anew.
    subroutine attempt(self, model, clock, next, record, error)
       class(simulation_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -163,19 +177,20 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: since
 
-      record%increment = self%increments + 1
-      record%step = self%step
+      record%increment = self%control%increments + 1
+      record%step = self%control%step
+      record%cut_backs = self%control%cut_backs
       record%time = clock%total_time
       call self%loads%move_to(clock, model)
       record%load = self%loads%axis_value(model, record%time)
       next = self%state
-      next%increment_size = clock%step_time - self%step_time
+      next%increment_size = clock%step_time - self%control%step_time
       ! (3.4) asks for them at the start of the next increment, whether this one solves heat or not.
       if (any(solves_heat(model%steps%analysis))) then
          next%heat_load = self%loads%heat_load()
          next%film = self%loads%film_matrix()
       end if
-      associate (step => model%steps(self%step), operators => self%operators)
+      associate (step => model%steps(self%control%step), operators => self%operators)
          if (solves_heat(step%analysis)) then
             call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, &
                error)
@@ -185,7 +200,7 @@ contains
          call solve_pairs(operators, self%loads, model, step, self%state, next, record, error)
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
-            call check_heat(model, operators, self%loads, self%step, next, error)
+            call check_heat(model, operators, self%loads, self%control%step, next, error)
          end if
          if (allocated(error)) then
             if (operators%contact%loose) error%message = error%message// &
