@@ -5,8 +5,11 @@ module deck_run
    use clock, only: wall_seconds
    use command_line, only: command_type
    use deck_preparation, only: prepare_deck
-   use errors, only: error_type, status_deck, status_no_convergence, status_verify
+   use errors, only: error_type, set_error, status_deck, status_interrupted, &
+      status_no_convergence, status_verify
+   use increment_control, only: increment_control_type
    use increments, only: simulation_type
+   use interruption, only: caught_signal
    use kinds, only: dp
    use model, only: model_type
    use progress, only: deck_outcome_type
@@ -14,7 +17,7 @@ module deck_run
    use run_description, only: describe_run
    use run_output, only: run_output_type
    use system_calls, only: make_folder
-   use text, only: string_type
+   use text, only: string_type, to_text
    implicit none
    private
    public :: run_deck, base_name
@@ -80,6 +83,11 @@ contains
             points%element_points, cards%images, command%quiet, error)
          if (allocated(error)) return
          do while (.not. simulation%finished(model))
+            call check_signals(simulation%control, error)
+            if (allocated(error)) then
+               record = increment_record_type()
+               exit
+            end if
             call simulation%advance(model, record, error)
             output%run%seconds_assemble = simulation%seconds%assemble
             output%run%seconds_reduce = simulation%seconds%reduce
@@ -97,6 +105,23 @@ contains
          end if
       end associate
    end subroutine solve_deck
+
+   !> A signal ends the run between two increments.
+   !> Error: status_interrupted.
+   subroutine check_signals(control, error)
+      type(increment_control_type), intent(in) :: control
+      type(error_type), allocatable, intent(out) :: error
+
+      if (caught_signal() == '') return
+      if (control%increments == 0) then
+         call set_error(error, status_interrupted, 'ended by '//caught_signal()// &
+            ' before the first increment')
+      else
+         call set_error(error, status_interrupted, 'ended by '//caught_signal()// &
+            ' after increment '//to_text(control%increments)//' (time '// &
+            to_text(control%step_start + control%step_time)//')')
+      end if
+   end subroutine check_signals
 
    !> Prints which checks of the deck failed.
    subroutine report_checks(path, lines)

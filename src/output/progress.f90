@@ -32,6 +32,7 @@ module progress
    type :: deck_outcome_type
       character(:), allocatable :: path     !! deck as the command line names it
       integer :: status = status_ok         !! one of the status_* constants
+      logical :: left_out = .false.         !! whether a signal kept it from being started
       integer :: increments = 0             !! increments that were accepted
       integer :: verify_passed = 0          !! *VERIFY checks that passed
       integer :: verify_failed = 0          !! *VERIFY checks that failed
