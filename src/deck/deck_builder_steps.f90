@@ -13,7 +13,8 @@ module deck_builder_steps
    use keywords, only: refusal
    use kinds, only: dp
    use model, only: model_type
-   use steps, only: analysis_coupled, analysis_heat, analysis_static, solves_heat, step_type
+   use steps, only: analysis_coupled, analysis_heat, analysis_static, least_increment, &
+      solves_heat, step_type
    use text, only: to_text, to_upper
    implicit none
    private
@@ -157,13 +158,15 @@ contains
       call take_field(data, 3, 'smallest increment', report, step%smallest_increment, valid)
       call take_field(data, 4, 'largest increment', report, step%largest_increment, valid)
       call check_extra(data, 4, 'first increment, period, smallest, largest increment', report)
-      call note_increments(data, context)
+      call note_increments(data, step, context)
       times = [step%first_increment, step%period, step%smallest_increment, step%largest_increment]
-      do i = 1, 4
-         if (.not. valid .or. times(i) > 0.0_dp) cycle
-         call report%error(field_place(data, i), 'increments and periods must be positive')
-         valid = .false.
-      end do
+      if (valid) then
+         do i = 1, 4
+            if (times(i) > 0.0_dp .or. .not. has_field(data, i)) cycle
+            call report%error(field_place(data, i), 'increments and periods must be positive')
+            valid = .false.
+         end do
+      end if
       if (.not. valid) then
          step%first_increment = 1.0_dp
          step%period = 1.0_dp
@@ -173,17 +176,30 @@ contains
          call report%error(field_place(data, 3), 'the smallest increment is longer than the first')
       else if (step%largest_increment < step%first_increment) then
          call report%error(field_place(data, 4), 'the largest increment is shorter than the first')
+      else if (step%smallest_increment < least_increment*step%period) then
+         step%smallest_increment = least_increment*step%period
+         call context%note('smallest increment raised to '//to_text(step%smallest_increment)// &
+            ': a smaller part of the period is lost in rounding')
       end if
    end subroutine build_increments
 
-   subroutine note_increments(data, context)
+   !> Notes the defaults of the card, and what of it does not act.
+   subroutine note_increments(data, step, context)
       type(data_card_type), intent(in) :: data
+      type(step_type), intent(in) :: step
       type(deck_context_type), intent(inout) :: context
 
       if (.not. has_field(data, 1)) call context%note('first increment not given: 1')
       if (.not. has_field(data, 2)) call context%note('period not given: 1')
-      if (has_field(data, 3) .or. has_field(data, 4)) call context%note('smallest and largest '// &
-         'increment not used: increments are fixed, cutting back is not built yet')
+      if (step%direct) then
+         if (has_field(data, 3) .or. has_field(data, 4)) call context%note( &
+            'smallest and largest increment not needed: with DIRECT increments are fixed')
+         return
+      end if
+      if (.not. has_field(data, 3)) call context%note('smallest increment not given: '// &
+         to_text(step%smallest_increment))
+      if (has_field(data, 4)) call context%note( &
+         'largest increment not needed: no increment is longer than the first')
    end subroutine note_increments
 
    !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0

@@ -6,7 +6,8 @@ module records
    implicit none
    private
    public :: increment_record_type, contact_record_type, iteration_record_type
-   public :: field_record_type, work_record_type
+   public :: field_record_type, work_record_type, attempt_record_type
+   public :: add_attempts, note_failure
    public :: status_open, status_slip, status_stick, edges_kept
 
    integer, parameter :: status_open = 0    !! gap, zone I
@@ -70,6 +71,13 @@ module records
       integer(long) :: flops_full = 0        !! operations of as many full factorisations
    end type work_record_type
 
+   !> An attempt at an increment that failed.
+   type :: attempt_record_type
+      real(dp) :: time = 0.0_dp              !! total time at which it would have ended [time]
+      real(dp) :: increment_size = 0.0_dp    !! its size [time]
+      character(:), allocatable :: reason    !! what failed
+   end type attempt_record_type
+
    !> One accepted increment.
    type :: increment_record_type
       integer :: increment = 0               !! running number over all steps, from 1
@@ -89,10 +97,54 @@ module records
       !> where they are kept.
       real(dp) :: contact_violation = 0.0_dp
       type(contact_record_type), allocatable :: contacts(:)     !! one an interface
-      type(iteration_record_type), allocatable :: iterations(:) !! unallocated without coupling
+      integer :: cut_backs = 0               !! attempts at it that failed before
+      type(attempt_record_type), allocatable :: failed(:)       !! these; unallocated for none
+      !> Passes of all attempts in their order; unallocated without coupling.
+      type(iteration_record_type), allocatable :: iterations(:)
       type(field_record_type) :: fields                         !! fields
       type(work_record_type) :: work                            !! re-factorisation
       type(string_type), allocatable :: warnings(:)             !! unallocated for none
    end type increment_record_type
+
+contains
+
+   !> Puts the attempts at an increment that failed, with their passes and their work, before those
+   !> of the last one.
+   pure subroutine add_attempts(before, record)
+      type(increment_record_type), intent(in) :: before      !! what came of the attempts before
+      type(increment_record_type), intent(inout) :: record   !! what came of the last one
+
+      if (allocated(record%iterations)) record%iterations%cut_backs = record%cut_backs
+      if (allocated(before%failed)) record%failed = before%failed
+      if (allocated(before%iterations)) then
+         if (allocated(record%iterations)) then
+            record%iterations = [before%iterations, record%iterations]
+         else
+            record%iterations = before%iterations
+         end if
+      end if
+      record%work = work_record_type(record%work%columns_again + before%work%columns_again, &
+         record%work%columns_full + before%work%columns_full, &
+         record%work%flops_again + before%work%flops_again, &
+         record%work%flops_full + before%work%flops_full)
+   end subroutine add_attempts
+
+   !> Notes that the last attempt at an increment failed.
+   pure subroutine note_failure(record, increment_size, reason)
+      type(increment_record_type), intent(inout) :: record   !! the increment
+      real(dp), intent(in) :: increment_size                 !! size of the attempt [time]
+      character(*), intent(in) :: reason                     !! what failed
+      type(attempt_record_type), allocatable :: more(:)
+      integer :: n
+
+      n = 0
+      if (allocated(record%failed)) n = size(record%failed)
+      allocate (more(n + 1))
+      if (n > 0) more(:n) = record%failed
+      more(n + 1)%time = record%time
+      more(n + 1)%increment_size = increment_size
+      more(n + 1)%reason = reason
+      call move_alloc(more, record%failed)
+   end subroutine note_failure
 
 end module records
