@@ -72,6 +72,7 @@ def test_uniform_strain_of_a_cylinder_that_reaches_the_axis(tmp_path, kind):
 
 
 @pytest.mark.parametrize("named", ["CPE8", "CPS8", "CAX8"])
+@pytest.mark.changes("OPTIONS, PLANE")
 def test_plane_option_overrides_the_names_of_the_elements(tmp_path, named):
     """Plane strain and plane stress differ in S33 and, under one strain, in S11."""
     def make(plane):
@@ -94,6 +95,7 @@ def test_plane_option_makes_a_mesh_axisymmetric(tmp_path):
           checks(np.array([hoop, along, hoop, 0.0]), cards, strain))
 
 
+@pytest.mark.changes("SOLID SECTION")
 def test_thickness_of_a_section_scales_forces(tmp_path):
     """The reaction of a corner of one four-node element: half of pressure x width x thickness."""
     def make(thickness):
