@@ -39,9 +39,20 @@ def split(cards):
         if line.strip().startswith("**"):
             continue
         if fields[0].startswith("*"):
-            parameters = (field.partition("=") for field in fields[1:])
-            found.append((fields[0][1:].upper(), {p[0].strip().upper(): p[2] for p in parameters},
-                          []))
+            found.append((fields[0][1:].upper(), parameters_of(fields[1:]), []))
         else:
             found[-1][2].append(fields)
+    return found
+
+
+def parameters_of(fields):
+    """Return the values of the parameters; a number belongs to the one before, as in LOAD=TOP,2."""
+    found, last = {}, ""
+    for field in fields:
+        name, _, value = field.partition("=")
+        if name.isdigit():
+            found[last] += "," + name
+        else:
+            last = name.strip().upper()
+            found[last] = value
     return found
