@@ -57,3 +57,23 @@ def amplification(scheme):
     weights of the start and of the end are (1 - theta) and theta."""
     theta = {"IMPLICIT": 1.0, "GALERKIN": 2 / 3, "CRANK-NICOLSON": 1 / 2, "EXPLICIT": 1.0}[scheme]
     return -(1 - theta) / theta
+
+
+def stepped(scheme, conductances, ends, omegas, loads):
+    """Temperatures of the two faces in contact of two rods, at every instant, by eq. (3.4).
+
+    `scheme` is a1, a2, a3, b1, b2, b3, c1, c2; `conductances` are k/L of the rods, `ends` the temperatures of their far
+    ends, `omegas` the conductance of the contact and `loads` the heat into the first face, one for every instant; the
+    first instant is in equilibrium without heat at zero. Within the rods K T = 0 then stays so, and they count by k/L.
+    """
+    a1, a2, a3, b1, b2, b3, c1, c2 = scheme
+    rods, contact = np.diag(conductances), np.array([[1.0, -1.0], [-1.0, 1.0]])
+    faces = [np.zeros(2)]
+    for i in range(len(omegas) - 1):
+        now, later = omegas[i], omegas[i + 1]
+        left = a1 * rods + (a2 * now + a3 * later) * contact
+        right = -(b1 * rods + (b2 * now + b3 * later) * contact) @ faces[-1]
+        right += rods @ (a1 * np.asarray(ends[i + 1], float) + b1 * np.asarray(ends[i], float))
+        right += np.array([c1 * loads[i] + c2 * loads[i + 1], 0.0])
+        faces.append(np.linalg.solve(left, right))
+    return faces
