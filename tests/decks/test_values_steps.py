@@ -286,3 +286,63 @@ def test_degrees_of_freedom_of_a_support(tmp_path, one, other):
         return deck, rows
 
     follows(tmp_path, make, one, other)
+
+
+def test_what_stands_before_the_first_step_ends_there_with_new(tmp_path):
+    """It belongs to the first step otherwise."""
+    def make(op):
+        deck = block("BODY.TOP, 2, 2, 0.01", *static(f"*BOUNDARY, OP={op}", *ROLLERS[1:]))
+        free = stressed([0.0, 0.0, 0.0])
+        return deck, [("U2", "BODY.TOP", "LAST", 0.01, 1e-12)] if op == "MOD" else free
+
+    follows(tmp_path, make, "MOD", "NEW")
+
+
+ONCE = {"CLOAD": stressed([0.0, -10.0, 0.0]), "DLOAD": stressed([0.0, -10.0, 0.0]),
+        "DSLOAD": stressed([0.0, -10.0, 0.0]), "CFLUX": at_right(2 * 10.0 * LENGTH / K),
+        "DFLUX": at_right(2 * 10.0 * LENGTH / K)}
+
+
+@pytest.mark.parametrize("load", ONCE)
+@pytest.mark.parametrize("cards", [1, 2])
+def test_loads_of_one_step_on_one_place_add_up(tmp_path, load, cards):
+    """On one card and on two."""
+    model, step, rows, _, _ = REPLACED[load]
+    again = [f"*{load}"] if cards == 2 else []
+    checks = [(q, w, "LAST" if t == 2.0 else t, v, *more) for q, w, t, v, *more in ONCE[load]]
+    judge(tmp_path, model(*step(f"*{load}", *rows, *again, *rows)), checks)
+
+
+@pytest.mark.parametrize("cards", [1, 2])
+def test_of_films_and_given_temperatures_the_last_of_a_step_holds(tmp_path, cards):
+    hot, last = (50.0, 2.0), (80.0, 3.0)
+    again = ["*FILM"] if cards == 2 else []
+    _, faces = conduction.wall(LENGTH, K, 20.0, last[0], film_cold=last[1])
+    judge(tmp_path, bar(*heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", "*FILM",
+                              f"2, F2, {hot[0]}, {hot[1]}", *again, f"2, F2, {last[0]}, {last[1]}")),
+          [("NT", "BODY.RIGHT", "LAST", faces[1], SMALL)], name="films")
+    again = ["*TEMPERATURE"] if cards == 2 else []
+    judge(tmp_path, held_hot(*static("*TEMPERATURE", "BODY, 50.", *again, "BODY.RIGHT, 70.")),
+          [("NT", "BODY.LEFT", "LAST", 50.0, SMALL), ("NT", "BODY.RIGHT", "LAST", 70.0, SMALL)],
+          name="temperatures")
+
+
+def test_later_initial_temperatures_replace_earlier_ones(tmp_path):
+    deck = held_hot("*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY.RIGHT, 30.", *static())
+    judge(tmp_path, deck, [("NT", "BODY.LEFT", "LAST", 0.0, 0.0, "ABS"),
+                           ("NT", "BODY.RIGHT", "LAST", 30.0, SMALL)])
+
+
+def test_given_temperatures_end_where_heat_is_solved(tmp_path):
+    """And are kept by a step of mechanics behind it; the heat of the second step is that of its
+    own ends."""
+    deck = bar("*BOUNDARY", "BODY.LEFT, 1", "BODY.BOTTOM, 2", *static("*TEMPERATURE", "BODY, 50."),
+               *heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", "BODY.RIGHT, 11, 11, 40."), *static())
+    judge(tmp_path, deck, [("NT", "BODY", 1.0, 50.0, SMALL),
+                           ("NT", "BODY.RIGHT", 3.0, 40.0, SMALL),
+                           ("NT", "BODY.LEFT", 3.0, 20.0, SMALL)])
+
+
+def test_degrees_of_freedom_out_of_the_plane_are_passed_over(tmp_path):
+    judge(tmp_path, block(*static("*BOUNDARY", "BODY.TOP, 3, 6", "*DLOAD", *DOWN)),
+          stressed([0.0, -5.0, 0.0]))
