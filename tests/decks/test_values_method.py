@@ -123,7 +123,7 @@ def stepping(scheme):
     rows = [(f"{side}_temperature", "FACE", time, face[k], 1e-8)
             for time, face in list(zip(times, faces, strict=True))[1:]
             for k, side in enumerate(("slave", "master"))]
-    return deck, rows
+    return deck, [*rows, *(("heat_imbalance", "", time, 0.0, 1e-10, "ABS") for time in times[1:])]
 
 
 def shifted(one, other, by):

@@ -236,11 +236,17 @@ def test_increments_are_those_of_the_analysis(tmp_path, analysis):
 @pytest.mark.parametrize("analysis", [pytest.param(name, marks=pytest.mark.changes(
     f"{name}, DIRECT")) for name in ANALYSES])
 def test_direct_increments_land_on_nothing_else(tmp_path, analysis):
-    """A check at another time is landed on without DIRECT, and an error with it."""
+    """Without DIRECT they land on the corners of an amplitude and on the times of checks, which
+    are errors with it where no increment ends."""
     card = f"*{analysis}{STEADY.get(analysis, ', STEADY STATE')}"
-    free, direct = (ANALYSES[analysis](card + more, "0.25, 1.") for more in ("", ", DIRECT"))
+    corner = ["*AMPLITUDE, NAME=CORNER", "0., 1., 0.6, 2.", "*STEP"]
+    free, direct = [], []
+    for deck, more in ((free, ""), (direct, ", DIRECT")):
+        for line in ANALYSES[analysis](card + more, "0.25, 1.", "*BOUNDARY, AMPLITUDE=CORNER",
+                                       "BODY.LEFT, 1"):
+            deck += corner if line == "*STEP" else [line]
     result = judge(tmp_path, free, [("time", "", 0.3, 0.3, 1e-12)])
-    np.testing.assert_allclose(times_of(result), [0.25, 0.3, 0.5, 0.75, 1.0], rtol=1e-12)
+    np.testing.assert_allclose(times_of(result), [0.25, 0.3, 0.5, 0.6, 0.75, 1.0], rtol=1e-12)
     judge(tmp_path, direct, [("time", "", 0.3, 0.3, 1e-12)], status=1)
     result = judge(tmp_path, direct, [("time", "", 0.25, 0.25, 1e-12)])
     np.testing.assert_allclose(times_of(result), [0.25, 0.5, 0.75, 1.0], rtol=1e-12)
