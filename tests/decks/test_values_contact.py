@@ -1,7 +1,7 @@
 """Laws of a surface interaction: two values of each field, of blocks under a known pressure."""
 
 import pytest
-from physics import follows, judge, material, mesh
+from physics import follows, judge, material, mesh, nodes_of
 from test_physics_schemes import step
 
 import conduction
@@ -70,3 +70,23 @@ def test_type_of_an_open_law(tmp_path, gap):
 def test_an_open_law_holds_its_value_at_no_gap_under_pressure(tmp_path):
     judge(tmp_path, pressed("*GAP LAW, TYPE=GAS", "0.8, 0.1"), crossing(8.0))
     judge(tmp_path, pressed("*GAP LAW, TYPE=CLEARANCE", "0.8, 0.", "0.2, 0.3"), crossing(0.8))
+
+
+@pytest.mark.changes("CONTACT PAIR")
+def test_slave_and_master_of_a_pair(tmp_path):
+    """Heat goes from the slave to the master: it is negative where the cold block is the slave."""
+    flux, faces = conduction.wall([0.5, 1.0], [K, K], HOT, 0.0, contacts=[0.8])
+    touching = [n for n, (_, y) in nodes_of(BLOCKS).items() if y == 0.0]
+    lowest = {1: min(touching), -1: min(n for n in touching if n > 100)}
+
+    def make(order):
+        surfaces = ["UPPER.BOTTOM", "LOWER.TOP"][::order]
+        deck = pressed("*GAP LAW, TYPE=POWER", "0.8, 0., 1.")
+        deck[deck.index("UPPER.BOTTOM, LOWER.TOP")] = ", ".join(surfaces)
+        slave, master = faces[1:3][::order]
+        return deck, [("heat_flux", "FACE", "LAST", order * flux, 1e-8),
+                      ("slave_temperature", "FACE", "LAST", slave, 1e-8),
+                      ("master_temperature", "FACE", "LAST", master, 1e-8),
+                      ("slave_node", "MIN", "LAST", lowest[order], 0.0, "ABS")]
+
+    follows(tmp_path, make, 1, -1)

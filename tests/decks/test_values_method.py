@@ -7,7 +7,7 @@ from blocks import write
 from changes import note_changes
 from deck_runs import run, solve
 from physics import follows, judge, material, mesh, verify
-from test_physics_loads import block, static, stressed
+from test_physics_loads import block, heat, static, stressed
 
 import conduction
 import rods as reference
@@ -143,15 +143,38 @@ def test_a_multiple_of_all_coefficients_is_the_same_scheme(tmp_path):
     judge(tmp_path, deck, rows)
 
 
-@pytest.mark.parametrize(("name", "scheme"), [
-    ("IMPLICIT", (1, 0, 1, 0, 0, 0, 0, 1)), ("EXPLICIT", (1, 1, 0, 0, 0, 0, 0, 1)),
-    ("CRANK-NICOLSON", (1 / 2, 1 / 4, 1 / 4, 1 / 2, 1 / 4, 1 / 4, 1 / 2, 1 / 2)),
-    ("GALERKIN", (2 / 3, 1 / 6, 1 / 2, 1 / 3, 1 / 6, 1 / 6, 1 / 3, 2 / 3))])
-def test_coefficients_of_the_named_schemes(tmp_path, name, scheme):
+NAMED = {"IMPLICIT": (1, 0, 1, 0, 0, 0, 0, 1), "EXPLICIT": (1, 1, 0, 0, 0, 0, 0, 1),
+         "CRANK-NICOLSON": (1 / 2, 1 / 4, 1 / 4, 1 / 2, 1 / 4, 1 / 4, 1 / 2, 1 / 2),
+         "GALERKIN": (2 / 3, 1 / 6, 1 / 2, 1 / 3, 1 / 6, 1 / 6, 1 / 3, 2 / 3)}
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_coefficients_of_the_named_schemes(tmp_path, name):
     """At a conductance that changes: the digest's table of eq. (3.4)."""
-    deck, rows = stepping(scheme)
+    deck, rows = stepping(NAMED[name])
     at = deck.index("*THERMAL SCHEME, TYPE=FREE")
     judge(tmp_path, [*deck[:at], f"*THERMAL SCHEME, TYPE={name}", *deck[at + 2:]], rows)
+
+
+FILM, SINK, END = 6.0, 300.0, 20.0
+@pytest.mark.parametrize("name", [*NAMED, "FREE"])
+def test_a_film_that_grows_follows_the_scheme(tmp_path, name):
+    """Its coefficient stands where the conductance of the contact does. Implicit and explicit
+    schemes have its steady state at the end of every increment, whatever it was before."""
+    times, scheme = [0.0, 0.25, 0.5, 0.75, 1.0], NAMED.get(name, tuple(BASE.values()))
+    found = conduction.stepped_with_film(scheme, K / SIDES[1], [END * t for t in times],
+                                         [FILM * t for t in times], [SINK] * 5)
+    if name in ("IMPLICIT", "EXPLICIT"):
+        for t, temperature in list(zip(times, found, strict=True))[1:]:
+            _, faces = conduction.wall(SIDES[1], K, END * t, SINK, film_cold=FILM * t)
+            assert temperature == pytest.approx(faces[1], rel=1e-12)
+    data = [", ".join(f"{c:.15g}" for c in scheme)] if name == "FREE" else []
+    deck = [*mesh("BODY", [0.0, 0.4, SIDES[1]], [0.0, 0.5]), *material("BODY", conductivity=K),
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", f"*THERMAL SCHEME, TYPE={name}",
+            *data, *heat("*BOUNDARY", f"BODY.LEFT, 11, 11, {END!r}", "*FILM",
+                         f"2, F2, {SINK!r}, {FILM!r}", times="0.25, 1.")]
+    judge(tmp_path, deck, [("NT", "BODY.RIGHT", t, value, 1e-9)
+                           for t, value in list(zip(times, found, strict=True))[1:]])
 
 
 # Solver and refinement.

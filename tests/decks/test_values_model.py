@@ -15,8 +15,8 @@ YOUNG, SMALL = 1000.0, 1e-9
 # Text around the model.
 
 def test_parameter_is_a_number_a_name_or_a_part(tmp_path):
-    deck = block("*PARAMETER", "load = 5., where = BODY, side = TOP", *static(
-        "*DSLOAD", "<where>.<SIDE>, P, <load>"))
+    deck = block("*PARAMETER", "load = 5., where = BODY, side = TOP, kind = MUMPS",
+                 "*SOLVER, TYPE=<kind>", *static("*DSLOAD", "<where>.<SIDE>, P, <load>"))
     judge(tmp_path, deck, stressed([0.0, -5.0, 0.0]))
 
 
@@ -41,6 +41,19 @@ def test_included_file_is_the_one_named(tmp_path):
     follows(tmp_path, lambda value: (
         block(*static("*DSLOAD", f"*INCLUDE, INPUT=load{value:g}.inc")),
         stressed([0.0, -value, 0.0])), 5.0, 4.0)
+
+
+def test_included_file_stands_beside_the_deck_or_in_the_current_folder(tmp_path):
+    """Beside the deck comes first."""
+    (tmp_path / "decks").mkdir()
+    (tmp_path / "here").mkdir()
+    deck = write(tmp_path / "decks" / "deck.inp",
+                 block(*static("*DSLOAD", "*INCLUDE, INPUT=load.inc")),
+                 verify(*stressed([0.0, -5.0, 0.0])))
+    for folder, value in (("here", 5.0), ("decks", 4.0)):
+        write(tmp_path / folder / "load.inc", [f"BODY.TOP, P, {value!r}"])
+        process = run("run", "--quiet", deck, folder=tmp_path / "here")
+        assert process.returncode == (0 if folder == "here" else 4), process.stderr
 
 
 @pytest.mark.changes("HEADING")
@@ -288,6 +301,39 @@ def test_elements_of_a_surface(tmp_path):
 
     follows(tmp_path, make, [1], [2])
     follows(tmp_path, make, ["SOME"], [1])
+
+
+# Sections.
+
+@pytest.mark.changes("SOLID SECTION")
+def test_thickness_of_a_section_scales_heat_and_areas(tmp_path):
+    """And no temperature."""
+    def make(thickness):
+        deck = [*mesh("UP", [0.0, 1.0], [0.0, 0.5]), *mesh("LOW", [0.0, 1.0], [-0.5, 0.0],
+                                                           first=101)]
+        for name in ("UP", "LOW"):
+            deck += [*material(name, conductivity=2.5), f"{thickness!r}"]
+        deck += ["*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=POWER", "10., 0., 1.",
+                 "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "UP.BOTTOM, LOW.TOP"]
+        flux = 80.0 / (0.2 + 0.1 + 0.2)
+        return [*deck, *heat("*BOUNDARY", "UP.TOP, 11, 11, 80.", "LOW.BOTTOM, 11")], [
+            ("heat_in", "", "LAST", flux * thickness, SMALL),
+            ("heat_rate", "FACE", "LAST", flux * thickness, SMALL),
+            ("heat_flux", "FACE", "LAST", flux, SMALL),
+            ("weight", "MAX", "LAST", 4 / 6 * thickness, SMALL)]
+
+    follows(tmp_path, make, 1.0, 0.3)
+
+
+def test_of_two_sections_the_later_one_holds(tmp_path):
+    cards = mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS4")
+    for order in ((900.0, 1000.0), (1000.0, 900.0)):
+        deck = [*cards, *material("BODY", (order[0], 0.0)), "*MATERIAL, NAME=LATER", "*ELASTIC",
+                f"{order[1]!r}, 0.", "*SOLID SECTION, ELSET=BODY, MATERIAL=LATER", *static(
+                    "*BOUNDARY", "BODY.BOTTOM, 2", "BODY.LEFT, 1", "BODY.TOP, 2, 2, 0.001")]
+        judge(tmp_path, deck, [("S22", "BODY", "LAST", order[1] * 0.001, SMALL)])
+        process = run("check", tmp_path / "deck.inp")
+        assert "warning: this section replaces an earlier one" in process.stderr
 
 
 # Materials.

@@ -352,3 +352,60 @@ def test_given_temperatures_end_where_heat_is_solved(tmp_path):
 def test_degrees_of_freedom_out_of_the_plane_are_passed_over(tmp_path):
     judge(tmp_path, block(*static("*BOUNDARY", "BODY.TOP, 3, 6", "*DLOAD", *DOWN)),
           stressed([0.0, -5.0, 0.0]))
+
+
+# Gravity is one load along each axis.
+
+@pytest.mark.changes("DLOAD")
+@pytest.mark.parametrize(("one", "other"), [((3.0, -4.0), (4.0, -3.0)), ((3.0, -4.0), (-3.0, -4.0)),
+                                            ((3.0, -4.0), (3.0, 4.0))])
+def test_direction_of_gravity(tmp_path, one, other):
+    """Reactions of the block that cannot move at all: its weight, and which way it pulls."""
+    weight, area = 2.0 * 9.81, WIDTH * 3.0
+
+    def make(direction):
+        pull = [weight * area * c / np.hypot(*direction) for c in direction]
+        deck = [*single(2.0), *static(
+            "*DLOAD", f"BODY, GRAV, 9.81, {direction[0]}, {direction[1]}, 0.")]
+        return deck, corner_reactions(pull)
+
+    follows(tmp_path, make, one, other)
+
+
+def single(density):
+    """Return one four-node element that cannot move."""
+    return [*mesh("BODY", [0.0, WIDTH], [0.0, 3.0], "CPE4"),
+            *material("BODY", (YOUNG, POISSON), density=density), "*BOUNDARY", "BODY, 1, 2"]
+
+
+def corner_reactions(pull):
+    """Return the checks of a body force: a quarter of it at each node."""
+    return [(f"RF{k + 1}", "BODY", "LAST", -force / 4, SMALL, "ABS")
+            for k, force in enumerate(pull)]
+
+
+@pytest.mark.changes("DLOAD, OP")
+def test_gravity_along_one_axis_stays_where_the_other_is_given(tmp_path):
+    weight = 2.0 * 9.81 * WIDTH * 3.0
+    follows(tmp_path, lambda op: (
+        [*single(2.0), *static("*DLOAD", "BODY, GRAV, 9.81, 0., -1., 0."),
+         *static(f"*DLOAD, OP={op}", "BODY, GRAV, 9.81, 1., 0., 0.")],
+        corner_reactions([weight, -weight if op == "MOD" else 0.0])), "MOD", "NEW")
+
+
+@pytest.mark.changes("FILM")
+@pytest.mark.parametrize(("face", "side", "far"), [(1, "BOTTOM", "TOP"), (2, "RIGHT", "LEFT"),
+                                                   (3, "TOP", "BOTTOM"), (4, "LEFT", "RIGHT")])
+def test_film_on_every_face(tmp_path, face, side, far):
+    """Of one element, the opposite face at 20; another sink and another coefficient."""
+    thick = 3.0 if face in (1, 3) else WIDTH
+    cards = [*mesh("BODY", [0.0, WIDTH], [0.0, 3.0]), *material("BODY", conductivity=K)]
+
+    def make(film):
+        _, faces = conduction.wall(thick, K, 20.0, film[0], film_cold=film[1])
+        return [*cards, *heat("*BOUNDARY", f"BODY.{far}, 11, 11, 20.", "*FILM",
+                              f"BODY, F{face}, {film[0]!r}, {film[1]!r}")], [
+            ("NT", f"BODY.{side}", "LAST", faces[1], SMALL)]
+
+    follows(tmp_path, make, (300.0, 4.0), (280.0, 4.0))
+    follows(tmp_path, make, (300.0, 4.0), (300.0, 3.0))

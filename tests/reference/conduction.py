@@ -77,3 +77,19 @@ def stepped(scheme, conductances, ends, omegas, loads):
         right += np.array([c1 * loads[i] + c2 * loads[i + 1], 0.0])
         faces.append(np.linalg.solve(left, right))
     return faces
+
+
+def stepped_with_film(scheme, conductance, ends, films, sinks):
+    """Temperatures of the end of a rod under a film, at every instant, by eq. (3.4) with the film in the place of G and
+    its sink in that of Q; from an equilibrium at zero. With c1 = 0 loads count as they are at the end, films with them.
+    """
+    a1, a2, a3, b1, b2, b3, c1, c2 = scheme
+    if c1 == 0.0:
+        a2, a3, b2, b3 = 0.0, a2 + a3, 0.0, b2 + b3
+    found = [0.0]
+    for i in range(len(films) - 1):
+        now, later = films[i], films[i + 1]
+        right = -(b1 * conductance + b2 * now + b3 * later) * found[-1]
+        right += conductance * (a1 * ends[i + 1] + b1 * ends[i]) + c1 * now * sinks[i] + c2 * later * sinks[i + 1]
+        found.append(right / (a1 * conductance + a2 * now + a3 * later))
+    return found
