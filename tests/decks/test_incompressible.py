@@ -1,4 +1,4 @@
-"""Nearly incompressible thick cylinders under inner pressure: Lame's displacements, or a warning."""
+"""Nearly incompressible cylinders under inner pressure: Lame's displacements, or a warning."""
 
 import numpy as np
 import pytest

@@ -191,15 +191,14 @@ def test_system_of_an_orientation(tmp_path):
 
     def make(system):
         axes = ROUND if system == "CYLINDRICAL" else orientation(0.0, "ROUND")
-        tensor = conduction.conductivity_tensor(
-            3.0, 0.5, 90.0 - 45.0 if system == "CYLINDRICAL" else 0.0)
+        tensor = conduction.conductivity_tensor(3.0, 0.5, 45.0 if system == "CYLINDRICAL" else 0.0)
         given = [f"{n}, 11, 11, {np.log(np.hypot(*p)):.15g}" for n, p in nodes.items()]
         flux = -tensor @ gradient
         return [*axes, *cards, *material(
             "BODY", conductivity=(3.0, 0.5, 1.0), conductivity_type="ORTHO",
             section=", ORIENTATION=ROUND"), "*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.",
             "*BOUNDARY", *given, "*END STEP"], [
-            # Parabolas through log r, and fluxes extrapolated over elements of a ninth of 90 degrees.
+            # Parabolas through log r, fluxes extrapolated over elements of an eighth of 90 degrees.
             (f"HFL{k + 1}", diagonal, "LAST", flux[k], 0.03) for k in (0, 1)]
 
     follows(tmp_path, make, "CYLINDRICAL", "RECTANGULAR")

@@ -1,7 +1,6 @@
 """What the cards of a model change: two values of each, with answers that are known."""
 
 import h5py
-import numpy as np
 import pytest
 from blocks import write
 from changes import note_changes

@@ -62,7 +62,8 @@ def two_squares(key):
             at(b, "NSET, NSET", "BOUNDARY, AMPLITUDE", "AMPLITUDE, NAME")]
         force = PUSH[at(b, "ELSET, ELSET")] / 4
         first = 1 + 10 * b
-        rows += [("U2", first + 2, "LAST", moved, 1e-9), ("S22", first, "LAST", young * moved, 1e-9),
+        rows += [("U2", first + 2, "LAST", moved, 1e-9),
+                 ("S22", first, "LAST", young * moved, 1e-9),
                  ("NT", first, "LAST", WARM[at(b, "NODE, NSET")], 1e-9),
                  ("RF1", first, "LAST", -force, 1e-9), ("RF1", first + 2, "LAST",
                   -force - PULL[at(b, "SURFACE, NAME")] / 2, 1e-9)]
@@ -130,7 +131,8 @@ def two_stacks(key):
 
 
 @pytest.mark.parametrize("key", [pytest.param(key, marks=pytest.mark.changes(key)) for key in (
-    "SURFACE INTERACTION, NAME", "CONTACT PAIR", "CONTACT PAIR, INTERACTION", "CONTACT PAIR, NAME")])
+    "SURFACE INTERACTION, NAME", "CONTACT PAIR", "CONTACT PAIR, INTERACTION",
+    "CONTACT PAIR, NAME")])
 def test_names_of_contact(tmp_path, key):
     assert_swapped(tmp_path, two_stacks, key)
 

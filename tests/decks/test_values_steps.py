@@ -262,6 +262,12 @@ def test_a_step_with_more_increments_than_inc_is_refused(tmp_path):
     note_changes(*decks)
 
 
+@pytest.mark.parametrize(("increments", "status"), [(100, 0), (101, 1)])
+def test_a_step_has_a_hundred_increments_without_inc(tmp_path, increments, status):
+    judge(tmp_path, block(*static("*DSLOAD", "BODY.TOP, P, 5.", times=f"1., {increments}.")),
+          stressed([0.0, -5.0, 0.0]), status=status)
+
+
 # Supports and given temperatures: every field.
 
 @pytest.mark.changes("BOUNDARY")
@@ -325,7 +331,8 @@ def test_of_films_and_given_temperatures_the_last_of_a_step_holds(tmp_path, card
     again = ["*FILM"] if cards == 2 else []
     _, faces = conduction.wall(LENGTH, K, 20.0, last[0], film_cold=last[1])
     judge(tmp_path, bar(*heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", "*FILM",
-                              f"2, F2, {hot[0]}, {hot[1]}", *again, f"2, F2, {last[0]}, {last[1]}")),
+                              f"2, F2, {hot[0]}, {hot[1]}", *again,
+                              f"2, F2, {last[0]}, {last[1]}")),
           [("NT", "BODY.RIGHT", "LAST", faces[1], SMALL)], name="films")
     again = ["*TEMPERATURE"] if cards == 2 else []
     judge(tmp_path, held_hot(*static("*TEMPERATURE", "BODY, 50.", *again, "BODY.RIGHT, 70.")),
