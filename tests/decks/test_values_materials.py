@@ -238,3 +238,79 @@ def test_direction_of_the_axis_turns_axes_the_other_way(tmp_path):
         judge(tmp_path, deck, loose)
         found[axis] = deck, loose
     judge(tmp_path, found[1.0][0], found[-1.0][1], status=4)
+
+
+# About an axis: 1 along the radius, 2 along the axis, 3 round the circumference.
+
+def bored(moduli):
+    """Return a free ring about an axis under a pressure inside, and its answer: contractions from
+    the axis and along it are 0, so that it is in plane stress."""
+    along, axial, across = moduli
+    radial, hoop, out = lame.polar_orthotropic(INNER, INNER, OUTER, PRESSURE, along, across, 0.2)
+    data = [along, axial, across, 0.0, 0.2, 0.0, 400.0, 400.0, 400.0]
+    return [*mesh("BODY", list(np.linspace(INNER, OUTER, 9)), [0.0, 0.2], "CAX8"), *material(
+        "BODY", data, elastic_type="ENGINEERING CONSTANTS"), *static(
+            "*BOUNDARY", "BODY.BOTTOM, 2", "*DSLOAD", f"BODY.LEFT, P, {PRESSURE!r}")], [
+        ("U1", "BODY.LEFT", "LAST", out, 1e-4), ("S33", "BODY.LEFT", "LAST", hoop, 2e-2),
+        ("S22", "BODY", "LAST", 0.0, 1e-7, "ABS"), ("U2", "BODY.TOP", "LAST", 0.0, 1e-10, "ABS")]
+
+
+@pytest.mark.changes("ELASTIC")
+@pytest.mark.parametrize("other", [(1000.0, 700.0, 2500.0), (900.0, 700.0, 2300.0)])
+def test_moduli_of_a_ring_about_an_axis(tmp_path, other):
+    follows(tmp_path, bored, (900.0, 700.0, 2500.0), other)
+
+
+def test_modulus_along_the_axis_of_a_ring_that_is_pressed_on_its_ends(tmp_path):
+    cards = mesh("BODY", [INNER, OUTER], [0.0, 0.5], "CAX8")
+
+    def make(axial):
+        data = [900.0, axial, 2500.0, 0.0, 0.2, 0.0, 400.0, 400.0, 400.0]
+        return [*cards, *material("BODY", data, elastic_type="ENGINEERING CONSTANTS"), *static(
+            "*BOUNDARY", "BODY.BOTTOM, 2", "*DSLOAD", "BODY.TOP, P, 7.")], [
+            ("U2", "BODY.TOP", "LAST", -7.0 / axial * 0.5, 1e-9),
+            ("S22", "BODY", "LAST", -7.0, 1e-9), ("U1", "BODY", "LAST", 0.0, 1e-12, "ABS")]
+
+    follows(tmp_path, make, 700.0, 800.0)
+
+
+@pytest.mark.changes("EXPANSION")
+@pytest.mark.parametrize("k", [0, 1, 2])
+def test_every_expansion_about_an_axis(tmp_path, k):
+    """A heated ring that cannot move: Hooke's law along r, the axis and round it."""
+    cards = mesh("BODY", [INNER, OUTER], [0.0, 0.5], "CAX8")
+    rise = 40.0
+
+    def make(factor):
+        alpha = np.array([1e-5, 3e-5, 5e-5])
+        alpha[k] *= factor
+        stress = -rise * plates.matrix(STIFFNESS)[:3, :3] @ alpha
+        return [*cards, *material("BODY", CONSTANTS.values(), elastic_type="ENGINEERING CONSTANTS",
+                                  expansion=alpha, expansion_type="ORTHO"), *static(
+            "*BOUNDARY", "BODY, 1, 2", "*TEMPERATURE", f"BODY, {rise!r}")], [
+            (name, "BODY", "LAST", value, 1e-9)
+            for name, value in zip(("S11", "S22", "S33"), stress, strict=True)]
+
+    follows(tmp_path, make, 1.0, 1.1)
+
+
+@pytest.mark.changes("CONDUCTIVITY")
+def test_conductivities_about_an_axis(tmp_path):
+    """The first along the radius, the second along the axis; round it no heat flows."""
+    cards = mesh("BODY", list(np.linspace(INNER, OUTER, 9)), [0.0, 0.5], "CAX8")
+    height = 0.5
+
+    def make(values):
+        k, sides, rate = values
+        return [*cards, *material("BODY", conductivity=k, conductivity_type="ORTHO"), "*STEP",
+                "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY",
+                f"BODY.{sides[0]}, 11, 11, 100.", f"BODY.{sides[1]}, 11, 11, 10.", "*END STEP"], [
+            ("heat_in", "", "LAST", rate, 1e-5)]
+
+    for k in ((3.0, 0.5, 2.0), (2.0, 0.7, 5.0)):
+        through = height * conduction.tube_rate(INNER, OUTER, k[0], 100.0, 10.0)
+        along = k[1] * 90.0 / height * np.pi * (OUTER**2 - INNER**2)
+        judge(tmp_path, *make((k, ("LEFT", "RIGHT"), through)))
+        judge(tmp_path, *make((k, ("TOP", "BOTTOM"), along)))
+    follows(tmp_path, make, *(((k, 0.5, 1.0), ("LEFT", "RIGHT"), height * conduction.tube_rate(
+        INNER, OUTER, k, 100.0, 10.0)) for k in (3.0, 2.0)))
