@@ -141,3 +141,23 @@ def test_faces_in_contact_are_loaded(tmp_path):
                  "UP.TOP, P, 5.", "UP.BOTTOM, P, 2.")]
     judge(tmp_path, deck, [("pressure", "FACE", "LAST", 3.0, SMALL), ("S22", "UP", "LAST", -5.0,
                            SMALL), ("S22", "LOW", "LAST", -3.0, SMALL)])
+
+
+@pytest.mark.parametrize("levels", [0, 1, 2])
+def test_refinement_keeps_what_the_deck_gives(tmp_path, levels):
+    """Heat for a set stays on the nodes of the deck; what is prescribed for a set, the flux into a
+    face and the film go on to the new nodes and sides; a source goes on to the new elements."""
+    cards = [*mesh("BODY", [0.0, WIDTH], [0.0, 3.0]), *material("BODY", conductivity=K),
+             f"*REFINE, LEVELS={levels}"]
+    judge(tmp_path, [*cards, *heat("*BOUNDARY", "BODY.BOTTOM, 11", "*CFLUX", "BODY.TOP, 11, 4.")],
+          [("heat_in", "", "LAST", 12.0, SMALL), ("NT", "BODY.BOTTOM", "LAST", 0.0, SMALL, "ABS")],
+          name="nodes")
+    _, faces = conduction.wall(3.0, K, 20.0, 300.0, film_cold=4.0)
+    judge(tmp_path, [*cards, *heat("*BOUNDARY", "BODY.BOTTOM, 11, 11, 20.", "*FILM",
+                                   "BODY, F3, 300., 4.")],
+          [("NT", "BODY.TOP", "LAST", faces[1], SMALL), ("NT", "BODY.BOTTOM", "LAST", 20.0, SMALL)],
+          name="films")
+    judge(tmp_path, [*cards, *heat("*BOUNDARY", "BODY.BOTTOM, 11", "*DFLUX", "BODY, S3, 10.",
+                                   "BODY, BF, 6.")],
+          [("NT", "BODY.TOP", "LAST", (10.0 * 3.0 + 6.0 * 9.0 / 2) / K, SMALL),
+           ("heat_in", "", "LAST", (10.0 + 6.0 * 3.0) * WIDTH, SMALL)], name="fluxes")
