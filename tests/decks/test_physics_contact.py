@@ -37,6 +37,7 @@ def stack(clearance, down):
 
 @pytest.mark.parametrize(("one", "other"), [(0.004, 0.005), (0.02, 0.03), (-0.003, -0.002),
                                             (0.0, 0.001), (0.012, 0.008)])
+@pytest.mark.changes("CLEARANCE, VALUE")
 def test_clearance_takes_the_place_of_the_gap(tmp_path, one, other):
     """Closed, open, overlapping, touching, and one of each; the blocks approach by 0.01."""
     follows(tmp_path, lambda clearance: stack(clearance, 0.01), one, other)
@@ -85,6 +86,7 @@ def fitted(plane, kinds=("CAX8", "CAX8")):
 
 
 @pytest.mark.parametrize("plane", ["stress", "strain"])
+@pytest.mark.changes("CLEARANCE, VALUE")
 def test_press_fit_about_an_axis(tmp_path, plane):
     """Ends free: Lame in plane stress; ends held: in plane strain."""
     follows(tmp_path, fitted(plane), 0.01, 0.012)
@@ -110,6 +112,7 @@ def rings(kind, angles, closed):
 @pytest.mark.parametrize(("angles", "closed"), [(np.linspace(0.0, 90.0, 9), False),
                                                 (np.linspace(0.0, 360.0, 33), True)])
 @pytest.mark.parametrize("family", ["CPE8", "CPS8"])
+@pytest.mark.changes("CLEARANCE, VALUE")
 def test_hub_in_a_rim(tmp_path, family, angles, closed):
     """A quarter, and the whole with a contact surface that is closed; sides are parabolas."""
     cards, held = rings(family, list(angles), closed)
@@ -240,6 +243,7 @@ def layered(conductances):
 
 
 @pytest.mark.parametrize("other", [(0.8, 0.2), (0.7, 0.3)])
+@pytest.mark.changes("GAP LAW")
 def test_two_interfaces_have_conductances_of_their_own(tmp_path, other):
     follows(tmp_path, layered, (0.7, 0.2), other)
 
@@ -268,5 +272,6 @@ def sheared(frictions):
                   shear, 2e-2), ("shear_force", "TWO", "LAST", shear, 2e-2)]
 
 
+@pytest.mark.changes("FRICTION")
 def test_two_interfaces_have_frictions_of_their_own(tmp_path):
     follows(tmp_path, sheared, (0.1, 0.3), (0.3, 0.15))

@@ -50,6 +50,24 @@ def test_hot_tube_is_in_equilibrium_and_compatible(plane):
     np.testing.assert_allclose([state(INNER)[1], state(OUTER)[1]], 0.0, atol=1e-10)
 
 
+def test_ring_of_unequal_moduli_is_in_equilibrium_and_obeys_hooke():
+    along, across, nu = 900.0, 2500.0, 0.2
+
+    def state(r, *moduli):
+        return lame.polar_orthotropic(r, INNER, OUTER, 10.0, *moduli)
+
+    radial, hoop, moved = state(RADII, along, across, nu)
+    force = derivative(lambda r: r * state(r, along, across, nu)[0], RADII) - hoop
+    np.testing.assert_allclose(force, 0.0, atol=1e-7)
+    strain = derivative(lambda r: state(r, along, across, nu)[2], RADII)
+    np.testing.assert_allclose(strain, (radial - nu * hoop) / along, rtol=1e-7)
+    np.testing.assert_allclose(moved / RADII, hoop / across - nu * radial / along, rtol=1e-12)
+    assert state(INNER, along, across, nu)[0] == pytest.approx(-10.0)
+    for found, known in zip(state(RADII, YOUNG, YOUNG, POISSON)[:2],
+                            lame.cylinder(RADII, INNER, OUTER, 10.0), strict=True):
+        np.testing.assert_allclose(found, known, rtol=1e-12)
+
+
 def test_press_fit_closes_the_overlap():
     hub, rim, overlap = (2000.0, 0.3), (700.0, 0.33), 0.01
     for plane in ("stress", "strain"):
