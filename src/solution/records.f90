@@ -6,7 +6,7 @@ module records
    implicit none
    private
    public :: increment_record_type, contact_record_type, iteration_record_type
-   public :: field_record_type, work_record_type
+   public :: field_record_type, work_record_type, element_points_record_type
    public :: status_open, status_slip, status_stick, edges_kept
 
    integer, parameter :: status_open = 0    !! gap, zone I
@@ -58,9 +58,25 @@ module records
       !> (2, points) x, y; unallocated without heat [power/length^2]
       real(dp), allocatable :: heat_flux(:, :)
       real(dp), allocatable :: reaction(:, :)       !! (2, nodes) at supports, else 0 [force]
+      !> (2, nodes) reaction and applied forces, without those of the contacts [force]
+      real(dp), allocatable :: external_force(:, :)
       !> (nodes) heat that enters at prescribed temperatures; unallocated without heat [power]
       real(dp), allocatable :: reaction_heat(:)
+      !> (nodes) the same with loads and films, without what crosses the contacts [power]
+      real(dp), allocatable :: external_heat(:)
    end type field_record_type
+
+   !> Integration points of the elements of a set (*EL PRINT), along x and y or the axes of the
+   !> section's orientation.
+   type :: element_points_record_type
+      integer, allocatable :: element(:)          !! (points) element index
+      integer, allocatable :: point(:)            !! (points) number of the point in its element
+      real(dp), allocatable :: position(:, :)     !! (2, points) x, y [length]
+      !> (4, points) 11, 22, 33, 12; unallocated before mechanics is solved [stress]
+      real(dp), allocatable :: stress(:, :)
+      !> (2, points) along 1, 2; unallocated without heat [power/length^2]
+      real(dp), allocatable :: heat_flux(:, :)
+   end type element_points_record_type
 
    !> Work of the partial re-factorisation of (3.4) in one increment.
    type :: work_record_type
@@ -91,6 +107,8 @@ module records
       type(contact_record_type), allocatable :: contacts(:)     !! one an interface
       type(iteration_record_type), allocatable :: iterations(:) !! unallocated without coupling
       type(field_record_type) :: fields                         !! fields
+      !> One an *EL PRINT of the step; unallocated for none.
+      type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work                            !! re-factorisation
       type(string_type), allocatable :: warnings(:)             !! unallocated for none
    end type increment_record_type
