@@ -93,6 +93,25 @@ def test_a_force_on_a_support_is_part_of_the_external_force(tmp_path, force):
     np.testing.assert_allclose(columns(found[0])["RF2"], 0.0, atol=1e-12 * force)
 
 
+@pytest.mark.parametrize("pressure", [10.0, 12.0])
+def test_what_crosses_a_contact_is_not_external(tmp_path, pressure):
+    """Two blocks pressed and heated: at their faces neither a force nor heat comes from outside."""
+    lower = mesh("LOWER", [0.0, 0.5, 1.25], [-1.0, 0.0], first=101)
+    found = tables(tmp_path, BODY, lower, material("LOWER", (YOUNG, 0.1), conductivity=2.0), [
+        "*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=POWER", "1.5, 0., 1.",
+        "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "BLOCK.BOTTOM, LOWER.TOP",
+        "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", "*BOUNDARY",
+        "LOWER.BOTTOM, 2", "101, 1", "1, 1", "BLOCK.TOP, 11, 11, 90.", "LOWER.BOTTOM, 11, 11, 20.",
+        "*DLOAD", f"BLOCK, P3, {pressure!r}", "*NODE PRINT, NSET=LOWER.TOP", "RF, RFL",
+        "*NODE PRINT, NSET=LOWER.BOTTOM, TOTALS=ONLY", "RF, RFL", "*END STEP",
+        "*VERIFY, KIND=ANALYTIC", f"pressure, FACE, LAST, {pressure!r}, 1.E-9"])
+    for name in ("RF1", "RF2", "RFL"):
+        np.testing.assert_allclose(columns(found[0])[name], 0.0, atol=1e-10)
+    flux = 70.0 / (1 / CONDUCTIVITY + 1 / 1.5 + 1 / 2.0)
+    np.testing.assert_allclose([float(v) for v in found[1][4][0]],
+                               [0.0, 1.25 * pressure, -1.25 * flux], rtol=ROUNDING, atol=1e-10)
+
+
 @pytest.mark.parametrize("flux", [8.0, 6.0])
 def test_temperatures_and_external_heat_of_a_wall(tmp_path, flux):
     """Flux in on the right, a film on the left: T falls from the right by q/k; sums are q A."""
@@ -205,8 +224,8 @@ def test_what_a_step_has_not_is_said(tmp_path):
 def test_stress_that_a_heat_step_keeps_is_that_of_its_own_temperatures(tmp_path):
     """Heated after the last mechanics: the stress at the points stays, as at the nodes."""
     body = [*BLOCK, *material("BLOCK", (YOUNG, POISSON), expansion=1e-4, conductivity=1.0)]
-    found = tables(tmp_path, body, static(*HELD, "*DLOAD", "BLOCK, P3, 6.", "*EL PRINT, ELSET=BLOCK",
-                                          "S"), heated("*BOUNDARY", "BLOCK.LEFT, 11, 11, 300."))
+    found = tables(tmp_path, body, static(*HELD, "*DLOAD", "BLOCK, P3, 6.",
+                                          "*EL PRINT, ELSET=BLOCK", "S"), heated("*BOUNDARY", "BLOCK.LEFT, 11, 11, 300."))
     for table in found:
         np.testing.assert_allclose(columns(table)["S22"], -6.0, rtol=ROUNDING)
     assert len(found) == 2
