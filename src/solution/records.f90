@@ -5,8 +5,9 @@ module records
    use text, only: string_type
    implicit none
    private
+   public :: element_points_record_type
    public :: increment_record_type, contact_record_type, iteration_record_type
-   public :: field_record_type, work_record_type, element_points_record_type
+   public :: field_record_type, work_record_type
    public :: status_open, status_slip, status_stick, edges_kept
 
    integer, parameter :: status_open = 0    !! gap, zone I
@@ -48,6 +49,18 @@ module records
       integer :: cut_backs = 0           !! cut-backs of the increment so far
    end type iteration_record_type
 
+   !> Integration points of the elements of a set (*EL PRINT), along x and y or the axes of the
+   !> section's orientation.
+   type :: element_points_record_type
+      integer, allocatable :: element(:)          !! (points) element index
+      integer, allocatable :: point(:)            !! (points) number of the point in its element
+      real(dp), allocatable :: position(:, :)     !! (2, points) x, y [length]
+      !> (4, points) 11, 22, 33, 12; unallocated before mechanics is solved [stress]
+      real(dp), allocatable :: stress(:, :)
+      !> (2, points) along 1, 2; unallocated without heat [power/length^2]
+      real(dp), allocatable :: heat_flux(:, :)
+   end type element_points_record_type
+
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and
    !> section.
    type :: field_record_type
@@ -65,18 +78,6 @@ module records
       !> (nodes) the same with loads and films, without what crosses the contacts [power]
       real(dp), allocatable :: external_heat(:)
    end type field_record_type
-
-   !> Integration points of the elements of a set (*EL PRINT), along x and y or the axes of the
-   !> section's orientation.
-   type :: element_points_record_type
-      integer, allocatable :: element(:)          !! (points) element index
-      integer, allocatable :: point(:)            !! (points) number of the point in its element
-      real(dp), allocatable :: position(:, :)     !! (2, points) x, y [length]
-      !> (4, points) 11, 22, 33, 12; unallocated before mechanics is solved [stress]
-      real(dp), allocatable :: stress(:, :)
-      !> (2, points) along 1, 2; unallocated without heat [power/length^2]
-      real(dp), allocatable :: heat_flux(:, :)
-   end type element_points_record_type
 
    !> Work of the partial re-factorisation of (3.4) in one increment.
    type :: work_record_type

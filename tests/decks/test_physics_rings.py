@@ -1,5 +1,5 @@
 """A hot tube in another one, in the plane: whole rings, whose contact surfaces are closed, against
-tests/reference/lame.py.
+tests/reference/hot_tubes.py.
 
 Sides are parabolas through points of the circles. Sums over the ring converge as h^4; pressures at
 nodes, forces over tributary lengths, as h^2; temperatures as h^3 or better.
@@ -12,7 +12,7 @@ from blocks import write
 from deck_runs import solve
 from physics import follows, material, mesh, nodes_of
 
-import lame
+import hot_tubes
 
 RADII = (1.0, 2.0, 3.0)
 HUB, RIM = (2000.0, 0.3, 1e-4, 3.0), (700.0, 0.33, 4e-5, 2.0)   # E, nu, alpha, k
@@ -52,7 +52,7 @@ def tubes(kind, count, gap, slope=0.02):
               "*FIXED POINT, TOL=1.E-12",
               "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", "*BOUNDARY",
               *held, f"HUB.BOTTOM, 11, 11, {HOT!r}", f"RIM.TOP, 11, 11, {COLD!r}", "*END STEP"]
-    opened, pressure, omega, flux, faces = lame.hot_fit(
+    opened, pressure, omega, flux, faces = hot_tubes.hot_fit(
         RADII, (HUB, RIM), (HOT, COLD), gap, gas, lambda p: 0.5 + slope * p, plane)
     known = {"gap": opened, "pressure": pressure, "conductance": omega, "heat_flux": flux,
              "slave_temperature": faces[0], "master_temperature": faces[1],
