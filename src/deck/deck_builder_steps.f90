@@ -7,6 +7,7 @@ module deck_builder_steps
    use controls, only: fixed_point_type, implicit_scheme, thermal_scheme_type
    use deck_builder_controls, only: build_fixed_point, build_thermal_scheme
    use deck_builder_loads, only: build_load_card
+   use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, is_misspelt
@@ -34,7 +35,7 @@ contains
       type(fixed_point_type) :: fixed_point
       type(thermal_scheme_type) :: scheme
       type(step_type) :: before
-      integer :: k, n, analyses, files
+      integer :: k, n, analyses, files, node_prints, element_prints
 
       n = card_count(cards, 'STEP')
       allocate(model%steps(n), context%step_place(n))
@@ -42,6 +43,8 @@ contains
       scheme = implicit_scheme
       analyses = 0
       files = 0
+      node_prints = 0
+      element_prints = 0
       context%boundaries_sound = .not. is_misspelt(cards, 'BOUNDARY')
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
@@ -50,6 +53,8 @@ contains
                n = n + 1
                analyses = 0
                files = 0
+               node_prints = 0
+               element_prints = 0
                context%step_place(n) = card%place
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
@@ -72,6 +77,14 @@ contains
                call build_load_card(cards, card, n, model, context, report)
             case ('NODE FILE', 'EL FILE', 'CONTACT FILE')
                if (n > 0) call build_file_output(card, files, context, report, model%steps(n))
+            case ('NODE PRINT')
+               node_prints = node_prints + 1
+               if (n > 0) call build_print(cards, card, node_prints == 1, context, model%mesh, &
+                  report, model%steps(n)%node_prints)
+            case ('EL PRINT')
+               element_prints = element_prints + 1
+               if (n > 0) call build_print(cards, card, element_prints == 1, context, model%mesh, &
+                  report, model%steps(n)%element_prints)
             case ('CONTACT PRINT')
                if (n > 0) call read_frequency(card, report, model%steps(n)%contact_print_frequency)
             case default
@@ -102,6 +115,8 @@ contains
       step%ramped = course == 'RAMP'
       step%field_frequency = before%field_frequency
       step%contact_print_frequency = before%contact_print_frequency
+      if (allocated(before%node_prints)) step%node_prints = before%node_prints
+      if (allocated(before%element_prints)) step%element_prints = before%element_prints
       if (.not. has_parameter(card, 'NLGEOM')) return
       if (to_upper(parameter_text(card, 'NLGEOM')) /= 'NO') call report%error( &
          parameter_place(card, 'NLGEOM'), 'NLGEOM is refused on *STEP: '//refusal('STEP', 'NLGEOM'))
@@ -222,18 +237,5 @@ contains
       if (files > 1) frequency = min(frequency, step%field_frequency)
       step%field_frequency = frequency
    end subroutine build_file_output
-
-   !> FREQUENCY=n, default 1.
-   subroutine read_frequency(card, report, frequency)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: frequency
-
-      frequency = 1
-      call take_parameter(card, 'FREQUENCY', report, frequency)
-      if (frequency >= 0) return
-      call report%error(parameter_place(card, 'FREQUENCY'), 'FREQUENCY= must not be negative')
-      frequency = 1
-   end subroutine read_frequency
 
 end module deck_builder_steps

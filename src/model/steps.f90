@@ -2,6 +2,7 @@
 module steps
    use controls, only: fixed_point_type, thermal_scheme_type, implicit_scheme
    use kinds, only: dp
+   use print_requests, only: print_request_type
    implicit none
    private
    public :: step_type, boundary_type
@@ -73,6 +74,8 @@ module steps
       type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step
       integer :: field_frequency = 1                 !! fields at every n-th increment and the last
       integer :: contact_print_frequency = 0         !! *CONTACT PRINT likewise; 0 never
+      type(print_request_type), allocatable :: node_prints(:)     !! *NODE PRINT; or unallocated
+      type(print_request_type), allocatable :: element_prints(:)  !! *EL PRINT; or unallocated
    end type step_type
 
 contains

@@ -5,6 +5,7 @@ module listing
    use errors, only: error_type, set_error, status_internal
    use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
+   use listing_prints, only: is_due, print_requested
    use listing_tables, only: print_contact_table, print_iterations, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
@@ -63,23 +64,21 @@ contains
       call print_title(self%unit, 'INCREMENTS')
    end subroutine open_listing
 
-   !> Adds the block of an accepted increment, with its *CONTACT PRINT table where that is due.
+   !> Adds the block of an accepted increment, with its PRINT tables where these are due.
    subroutine add(self, record, model, pairs)
       class(listing_type), intent(inout) :: self          !! the listing
       type(increment_record_type), intent(in) :: record   !! the increment
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       logical :: table_is_due
-      integer :: i, frequency
+      integer :: i
 
       if (record%step /= self%step) self%increment_in_step = 0
       self%step = record%step
       self%increment_in_step = self%increment_in_step + 1
       call print_increment(self%unit, record)
-      frequency = model%steps(record%step)%contact_print_frequency
-      table_is_due = .false.
-      if (frequency > 0) table_is_due = record%last_of_step .or. &
-         modulo(self%increment_in_step, frequency) == 0
+      table_is_due = is_due(model%steps(record%step)%contact_print_frequency, &
+         self%increment_in_step, record%last_of_step)
       do i = 1, size(pairs)
          call print_interface(self%unit, pairs(i)%name, record%contacts(i))
          call self%diagrams(i)%add(record, record%contacts(i)%status)
@@ -87,6 +86,7 @@ contains
       call print_balances(self%unit, record, model%steps(record%step)%analysis)
       call print_warnings(self, record)
       self%contacts = record%contacts
+      call print_requested(self%unit, record, model, self%increment_in_step)
       if (.not. table_is_due) return
       do i = 1, size(pairs)
          call print_contact_table(self%unit, pairs(i), record%contacts(i), model%mesh%node_number)

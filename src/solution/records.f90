@@ -5,6 +5,7 @@ module records
    use text, only: string_type
    implicit none
    private
+   public :: element_points_record_type
    public :: increment_record_type, contact_record_type, iteration_record_type
    public :: field_record_type, work_record_type, attempt_record_type
    public :: add_attempts, note_failure
@@ -49,6 +50,18 @@ module records
       integer :: cut_backs = 0           !! cut-backs of the increment so far
    end type iteration_record_type
 
+   !> Integration points of the elements of a set (*EL PRINT), along x and y or the axes of the
+   !> section's orientation.
+   type :: element_points_record_type
+      integer, allocatable :: element(:)          !! (points) element index
+      integer, allocatable :: point(:)            !! (points) number of the point in its element
+      real(dp), allocatable :: position(:, :)     !! (2, points) x, y [length]
+      !> (4, points) 11, 22, 33, 12; unallocated before mechanics is solved [stress]
+      real(dp), allocatable :: stress(:, :)
+      !> (2, points) along 1, 2; unallocated without heat [power/length^2]
+      real(dp), allocatable :: heat_flux(:, :)
+   end type element_points_record_type
+
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and
    !> section.
    type :: field_record_type
@@ -59,8 +72,12 @@ module records
       !> (2, points) x, y; unallocated without heat [power/length^2]
       real(dp), allocatable :: heat_flux(:, :)
       real(dp), allocatable :: reaction(:, :)       !! (2, nodes) at supports, else 0 [force]
+      !> (2, nodes) reaction and applied forces, without those of the contacts [force]
+      real(dp), allocatable :: external_force(:, :)
       !> (nodes) heat that enters at prescribed temperatures; unallocated without heat [power]
       real(dp), allocatable :: reaction_heat(:)
+      !> (nodes) the same with loads and films, without what crosses the contacts [power]
+      real(dp), allocatable :: external_heat(:)
    end type field_record_type
 
    !> Work of the partial re-factorisation of (3.4) in one increment.
@@ -102,6 +119,8 @@ module records
       !> Passes of all attempts in their order; unallocated without coupling.
       type(iteration_record_type), allocatable :: iterations(:)
       type(field_record_type) :: fields                         !! fields
+      !> One an *EL PRINT of the step; unallocated for none.
+      type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work                            !! re-factorisation
       type(string_type), allocatable :: warnings(:)             !! unallocated for none
    end type increment_record_type
