@@ -78,10 +78,12 @@ module contact_system
       integer, allocatable :: factored(:)         !! (m) status*3 + direction of the factors
       real(dp), allocatable :: loose(:, :)        !! (free, l) motions that the set leaves free
       logical :: driven = .false.                 !! whether the load drives one of them
+      logical :: several = .false.                !! whether other states under the load are proven
    contains
       procedure :: solve_set
       procedure :: solve_free
       procedure :: stiffness
+      procedure :: turns_back
       procedure :: friction_rows
       procedure :: slip
       procedure :: factor_set
@@ -357,6 +359,20 @@ contains
       forces = self%schur(places, places) + &
          matmul(self%schur(places, self%free), response(self%free, :))
    end function stiffness
+
+   !> Whether the set factored last turns the path of contact states back: its determinant is
+   !> negative, which needs friction. The signs at all states under one load add up to one, so that
+   !> then there are others. Closing laws, frozen in the set, are no part of that: with them none is
+   !> seen to turn.
+   pure logical function turns_back(self)
+      class(contact_system_type), intent(in) :: self  !! the reduced system
+
+      turns_back = .false.
+      if (any(self%closing%acts)) return
+      ! Every link and every loose motion borders a positive matrix, which turns its sign.
+      turns_back = (self%lu%determinant_sign() < 0) .neqv. &
+         (mod(size(self%link) + size(self%loose, 2), 2) == 1)
+   end function turns_back
 
    !> One number per pair for its contact condition.
    pure function condition_code(state) result(codes)

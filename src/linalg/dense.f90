@@ -17,6 +17,7 @@ module dense
    contains
       procedure :: factor
       procedure :: solve
+      procedure :: determinant_sign
    end type lu_type
 
 contains
@@ -48,6 +49,19 @@ contains
       n = size(x, 1)
       call dgetrs('N', n, size(x, 2), self%factors, max(n, 1), self%pivots, x, max(n, 1), info)
    end subroutine solve
+
+   !> Sign of the determinant: 1 or -1.
+   pure integer function determinant_sign(self)
+      class(lu_type), intent(in) :: self    !! the factors of a regular matrix
+      integer :: i
+
+      determinant_sign = 1
+      do i = 1, size(self%pivots)
+         if ((self%factors(i, i) < 0.0_dp) .neqv. (self%pivots(i) /= i)) then
+            determinant_sign = -determinant_sign
+         end if
+      end do
+   end function determinant_sign
 
    !> Orthonormal basis of the vectors that all rows map to zero.
    pure function null_space(rows) result(basis)
