@@ -40,6 +40,7 @@ module contact_system
       real(dp) :: start = 0.0_dp               !! d_t,i [length]
       real(dp) :: fraction = 0.0_dp            !! f, the instant of closing
       real(dp) :: compliance(2) = 0.0_dp       !! c_n, c_t [length/force]
+      real(dp) :: rate(2) = 0.0_dp             !! derivative of f by lambda_n, lambda_t [1/force]
    end type closing_law_type
 
    !> The reduced system, and the factors for the active set of its last solution.
@@ -65,6 +66,7 @@ module contact_system
       procedure :: friction_rows
       procedure :: slip
       procedure :: factor_set
+      procedure :: factor_rows
       procedure :: forget_factors
    end type contact_system_type
 
@@ -137,25 +139,32 @@ contains
       class(contact_system_type), intent(inout) :: self   !! the reduced system
       type(contact_state_type), intent(in) :: state       !! statuses and directions
       type(error_type), allocatable, intent(out) :: error !! see above
-      real(dp), allocatable :: rows(:, :)
-      integer :: i
 
       if (allocated(self%factored)) then
          if (all(self%factored == condition_code(state))) return
       end if
       self%factored = condition_code(state)
       call list_free(self, state)
+      call self%factor_rows()
+      if (.not. self%loose) return
+      call self%forget_factors()
+      call set_error(error, status_no_convergence, &
+         'the bodies are not held by their supports and the pairs that are in contact')
+   end subroutine factor_set
+
+   !> Factors the rows that are listed.
+   pure subroutine factor_rows(self)
+      class(contact_system_type), intent(inout) :: self   !! the reduced system
+      real(dp), allocatable :: rows(:, :)
+      integer :: i
+
       rows = self%friction_rows(self%schur(:, self%free))
       rows = rows(self%free, :)
       do i = 1, size(self%free)
          rows(i, i) = rows(i, i) + self%spring(self%free(i))
       end do
       call self%lu%factor(rows, self%loose)
-      if (.not. self%loose) return
-      call self%forget_factors()
-      call set_error(error, status_no_convergence, &
-         'the bodies are not held by their supports and the pairs that are in contact')
-   end subroutine factor_set
+   end subroutine factor_rows
 
    !> Makes the next solution factor anew, because a closing law has changed.
    pure subroutine forget_factors(self)

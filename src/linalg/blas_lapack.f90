@@ -3,7 +3,7 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgetrf, dgetrs, dgesvd, ilaver
+   public :: ddot, daxpy, dgetrf, dgetrs, dgesvd, dgeev, ilaver
 
    interface
       !> Scalar product x.y.
@@ -49,6 +49,16 @@ module blas_lapack
          real(dp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)
          integer, intent(out) :: info
       end subroutine dgesvd
+
+      !> Eigenvalues, and eigenvectors where asked for, of a general matrix.
+      subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
+         import :: dp
+         character, intent(in) :: jobvl, jobvr
+         integer, intent(in) :: n, lda, ldvl, ldvr, lwork
+         real(dp), intent(inout) :: a(lda, *)
+         real(dp), intent(out) :: wr(*), wi(*), vl(ldvl, *), vr(ldvr, *), work(*)
+         integer, intent(out) :: info
+      end subroutine dgeev
 
       !> Version of LAPACK.
       subroutine ilaver(major, minor, patch)

@@ -1,10 +1,10 @@
 !> The few dense solves of the interface problem, by LAPACK.
 module dense
-   use blas_lapack, only: dgetrf, dgetrs
+   use blas_lapack, only: dgeev, dgetrf, dgetrs
    use kinds, only: dp
    implicit none
    private
-   public :: lu_type
+   public :: lu_type, eigenvalues
 
    !> Pivot, relative to its column, below which it is rounding: the Schur complements that are
    !> factored here carry some digits of rounding themselves.
@@ -19,12 +19,13 @@ module dense
       procedure :: factor
       procedure :: solve
       procedure :: null_vector
+      procedure :: negative_determinant
    end type lu_type
 
 contains
 
    !> Factors a matrix.
-   subroutine factor(self, matrix, singular)
+   pure subroutine factor(self, matrix, singular)
       class(lu_type), intent(inout) :: self   !! the factors
       real(dp), intent(in) :: matrix(:, :)    !! (n, n)
       logical, intent(out) :: singular        !! a pivot is zero or lost to rounding
@@ -65,5 +66,38 @@ contains
          z(i) = -dot_product(self%factors(i, i + 1:last), z(i + 1:last))/self%factors(i, i)
       end do
    end function null_vector
+
+   !> Whether the determinant of the matrix is negative.
+   pure function negative_determinant(self) result(negative)
+      class(lu_type), intent(in) :: self   !! the factors
+      logical :: negative                  !! det < 0
+      integer :: i
+
+      negative = .false.
+      do i = 1, size(self%pivots)
+         negative = negative .neqv. (self%factors(i, i) < 0.0_dp)
+         negative = negative .neqv. (self%pivots(i) /= i)
+      end do
+   end function negative_determinant
+
+   !> Eigenvalues of a general matrix.
+   subroutine eigenvalues(matrix, real_part, imaginary_part, found)
+      real(dp), intent(in) :: matrix(:, :)                      !! (n, n), n > 0
+      real(dp), allocatable, intent(out) :: real_part(:)        !! (n)
+      real(dp), allocatable, intent(out) :: imaginary_part(:)   !! (n)
+      logical, intent(out) :: found                             !! LAPACK found them
+      real(dp), allocatable :: copy(:, :), work(:)
+      real(dp) :: none(1, 1), best(1)
+      integer :: info, n
+
+      n = size(matrix, 1)
+      copy = matrix
+      allocate (real_part(n), imaginary_part(n))
+      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, none, 1, none, 1, best, -1, info)
+      allocate (work(max(1, nint(best(1)))))
+      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, none, 1, none, 1, work, &
+         size(work), info)
+      found = info == 0
+   end subroutine eigenvalues
 
 end module dense

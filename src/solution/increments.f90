@@ -96,6 +96,7 @@ contains
          self%state%omega_before = self%state%omega
          self%state%omega_start = self%state%omega
          self%state%smallest_gap = untouched%gap
+         allocate (self%state%resting(m), source=.false.)
          allocate (self%state%closing(m), source=0.0_dp)
          allocate (self%state%displacement(2*n), self%state%heat_load(n), source=0.0_dp)
          self%state%temperature = model%initial_temperature
