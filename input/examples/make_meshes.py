@@ -63,12 +63,11 @@ def surface(name, elements, face):
     return [f"*SURFACE, NAME={name}"] + [f"{n}, S{face}" for n in elements]
 
 
-def part(name, xs, ys, first, start, end, face="TOP"):
-    """Cards of the surface `name` on the top or bottom row of a block, between x = start and end."""
-    columns = len(xs) - 1
-    row = first + (columns * (len(ys) - 2) if face == "TOP" else 0)
+def part(name, xs, ys, first, start, end):
+    """Cards of the surface `name` on the top row of a block, between x = start and end."""
+    row = first + (len(xs) - 1) * (len(ys) - 2)
     chosen = [row + k for k, (a, b) in enumerate(pairwise(xs)) if a >= start - 1e-9 and b <= end + 1e-9]
-    return surface(name, chosen, FACES[face])
+    return surface(name, chosen, FACES["TOP"])
 
 
 def side_part(name, xs, ys, first, start, end):
@@ -91,8 +90,6 @@ def fuel_pellet():
         rows = [height * k + v for v in [0.0, 0.7, 2.0, 3.5, 5.0, 6.5, 8.0, 9.3, 10.0]]
         name, first = f"PELLET{k + 1}", 1000 * k + 1
         cards += block(name, radii, rows, first, "CAX8")
-        for end, face in (("FOOT", "BOTTOM"), ("HEAD", "TOP")):   # without the outermost element
-            cards += part(f"{name}.{end}", radii, rows, first, 0.0, radii[-2], face)
     rows = sorted({height * k + v for k in range(3) for v in [0.0, 0.7, 2.0, 3.5, 5.0, 6.5, 8.0, 9.3, 10.0]})
     wall = spaced(4.12, 4.70, 2)
     cards += block("TUBE", wall, rows, 4001, "CAX8")

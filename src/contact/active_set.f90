@@ -9,8 +9,9 @@
 !> corrected. If even a single pair cannot be taken, the body moves on until another pair stops it:
 !> an open one that closes, or a slipping one whose slip would turn. If none does, it is loose.
 module active_set
+   use closing_path, only: follow_closing_path
    use contact_system, only: condition_code, contact_state_type, contact_system_type
-   use errors, only: error_type, set_error, status_no_convergence
+   use errors, only: error_type
    use friction, only: next_status
    use kinds, only: dp
    use records, only: status_open, status_slip, status_stick
@@ -55,8 +56,7 @@ contains
          call correct(system, load, next, excess, one_at_a_time, loosest, state, error)
       end do
       if (allocated(loosest)) state%status = loosest
-      if (allocated(error)) return
-      call set_error(error, status_no_convergence, 'the contact zones do not settle')
+      if (.not. allocated(error)) call follow_closing_path(system, load, state, error)
    end subroutine solve_contact
 
    !> Corrects the offending pairs, all of them or one at a time, and solves; as few as it takes to

@@ -14,7 +14,9 @@
 !>
 !> The contact system is solved with C and f frozen; both are then computed anew, until they stay.
 !> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
-!> to slip, and each value could call for the other condition: then there is no solution.
+!> to slip, and each value could call for the other condition: then there is no solution. C still
+!> jumps where another pair closes or opens. Where that goes round and round, every pair that was
+!> closed on the way counts as one that holds.
 module closing_instant
    use active_set, only: solve_contact
    use contact_system, only: closing_law_type, contact_state_type, contact_system_type
@@ -26,6 +28,7 @@ module closing_instant
    public :: solve_increment
 
    integer, parameter :: most_passes = 60                 !! passes over the closing laws
+   integer, parameter :: free_passes = 10 !! of these, with the pairs holding that are closed
    real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
 
 contains
@@ -38,17 +41,21 @@ contains
       real(dp), intent(in) :: load(:)                     !! (tail) condensed load [force]
       type(contact_state_type), intent(inout) :: state    !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error !! see above
+      logical :: holds(size(state%status))
       real(dp) :: change
       integer :: k, pass
 
+      holds = .false.
+      call drop_laws(system, previous)
       do pass = 1, most_passes
          call solve_contact(system, load, state, error)
          if (allocated(error)) return
-         call update_laws(system, previous, state, change, error)
+         holds = state%status /= status_open .or. (holds .and. pass > free_passes)
+         call update_laws(system, previous, state, holds, change, error)
          if (allocated(error)) return
          if (change <= settled) then
             do k = 1, size(state%status)
-               if (system%closing(k)%acts) then
+               if (system%closing(k)%acts .and. state%status(k) /= status_open) then
                   state%reference(k) = state%tangential(k) - system%slip(state, k)
                end if
             end do
@@ -59,33 +66,54 @@ contains
          'the instants at which pairs close do not settle')
    end subroutine solve_increment
 
-   !> Closing laws of the pairs that are closed now and were open at the start of the increment.
-   subroutine update_laws(system, previous, state, change, error)
+   !> Drops the laws of an earlier increment.
+   pure subroutine drop_laws(system, previous)
+      type(contact_system_type), intent(inout) :: system
+      type(contact_state_type), intent(in) :: previous
+      integer :: k
+
+      do k = 1, size(system%closing)
+         if (.not. system%closing(k)%acts) cycle
+         if (previous%status(k) == status_open .and. &
+            abs(system%closing(k)%start - previous%tangential(k)) <= 0.0_dp) cycle
+         system%closing(k) = closing_law_type()
+         call system%forget_factors()
+      end do
+   end subroutine drop_laws
+
+   !> Closing laws of the pairs that are closed now and were open at the start of the increment. A
+   !> pair that has opened again keeps its law, on which nothing depends: without it the pair might
+   !> close, with it open, for ever.
+   subroutine update_laws(system, previous, state, holds, change, error)
       type(contact_system_type), intent(inout) :: system
       type(contact_state_type), intent(in) :: previous
       type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: holds(:)
       real(dp), intent(out) :: change
       type(error_type), allocatable, intent(out) :: error
       type(contact_system_type) :: held
       type(contact_state_type) :: held_state
       type(closing_law_type) :: law
       logical :: closes(size(state%status))
+      real(dp) :: compliance(2, 2)
       integer :: k
 
       change = 0.0_dp
       closes = previous%status == status_open .and. state%status /= status_open .and. &
          system%tangent > 0
-      if (.not. any(closes .or. system%closing%acts)) return
+      if (.not. any(closes)) return
       held = system
       held%closing = closing_law_type()
       call held%forget_factors()
       held_state = state
-      where (state%status /= status_open) held_state%status = status_stick
+      held_state%status = merge(status_stick, status_open, holds)
       call held%factor_set(held_state, error)
       if (allocated(error)) return
       do k = 1, size(closes)
-         law = closing_law_type()
-         if (closes(k)) call make_law(held, previous, state, k, law)
+         if (.not. closes(k)) cycle
+         call find_compliance(held, held_state, k, compliance, error)
+         if (allocated(error)) return
+         call make_law(compliance, previous, state, k, law)
          change = max(change, law_change(system%closing(k), law))
          system%closing(k) = law
       end do
@@ -101,22 +129,53 @@ contains
       if (old%acts .neqv. new%acts) change = 1.0_dp
       if (.not. (old%acts .and. new%acts)) return
       change = max(abs(new%fraction - old%fraction), &
-         maxval(abs(new%compliance - old%compliance))/maxval(abs(new%compliance)))
+         maxval(abs(new%compliance - old%compliance))/ &
+         max(maxval(abs(new%compliance)), tiny(1.0_dp)))
    end function law_change
 
-   !> The closing law of one pair.
-   pure subroutine make_law(held, previous, state, k, law)
+   !> Compliance of one pair while all other closed pairs hold their places. A pair of a ring may
+   !> have none along a direction in which the others hold it, so it is opened there.
+   !> Error: only this pair holds a body.
+   subroutine find_compliance(held, held_state, k, compliance, error)
       type(contact_system_type), intent(in) :: held
+      type(contact_state_type), intent(in) :: held_state
+      integer, intent(in) :: k
+      real(dp), intent(out) :: compliance(2, 2)
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_system_type) :: opened
+      type(contact_state_type) :: opened_state
+      real(dp) :: response(size(held%schur, 1), 2), stiffness(2, 2)
+      integer :: places(2)
+
+      places = [held%normal(k), held%tangent(k)]
+      if (held%give(k) > 0.0_dp) then
+         opened = held
+         opened_state = held_state
+         opened_state%status(k) = status_open
+         call opened%factor_set(opened_state, error)
+         if (allocated(error)) return
+         response = 0.0_dp
+         response(places(1), 1) = 1.0_dp
+         response(places(2), 2) = 1.0_dp
+         call opened%solve_free(response)
+         compliance = response(places, :)
+      else
+         stiffness = held%stiffness(places)
+         compliance = reshape([stiffness(2, 2), -stiffness(2, 1), -stiffness(1, 2), &
+            stiffness(1, 1)], [2, 2])/ &
+            (stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1))
+      end if
+   end subroutine find_compliance
+
+   !> The closing law of one pair.
+   pure subroutine make_law(compliance, previous, state, k, law)
+      real(dp), intent(in) :: compliance(2, 2)
       type(contact_state_type), intent(in) :: previous
       type(contact_state_type), intent(in) :: state
       integer, intent(in) :: k
       type(closing_law_type), intent(out) :: law
-      real(dp) :: stiffness(2, 2), compliance(2, 2), overlap
+      real(dp) :: overlap
 
-      stiffness = held%stiffness([held%normal(k), held%tangent(k)])
-      compliance = reshape([stiffness(2, 2), -stiffness(2, 1), -stiffness(1, 2), &
-         stiffness(1, 1)], [2, 2])/ &
-         (stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1))
       overlap = dot_product(compliance(1, :), [state%force(k), -state%shear_force(k)])
       law%acts = .true.
       law%start = previous%tangential(k)

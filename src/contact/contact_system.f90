@@ -13,6 +13,10 @@
 !> forces (closing_instant):
 !>
 !>    stick  d_n = h           (1 - f) (d_t - d_t,i) + f (c_n lambda_n + c_t lambda_t) = 0
+!>
+!> Pairs that form rings have the forces of their links (ring_links) among the unknowns, on which
+!> nothing else acts; where such a pair sticks it gives a little: d_t + give lambda_t takes the
+!> place of d_t.
 module contact_system
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -31,6 +35,7 @@ module contact_system
       real(dp), allocatable :: tangential(:)  !! (m) d_t [length]
       real(dp), allocatable :: force(:)       !! (m) -lambda_n, positive in compression [force]
       real(dp), allocatable :: shear_force(:) !! (m) lambda_t [force]
+      real(dp), allocatable :: link(:)        !! (links) what holds rings together [length]
    end type contact_state_type
 
    !> Where a pair that closes within the increment sticks: at the reference d_t - slip, where slip
@@ -51,6 +56,8 @@ module contact_system
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
       real(dp), allocatable :: friction(:)        !! (m) mu [-]
       type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing pairs
+      real(dp), allocatable :: give(:) !! (m) of stuck pairs, not zero in rings [length/force]
+      integer, allocatable :: link(:)             !! (links) places of the links' forces
       integer, allocatable :: free(:)             !! places on the tail that are sought
       integer, allocatable :: partner(:) !! (tail) place of d_n whose force enters the row, or 0
       real(dp), allocatable :: share(:)           !! (tail) factor of that force
@@ -86,6 +93,7 @@ contains
          else
             slip = state%tangential(k) - state%reference(k)
          end if
+         slip = slip + self%give(k)*state%shear_force(k)
       end associate
    end function slip
 
@@ -112,6 +120,7 @@ contains
       call self%solve_free(residual)
       d(self%free) = d(self%free) + residual(self%free, 1)
       lambda = matmul(self%schur, d) - load
+      state%link = d(self%link)
       do k = 1, size(state%status)
          state%gap(k) = self%initial_gap(k) - d(self%normal(k))
          state%force(k) = -lambda(self%normal(k))
@@ -178,7 +187,7 @@ contains
    subroutine list_free(self, state)
       class(contact_system_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: state
-      integer :: places(2*size(state%status)), k, n
+      integer :: places(2*size(state%status) + size(self%link)), k, n
 
       self%partner = [(0, k=1, size(self%schur, 1))]
       self%share = [(0.0_dp, k=1, size(self%schur, 1))]
@@ -198,11 +207,19 @@ contains
             else if (law%acts) then
                call seek(place)
                self%partner(place) = self%normal(k)
-               self%own(place) = law%fraction
-               self%share(place) = law%fraction*law%compliance(1)/law%compliance(2)
-               self%spring(place) = (1.0_dp - law%fraction)/law%compliance(2)
+               associate (scale => law%compliance(2) + self%give(k))
+                  self%own(place) = (law%fraction*law%compliance(2) + self%give(k))/scale
+                  self%share(place) = law%fraction*law%compliance(1)/scale
+                  self%spring(place) = (1.0_dp - law%fraction)/scale
+               end associate
+            else if (self%give(k) > 0.0_dp) then
+               call seek(place)
+               self%spring(place) = 1.0_dp/self%give(k)
             end if
          end associate
+      end do
+      do k = 1, size(self%link)
+         call seek(self%link(k))
       end do
       self%free = places(:n)
    contains

@@ -16,7 +16,7 @@ module deck_run
    use loads, only: loads_type
    use loose_bodies, only: bodies_held_by_nothing, bodies_without_temperature
    use model, only: model_type
-   use pair_loops, only: find_loop
+   use pair_rings, only: first_repeated
    use progress, only: deck_outcome_type
    use records, only: increment_record_type, iteration_record_type
    use run_description, only: describe_run
@@ -110,9 +110,10 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(error_type), allocatable :: error
       integer, allocatable :: slave(:), master(:)
-      integer :: i, known
+      real(dp), allocatable :: normal(:, :)
+      integer :: i, known, pair
 
-      allocate (slave(0), master(0), interfaces(size(model%contacts)))
+      allocate (slave(0), master(0), normal(2, 0), interfaces(size(model%contacts)))
       do i = 1, size(model%contacts)
          call pair_surfaces(model, i, interfaces(i), error)
          if (allocated(error)) then
@@ -122,33 +123,20 @@ contains
          known = size(slave)
          slave = [slave, interfaces(i)%slave_node]
          master = [master, interfaces(i)%master_node]
-         if (find_loop(slave, master) == 0) cycle
-         call report%error(place_type(image=model%contacts(i)%card), 'contact pair '// &
-            interfaces(i)%name//': '//loop_fault(model, slave, master, find_loop(slave, master)))
+         normal = reshape([normal, interfaces(i)%normal], [2, size(slave)])
+         pair = first_repeated(slave, master, normal)
+         if (pair == 0) cycle
+         associate (number => model%mesh%node_number)
+            call report%error(place_type(image=model%contacts(i)%card), 'contact pair '// &
+               interfaces(i)%name//': nodes '//to_text(number(slave(pair)))//' and '// &
+               to_text(number(master(pair)))//' are paired along the same normal by an '// &
+               'earlier *CONTACT PAIR already; leave one of the two out')
+         end associate
          slave = slave(:known)
          master = master(:known)
+         normal = normal(:, :known)
       end do
    end subroutine pair_all
-
-   !> Says what is wrong with a pair that closes a loop of pairs.
-   function loop_fault(model, slave, master, pair) result(message)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: slave(:), master(:), pair
-      character(:), allocatable :: message
-
-      associate (numbers => model%mesh%node_number, a => slave(pair), b => master(pair))
-         if (any((slave(:pair - 1) == a .and. master(:pair - 1) == b) .or. &
-            (slave(:pair - 1) == b .and. master(:pair - 1) == a))) then
-            message = 'nodes '//to_text(numbers(a))//' and '//to_text(numbers(b))// &
-               ' are paired by an earlier *CONTACT PAIR already; leave one of the two out, or '// &
-               'end its surfaces an element earlier'
-         else
-            message = 'nodes '//to_text(numbers(a))//' and '//to_text(numbers(b))// &
-               ' are joined by earlier pairs already, in a loop round a corner; leave the '// &
-               'corner out: end both surfaces an element earlier'
-         end if
-      end associate
-   end function loop_fault
 
    !> Reports the bodies that nothing holds and those whose temperature nothing determines, for the
    !> first step that leaves one so.

@@ -66,6 +66,7 @@ contains
          of_pair = contact_diagonal(data%scheme, weight, data%omega_old, omega)
          history = contact_history(data%scheme, weight, data%omega_old, omega, data%jump_old)
          x = operators%thermal%condensed
+         diagonal = 0.0_dp
          do k = 1, size(omega)
             if (place(k) == 0) cycle
             diagonal(place(k)) = of_pair(k)

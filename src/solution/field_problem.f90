@@ -49,6 +49,7 @@ contains
       else
          allocate (skyline_solver_type :: self%solver)
       end if
+      call self%map%stiffen_links(self%matrix)
       if (allocated(self%added%value)) then
          call self%solver%factor(self%map%transform(linear_combination(1.0_dp, self%matrix, &
             1.0_dp, self%added)), self%map%tail, error)
@@ -69,7 +70,8 @@ contains
       supported = self%map%expand(zero, given)
       if (allocated(self%rhs)) deallocate (self%rhs)
       allocate (self%rhs(self%map%equations, 1))
-      self%rhs(:, 1) = self%map%restrict(forces - self%matrix%multiply(supported))
+      self%rhs(:, 1) = self%map%restrict(forces - self%matrix%multiply(supported)) + &
+         self%map%support_load(given)
       if (allocated(self%added%value)) self%rhs(:, 1) = self%rhs(:, 1) - &
          self%map%restrict(self%added%multiply(supported))
    end subroutine set_load

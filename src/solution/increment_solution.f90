@@ -178,7 +178,8 @@ contains
       integer :: k
 
       if (solves_heat(step%analysis)) then
-         allocate (on_tail(operators%thermal%map%tail))
+         ! Forces of links act on jumps only, nothing is recovered from them.
+         allocate (on_tail(operators%thermal%map%tail), source=0.0_dp)
          do k = 1, size(next%jump)
             if (operators%jump_place(k) > 0) on_tail(operators%jump_place(k)) = next%jump(k)
          end do
@@ -197,6 +198,7 @@ contains
             on_tail(operators%contact%tangent(k)) = next%contact%tangential(k)
          end if
       end do
+      on_tail(operators%contact%link) = next%contact%link
       next%displacement = operators%mechanical%recover(on_tail)
    end subroutine recover_fields
 

@@ -4,11 +4,12 @@ module interface_operators
    use conductance_laws, only: conductance_law_type
    use contact_pairs, only: contact_pairs_type, make_pairs
    use contact_system, only: contact_system_type
-   use equation_map, only: make_map
+   use equation_numbering, only: make_map
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use model, only: model_type
+   use ring_links, only: node_stiffness, ring_give
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
@@ -267,8 +268,25 @@ contains
       allocate (contact%closing(size(self%pairs%slave)))
       contact%initial_gap = self%pairs%initial_gap
       contact%friction = self%pairs%friction
+      call set_rings(self, contact)
       self%contact = contact
    end subroutine set_contact
+
+   !> The links of the rings, and how much their stuck pairs give.
+   subroutine set_rings(self, contact)
+      class(interface_operators_type), intent(in) :: self
+      type(contact_system_type), intent(inout) :: contact
+      integer :: k
+
+      associate (map => self%mechanical%map, pairs => self%pairs)
+         contact%link = map%tail_index(map%links%force)
+         allocate (contact%give(size(pairs%slave)), source=0.0_dp)
+         do k = 1, size(pairs%slave)
+            if (map%in_ring(k)) contact%give(k) = ring_give/node_stiffness( &
+               self%mechanical%matrix, [pairs%slave(k), pairs%master(k)], 2)
+         end do
+      end associate
+   end subroutine set_rings
 
    !> Condensed mechanical load of a unit jump at each pair.
    subroutine form_jump_load(self)

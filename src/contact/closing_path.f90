@@ -1,0 +1,174 @@
+!> A contact state by following a path: all gaps start so wide that nothing touches, and shrink to
+!> their own size. The slow and sure way, for active sets that do not settle.
+!>
+!> With gaps h + t d the conditions (1.6) are piecewise linear in t and the displacements. For large
+!> t the only state is the open one; along the path one pair at a time changes its condition, and t
+!> may grow for a while before it falls again. Bodies that are held have bounded displacements
+!> whatever the friction is, so that the path, which cannot return to where it began, arrives at
+!> t = 0 (Lemke's method with its geometric covering vector).
+module closing_path
+   use contact_system, only: closing_law_type, contact_state_type, contact_system_type
+   use errors, only: error_type, set_error, status_no_convergence
+   use kinds, only: dp
+   use records, only: status_open, status_slip, status_stick
+   implicit none
+   private
+   public :: follow_closing_path
+
+   integer, parameter :: pieces_per_pair = 40   !! changes of condition before giving up
+   real(dp), parameter :: golden = 0.6180339887498949_dp !! spreads the widths, so that no two tie
+
+   !> A straight piece of the path; columns are values at t = 0 and derivatives by t.
+   type :: piece_type
+      type(contact_state_type) :: base          !! state at t = 0
+      real(dp), allocatable :: slip(:, :)       !! (m, 2) slip [length]
+      real(dp), allocatable :: slack(:, :, :)   !! (2, m, 2) what must not be negative
+   end type piece_type
+
+contains
+
+   !> Contact state under a condensed load, the references of friction being given.
+   !> Errors: the supports alone do not hold the bodies; the path does not arrive.
+   subroutine follow_closing_path(system, load, state, error)
+      type(contact_system_type), intent(in) :: system     !! the reduced system
+      real(dp), intent(in) :: load(:)                     !! (tail) c [force]
+      type(contact_state_type), intent(inout) :: state    !! references in, solution out
+      type(error_type), allocatable, intent(out) :: error !! see above
+      type(contact_system_type) :: path
+      type(piece_type) :: piece
+      real(dp) :: cover(size(state%status)), step, t
+      integer :: entering, event, k, n, sense
+
+      path = system
+      call path%forget_factors()
+      allocate (piece%slip(size(cover), 2), piece%slack(2, size(cover), 2))
+      cover = [(1.0_dp + modulo(k*golden, 1.0_dp), k=1, size(cover))]
+      state%status = status_open
+      state%direction = 0
+      call solve_piece(path, system, load, cover, state, piece, error)
+      if (allocated(error)) return
+      t = max(maxval(-piece%base%gap/cover), 0.0_dp)
+      sense = -1
+      do n = 1, pieces_per_pair*max(size(cover), 1)
+         call next_event(piece, t, sense, k, event, step)
+         if (sense < 0 .and. step >= t) then
+            state = piece%base
+            where (state%status == status_stick) state%direction = 0
+            return
+         end if
+         if (k == 0) exit
+         t = t + sense*step
+         call change_condition(path, dot_product([1.0_dp, t], piece%slip(k, :)), event, k, state, &
+            entering)
+         call solve_piece(path, system, load, cover, state, piece, error)
+         if (allocated(error)) return
+         sense = merge(1, -1, piece%slack(entering, k, 2) > 0.0_dp)
+      end do
+      call set_error(error, status_no_convergence, 'the contact zones do not settle')
+   end subroutine follow_closing_path
+
+   !> Both ends of a piece, with one factorisation.
+   !> Error: as solve_set.
+   subroutine solve_piece(path, system, load, cover, state, piece, error)
+      type(contact_system_type), intent(inout) :: path
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: load(:), cover(:)
+      type(contact_state_type), intent(in) :: state
+      type(piece_type), intent(inout) :: piece
+      type(error_type), allocatable, intent(out) :: error
+
+      type(contact_state_type) :: rate
+
+      piece%base = state
+      path%initial_gap = system%initial_gap
+      path%closing%start = system%closing%start
+      call path%solve_set(load, piece%base, error)
+      if (allocated(error)) return
+      call measure(path, piece%base, piece%slip(:, 1), piece%slack(:, :, 1))
+      rate = state
+      rate%reference = 0.0_dp
+      path%initial_gap = cover
+      path%closing%start = 0.0_dp
+      call path%solve_set(0.0_dp*load, rate, error)
+      if (allocated(error)) return
+      call measure(path, rate, piece%slip(:, 2), piece%slack(:, :, 2))
+   end subroutine solve_piece
+
+   !> The pair whose condition ends first along a piece, 0 for none, and how far away that is.
+   pure subroutine next_event(piece, t, sense, first, event, step)
+      type(piece_type), intent(in) :: piece
+      real(dp), intent(in) :: t
+      integer, intent(in) :: sense
+      integer, intent(out) :: first, event
+      real(dp), intent(out) :: step
+      real(dp) :: along, way
+      integer :: i, k
+
+      first = 0
+      event = 0
+      step = huge(1.0_dp)
+      do k = 1, size(piece%slip, 1)
+         do i = 1, 2
+            along = sense*piece%slack(i, k, 2)
+            if (along >= 0.0_dp) cycle
+            way = max(piece%slack(i, k, 1) + t*piece%slack(i, k, 2), 0.0_dp)/(-along)
+            if (way >= step) cycle
+            step = way
+            first = k
+            event = i
+         end do
+      end do
+   end subroutine next_event
+
+   !> Slip, and what must not be negative under each pair's condition: the gap; or force and slip
+   !> against friction; or the distances to both sides of the cone. A second one that is missing is
+   !> zero.
+   pure subroutine measure(path, state, slip, slack)
+      type(contact_system_type), intent(in) :: path
+      type(contact_state_type), intent(in) :: state
+      real(dp), intent(out) :: slip(:)
+      real(dp), intent(out) :: slack(:, :)
+      real(dp) :: cone
+      integer :: k
+
+      slack = 0.0_dp
+      do k = 1, size(slip)
+         slip(k) = path%slip(state, k)
+         if (state%status(k) == status_open) then
+            slack(1, k) = state%gap(k)
+         else if (state%status(k) == status_slip) then
+            slack(:, k) = [state%force(k), -state%direction(k)*slip(k)]
+         else
+            cone = path%friction(k)*state%force(k)
+            slack(:, k) = [cone - state%shear_force(k), cone + state%shear_force(k)]
+         end if
+      end do
+   end subroutine measure
+
+   !> Gives a pair the condition that follows on the end of its present one.
+   pure subroutine change_condition(path, slip, event, k, state, entering)
+      type(contact_system_type), intent(in) :: path
+      real(dp), intent(in) :: slip
+      integer, intent(in) :: event
+      integer, intent(in) :: k
+      type(contact_state_type), intent(inout) :: state
+      integer, intent(out) :: entering           !! which slack is zero and must grow
+
+      entering = 1
+      select case (state%status(k))
+      case (status_open)
+         state%status(k) = status_slip
+         state%direction(k) = 0
+         if (path%tangent(k) == 0 .or. path%friction(k) <= 0.0_dp) return
+         state%direction(k) = merge(-1, 1, slip > 0.0_dp)
+      case (status_slip)
+         state%status(k) = merge(status_open, status_stick, event == 1)
+         if (event == 2) entering = merge(1, 2, state%direction(k) > 0)
+      case default
+         state%status(k) = status_slip
+         state%direction(k) = merge(1, -1, event == 1)
+         entering = 2
+      end select
+   end subroutine change_condition
+
+end module closing_path
