@@ -69,7 +69,7 @@ contains
          if (.not. moves(k)) cycle
          associate (law => system%closing(k), place => system%tangent(k))
             arm = (dot_product(law%compliance, [-state%force(k), state%shear_force(k)]) - &
-               (state%tangential(k) - law%start))/law%compliance(2)
+               (state%tangential(k) - law%start))/(law%compliance(2) + system%give(k))
             tangent%share(place) = tangent%share(place) + arm*law%rate(1)
             tangent%own(place) = tangent%own(place) + arm*law%rate(2)
          end associate

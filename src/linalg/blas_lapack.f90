@@ -3,7 +3,7 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgetrf, dgetrs, dgesvd, dgeev, ilaver
+   public :: ddot, daxpy, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, ilaver
 
    interface
       !> Scalar product x.y.
@@ -59,6 +59,17 @@ module blas_lapack
          real(dp), intent(out) :: wr(*), wi(*), vl(ldvl, *), vr(ldvr, *), work(*)
          integer, intent(out) :: info
       end subroutine dgeev
+
+      !> Least squares of any rank, by an orthogonal factorisation with column exchanges.
+      subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)
+         import :: dp
+         integer, intent(in) :: m, n, nrhs, lda, ldb, lwork
+         real(dp), intent(inout) :: a(lda, *), b(ldb, *)
+         integer, intent(inout) :: jpvt(*)
+         real(dp), intent(in) :: rcond
+         integer, intent(out) :: rank, info
+         real(dp), intent(out) :: work(*)
+      end subroutine dgelsy
 
       !> Version of LAPACK.
       subroutine ilaver(major, minor, patch)

@@ -1,10 +1,10 @@
 !> The few dense solves of the interface problem, by LAPACK.
 module dense
-   use blas_lapack, only: dgeev, dgetrf, dgetrs
+   use blas_lapack, only: dgeev, dgelsy, dgetrf, dgetrs
    use kinds, only: dp
    implicit none
    private
-   public :: lu_type, eigenvalues
+   public :: lu_type, eigenvalues, least_squares
 
    !> Pivot, relative to its column, below which it is rounding: the Schur complements that are
    !> factored here carry some digits of rounding themselves.
@@ -99,5 +99,24 @@ contains
          size(work), info)
       found = info == 0
    end subroutine eigenvalues
+
+   !> The shortest x for which |matrix x - rhs| is least; columns that depend on others to rounding
+   !> do not count.
+   function least_squares(matrix, rhs) result(x)
+      real(dp), intent(in) :: matrix(:, :)   !! (m, n), m and n > 0
+      real(dp), intent(in) :: rhs(:)         !! (m)
+      real(dp) :: x(size(matrix, 2))         !! (n)
+      real(dp) :: copy(size(matrix, 1), size(matrix, 2)), work(4*size(matrix, 2) + 64)
+      real(dp) :: solution(max(size(matrix, 1), size(matrix, 2)), 1)
+      integer :: free(size(matrix, 2)), info, rank
+
+      copy = matrix
+      solution = 0.0_dp
+      solution(:size(rhs), 1) = rhs
+      free = 0
+      call dgelsy(size(matrix, 1), size(matrix, 2), 1, copy, size(matrix, 1), solution, &
+         size(solution), free, lost, rank, work, size(work), info)
+      x = solution(:size(x), 1)
+   end function least_squares
 
 end module dense

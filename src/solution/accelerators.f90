@@ -1,7 +1,9 @@
 !> The accelerators of the fixed point by the names of *FIXED POINT.
 module accelerators
+   use anderson, only: anderson_type
    use conductance_graph, only: conductance_graph_type
-   use controls, only: fixed_point_type, method_newton, method_picard, method_zaitsev
+   use controls, only: fixed_point_type, method_anderson, method_picard, &
+      method_zaitsev
    use fixed_point, only: accelerator_type, picard_type, zaitsev_type
    use kinds, only: dp
    use newton, only: newton_type
@@ -23,6 +25,9 @@ contains
          allocate (accelerator%g(size(graph)), source=1.0_dp)
       case (method_zaitsev)
          allocate (accelerator, source=zaitsev_type(constant_iterations=controls%constant))
+         allocate (accelerator%g(size(graph)), source=controls%g)
+      case (method_anderson)
+         allocate (anderson_type :: accelerator)
          allocate (accelerator%g(size(graph)), source=controls%g)
       case default
          allocate (accelerator, source=newton_type(graph=graph))

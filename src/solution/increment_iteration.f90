@@ -44,6 +44,12 @@ contains
       pass%omega = start
       allocate (record%iterations(0))
       call use_method(operators, controls, graph, scales, data, next, record, pass, error)
+      if (allocated(error) .and. size(record%iterations) == 0) then
+         ! Not even the contact zones of the start were found: those of the last increment may be.
+         next%contact = guess
+         pass%omega = data%omega_old
+         call use_method(operators, controls, graph, scales, data, next, record, pass, error)
+      end if
       if (.not. (allocated(error) .and. any(graph%width > 0.0_dp))) return
       if (controls%method /= method_picard .and. controls%method /= method_zaitsev) return
       deallocate (error)
