@@ -6,12 +6,15 @@ module controls
    public :: fixed_point_type, start_type, thermal_scheme_type
    public :: start_previous, start_open, start_closed, start_both, start_given
    public :: implicit_scheme, galerkin_scheme, crank_nicolson_scheme, explicit_scheme
-   public :: method_picard, method_zaitsev, method_anderson, method_newton, solver_skyline, solver_mumps
+   public :: method_picard, method_zaitsev, method_anderson, method_newton, method_names
+   public :: solver_skyline, solver_mumps
 
    integer, parameter :: method_picard = 1    !! eq. (4.1)
    integer, parameter :: method_zaitsev = 2   !! eq. (4.2)
    integer, parameter :: method_anderson = 3  !! Anderson's mixing of log omega
    integer, parameter :: method_newton = 4    !! semismooth Newton
+   character(8), parameter :: method_names(4) = [character(8) :: 'PICARD', 'ZAITSEV', 'ANDERSON', &
+      'NEWTON']   !! of *FIXED POINT, by the constants above
    integer, parameter :: solver_skyline = 1   !! Crout LDL^T on a skyline
    integer, parameter :: solver_mumps = 2     !! MUMPS with METIS ordering
 
@@ -29,7 +32,7 @@ module controls
 
    !> *FIXED POINT.
    type :: fixed_point_type
-      integer :: method = method_zaitsev      !! one of the method_* constants
+      integer :: method = method_newton       !! one of the method_* constants
       real(dp) :: tolerance = 1.0e-8_dp       !! on max |U(w) - w|/w [-]
       integer :: max_iterations = 50          !! passes of U in an increment
       real(dp) :: g = 0.5_dp                  !! constant g of the first iterations, in (0, 1]

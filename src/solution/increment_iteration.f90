@@ -4,7 +4,7 @@ module increment_iteration
    use conductance_graph, only: conductance_graph_type
    use contact_operator, only: contact_operator_pass, increment_data_type, residual_floor
    use contact_system, only: closing_law_type, contact_state_type
-   use controls, only: fixed_point_type, method_newton, method_picard, method_zaitsev
+   use controls, only: fixed_point_type, method_newton
    use errors, only: error_type, set_error, status_no_convergence
    use fixed_point, only: accelerator_type, pass_type
    use interface_operators, only: interface_operators_type
@@ -51,7 +51,7 @@ contains
          call use_method(operators, controls, graph, scales, data, next, record, pass, error)
       end if
       if (.not. (allocated(error) .and. any(graph%width > 0.0_dp))) return
-      if (controls%method /= method_picard .and. controls%method /= method_zaitsev) return
+      if (controls%method == method_newton) return
       deallocate (error)
       call append(record%notes, 'a pair whose conductance jumps comes to no state by the method '// &
          'of the deck; the increment is handed to NEWTON')

@@ -24,7 +24,7 @@ module newton
    private
    public :: newton_type
 
-   real(dp), parameter :: least_fall = 1.0e-4_dp      !! part of the fall by a step that is needed
+   real(dp), parameter :: least_fall = 0.1_dp      !! of a measure by a full step, needed
    integer, parameter :: patience = 1                 !! better passes in spite of which one is taken
    real(dp), parameter :: shortest = 0.2_dp           !! part of a step below which it is given up
    real(dp), parameter :: retreating = 0.25_dp !! part of it left where no contact zones were found
