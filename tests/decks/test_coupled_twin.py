@@ -136,8 +136,8 @@ def test_newton_converges_in_every_increment(tmp_path, levels, step):
     with h5py.File(solve(deck)) as file:   # the default method
         assert len(file["history/time"]) == 900 // step
         assert file["history/iterations"][()].max() <= MAX_ITERATIONS
-        assert file["history/heat_imbalance"][()].max() < 1e-9
-        # While the bodies are apart there is no force but the rounding of free expansion.
+        # While the bodies are apart heat and forces are little more than rounding.
+        assert file["history/heat_imbalance"][()].max() < 1e-8
         assert file["history/force_imbalance"][()].max() < 1e-8
         # Hot above a base that does not expand: heat opens the gap it crosses.
         assert file["history/coupling_gain_max"][()].max() < 1.0
