@@ -143,7 +143,9 @@ contains
 
       omega_start = self%omega(from)
       omega_slope = self%slope(from)
-      place = self%stopped(from, from + change)
+      place = from + change
+      if (abs(own) <= 0.0_dp) return
+      place = self%stopped(from, place)
       if (own <= 0.0_dp) return
       if (abs(omega_slope*change) <= straight*omega_start .and. (from*place > 0.0_dp)) return
       kappa = own*(omega_start + body)**2/body

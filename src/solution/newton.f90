@@ -220,12 +220,18 @@ contains
       self%step = -self%rest
       if (.not. allocated(self%jacobian)) return
       matrix = self%jacobian
+      step(:, 1) = -self%rest
       do k = 1, size(step)
-         matrix(k, k) = matrix(k, k) + 1.0_dp/self%time_step
+         if (self%time_step < endless) matrix(k, k) = matrix(k, k) + 1.0_dp/self%time_step
+         if (.not. self%graph(k)%rests(self%place(k))) cycle
+         ! No conductance at which the pair may rest brings its opening to 0: it does not rest.
+         if (sum(abs(self%jacobian(k, :)))*self%graph(k)%width > abs(self%rest(k))) cycle
+         matrix(k, :) = 0.0_dp
+         matrix(k, k) = 1.0_dp
+         step(k, 1) = self%graph(k)%place_of_opening(-self%rest(k)) - self%place(k)
       end do
       call lu%factor(matrix, singular)
       if (singular) return
-      step(:, 1) = -self%rest
       call lu%solve(step)
       self%step = step(:, 1)
    end subroutine make_step
