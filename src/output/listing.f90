@@ -178,9 +178,9 @@ contains
       write (unit, '(3x, 2(a, i0), 2(a, es9.2), a)') 'passes ', passes, '   cut-backs ', &
          record%iterations(passes)%cut_backs, '   residual', record%iterations(passes)%residual, &
          '  (floor', record%residual_floor, ')'
-      if (.not. ieee_is_nan(record%coupling_gain)) write (unit, '(3x, 4a)') &
-         'quasi-static coupling gain ', text_or_none(record%coupling_gain), '   largest real one ', &
-         text_or_none(record%coupling_gain_max)
+      if (ieee_is_nan(record%coupling_gain)) return
+      write (unit, '(3x, 4a)') 'quasi-static coupling gain ', text_or_none(record%coupling_gain), &
+         '   largest real one ', text_or_none(record%coupling_gain_max)
    end subroutine print_increment
 
    subroutine print_interface(unit, name, contact)
