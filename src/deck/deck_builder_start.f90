@@ -42,6 +42,8 @@ contains
          start%kind = start_closed
       case ('BOTH')
          start%kind = start_both
+      case default
+         return
       end select
    end subroutine build_start
 

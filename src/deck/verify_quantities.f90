@@ -28,7 +28,8 @@ module verify_quantities
       quantity_type('heat_imbalance_pointwise', of_history, .true.), &
       quantity_type('force_imbalance', of_history), &
       quantity_type('coupling_gain', of_history, .true.), &
-      quantity_type('coupling_gain_max', of_history, .true.), quantity_type('normal_force', of_interface), &
+      quantity_type('coupling_gain_max', of_history, .true.), &
+      quantity_type('normal_force', of_interface), &
       quantity_type('shear_force', of_interface), &
       quantity_type('heat_rate', of_interface, .true.), &
       quantity_type('edge_contact', of_interface), quantity_type('edge_stick', of_interface), &

@@ -112,15 +112,15 @@ contains
       real(dp), allocatable, intent(out) :: imaginary_part(:)   !! (n)
       logical, intent(out) :: found                             !! LAPACK found them
       real(dp), allocatable :: copy(:, :), work(:)
-      real(dp) :: none(1, 1), best(1)
+      real(dp) :: left(1, 1), right(1, 1), best(1)
       integer :: info, n
 
       n = size(matrix, 1)
       copy = matrix
       allocate (real_part(n), imaginary_part(n))
-      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, none, 1, none, 1, best, -1, info)
+      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, left, 1, right, 1, best, -1, info)
       allocate (work(max(1, nint(best(1)))))
-      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, none, 1, none, 1, work, &
+      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, left, 1, right, 1, work, &
          size(work), info)
       found = info == 0
    end subroutine eigenvalues

@@ -92,8 +92,9 @@ contains
       at = -1.0_dp
       if (closed) then
          if (law%closed_kind == law_power) then
-            if (law%power_c1 > 0.0_dp .and. omega >= law%power_c0) &
+            if (law%power_c1 > 0.0_dp .and. omega >= law%power_c0) then
                at = ((omega - law%power_c0)/law%power_c1)**(1.0_dp/law%power_n)
+            end if
          else if (law%closed_kind == law_pressure) then
             at = line_abscissa(law%table_pressure, law%closed_omega, omega)
          end if

@@ -175,6 +175,12 @@ contains
       character(:), allocatable :: at
       logical :: found
 
+      record%coupling_gain = 0.0_dp
+      record%coupling_gain_max = 0.0_dp
+      if (.not. (any(abs(graph%slope(graph%place_of_opening(pass%opening))) > 0.0_dp) .or. &
+         any(next%resting))) return
+      record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
+      record%coupling_gain_max = record%coupling_gain
       at = 'increment '//to_text(record%increment)//': '
       call opening_slope(operators, data, graph, next%jump, next%contact, pass%slope, pass%body)
       if (.not. allocated(pass%slope)) return

@@ -14,8 +14,8 @@ module coupling_gains
    type :: coupling_gain_type
       real(dp) :: largest = 0.0_dp        !! real part of the one that is largest in modulus [-]
       real(dp) :: largest_real = 0.0_dp   !! largest real one; -huge where none is real [-]
-      !> det(I - U') < 0. The degree of I - U is 1 over all solutions, as U is bounded: then there are
-      !> at least two others.
+      !> det(I - U') < 0. The degree of I - U over all solutions is 1, as U is bounded: then there
+      !> are at least two others.
       logical :: is_one_of_several = .false.
    end type coupling_gain_type
 

@@ -14,7 +14,7 @@ module fixed_point
       real(dp), allocatable :: omega(:)       !! (m) omega*
       real(dp), allocatable :: image(:)       !! (m) U(omega*)
       real(dp), allocatable :: opening(:)     !! (m) openings that it found [length]
-      !> (m, m) derivative of the openings by omega*, where the accelerator asked for it and it exists
+      !> (m, m) derivative of the openings by omega*, where the accelerator asked and there is one
       real(dp), allocatable :: slope(:, :)
       !> (m) conductance that the bodies put in series with each pair; set with the slope
       real(dp), allocatable :: body(:)

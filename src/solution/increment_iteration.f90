@@ -53,8 +53,8 @@ contains
       if (.not. (allocated(error) .and. any(graph%width > 0.0_dp))) return
       if (controls%method == method_newton) return
       deallocate (error)
-      call append(record%notes, 'a pair whose conductance jumps comes to no state by the method '// &
-         'of the deck; the increment is handed to NEWTON')
+      call append(record%notes, 'a pair whose conductance jumps comes to no state by the '// &
+         'method of the deck; the increment is handed to NEWTON')
       fallback = controls
       fallback%method = method_newton
       next%contact = guess

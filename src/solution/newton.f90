@@ -1,5 +1,5 @@
-!> Newton's method for omega = U(omega), semismooth (Qi & Sun 1993), with the exact derivative of the
-!> contact state and of the conductance laws.
+!> Newton's method for omega = U(omega), semismooth (Qi & Sun 1993), with the exact derivative of
+!> the contact state and of the conductance laws.
 !>
 !> Unknowns are the places z of the pairs on the graphs of their laws (conductance_graph), in which
 !> the equation is
@@ -11,10 +11,10 @@
 !>
 !> A pass is taken unless earlier ones, all but one, were better by both of its measures: |r|, and
 !> the mismatch of the shares omega/(omega + body) by which the heat goes (a filter: Gould, Leyffer
-!> & Toint 2004). Else its step is shortened. Where a short one does not help either, the method goes
-!> over to pseudo-transient continuation: (1/tau + J) dz = -r, implicit Euler steps of dz/dt = -r
-!> whose tau grows as |r| falls (Kelley & Keyes 1998). That leads to a state which is stable in this
-!> sense, and there the steps are Newton's again.
+!> & Toint 2004). Else its step is shortened. Where a short one does not help either, the method
+!> goes over to pseudo-transient continuation: (1/tau + J) dz = -r, implicit Euler steps of dz/dt =
+!> -r whose tau grows as |r| falls (Kelley & Keyes 1998). That leads to a state which is stable in
+!> this sense, and there the steps are Newton's again.
 module newton
    use conductance_graph, only: conductance_graph_type
    use dense, only: lu_type
@@ -24,8 +24,8 @@ module newton
    private
    public :: newton_type
 
-   real(dp), parameter :: least_fall = 0.1_dp      !! of a measure by a full step, needed
-   integer, parameter :: patience = 1                 !! better passes in spite of which one is taken
+   real(dp), parameter :: least_fall = 0.1_dp         !! of a measure by a full step, needed
+   integer, parameter :: patience = 1           !! better passes in spite of which one is taken
    real(dp), parameter :: shortest = 0.2_dp           !! part of a step below which it is given up
    real(dp), parameter :: retreating = 0.25_dp !! part of it left where no contact zones were found
    real(dp), parameter :: last_retreat = 1.0e-4_dp    !! part of it that is tried last then

@@ -104,7 +104,7 @@ module records
       real(dp) :: load = 0.0_dp              !! value on the load axis
       !> Floor of the residual: what the last places of the displacements change in omega.
       real(dp) :: residual_floor = 0.0_dp
-      !> Real part of the eigenvalue of U' that is largest in modulus; NaN where nothing is iterated.
+      !> Real part of the eigenvalue of U' largest in modulus; NaN where nothing is iterated.
       real(dp) :: coupling_gain = 0.0_dp
       real(dp) :: coupling_gain_max = 0.0_dp !! largest real eigenvalue of U'; NaN likewise
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]

@@ -24,8 +24,8 @@ module resting_pairs
 
 contains
 
-   !> Largest values that are known at the start of an increment. Its load counts by the overlap that
-   !> it makes at a pair alone.
+   !> Largest values that are known at the start of an increment. Its load counts by the overlap
+   !> that it makes at a pair alone.
    pure function contact_scales(operators, data) result(scales)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       type(increment_data_type), intent(in) :: data           !! the increment
@@ -45,8 +45,8 @@ contains
       if (scales%length <= 0.0_dp) scales%length = 1.0_dp
    end function contact_scales
 
-   !> Largest residual of a pass, and the pairs that rest in it: a conductance between the two values
-   !> of its law needs no more of a pair than that neither gap nor pressure is left.
+   !> Largest residual of a pass, and the pairs that rest in it: a conductance between the two
+   !> values of its law needs no more of a pair than that neither gap nor pressure is left.
    pure subroutine find_residual(graph, weight, pass, scales, residual, resting)
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
       real(dp), intent(in) :: weight(:)                     !! (m) tributary areas [length^2]
