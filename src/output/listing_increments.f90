@@ -30,8 +30,8 @@ contains
          record%cut_backs, '   residual', record%iterations(passes)%residual, &
          '  (floor', record%residual_floor, ')'
       if (.not. ieee_is_nan(record%coupling_gain)) write (unit, '(3x, 4a)') &
-         'quasi-static coupling gain ', text_or_none(record%coupling_gain), '   largest real one ', &
-         text_or_none(record%coupling_gain_max)
+         'quasi-static coupling gain ', text_or_none(record%coupling_gain), &
+         '   largest real one ', text_or_none(record%coupling_gain_max)
    end subroutine print_increment
 
    !> Prints the attempts at an increment that failed.

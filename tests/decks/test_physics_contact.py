@@ -282,6 +282,7 @@ def sheared(values):
     deck += ["*CONTACT PAIR, INTERACTION=FIRST, NAME=ONE", "UPPER.BOTTOM, MIDDLE.TOP",
              "*CONTACT PAIR, INTERACTION=SECOND, NAME=TWO", "MIDDLE.BOTTOM, LOWER.TOP",
              "*INITIAL CONDITIONS, TYPE=TEMPERATURE", *(f"{name}, 0." for name in HEIGHTS)]
+    deck += ["*FIXED POINT, TOL=1.E-11"]
     rows = []
     turn = tops["UPPER"] * shear
     # Time, place of the top, shear, slip of the weaker interface.
