@@ -5,6 +5,7 @@ module increment_records
    use balances, only: contact_violation, force_residual, imbalance
    use contact_operator, only: kept_contact, thermal_forces
    use contact_system, only: contact_state_type, contact_system_type
+   use element_kinds, only: axisymmetric
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
    use heat_balance, only: balance_heat
    use interface_operators, only: interface_operators_type
@@ -171,6 +172,7 @@ contains
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
       real(dp) :: length, scale
+      logical :: along_x
 
       next%stress = recover_stress(model%mesh, model%sections, model%materials, &
          model%orientations, points, reshape(next%displacement, [2, size(next%temperature)]), &
@@ -186,7 +188,9 @@ contains
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*maxval(abs(operators%mechanical%matrix%value))* &
             length, tiny(1.0_dp))
-         record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, scale)
+         along_x = all(model%mesh%element_plane /= axisymmetric)
+         record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
+            [along_x, .true.], scale)
          record%contact_violation = contact_violation(next%displacement, &
             internal - next%force_load, held, operators%pairs, next%contact, &
             operators%contact%tangent > 0, length, scale)
