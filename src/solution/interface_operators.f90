@@ -18,7 +18,7 @@ module interface_operators
    use thermal_matrix, only: assemble_conduction
    implicit none
    private
-   public :: interface_operators_type, pair_row_type, pair_surfaces
+   public :: interface_operators_type, pair_row_type, pair_surfaces, over_constrained
 
    real(dp), parameter :: nearly_aligned = 0.99_dp !! cosine of a normal that counts as along an
    !! axis
@@ -261,6 +261,23 @@ contains
          pairs%tangent(3 - along, k) = sign(1.0_dp, pairs%tangent(3 - along, k))
       end do
    end subroutine align_frames
+
+   !> Pairs whose normal motion is prescribed on both nodes, or their motion along a direction that
+   !> is neither their normal nor their tangent, once frames are aligned.
+   pure function over_constrained(pairs, held) result(too_much)
+      type(pair_row_type), intent(in) :: pairs     !! the pairs
+      logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
+      logical :: too_much(size(pairs%slave))       !! (m)
+      logical :: both(2)
+      integer :: k
+
+      do k = 1, size(pairs%slave)
+         both = held(2*pairs%slave(k) - 1:2*pairs%slave(k)) .and. &
+            held(2*pairs%master(k) - 1:2*pairs%master(k))
+         too_much(k) = any(both) .and. (all(both) .or. &
+            abs(pairs%normal(merge(2, 1, both(1)), k)) < nearly_aligned)
+      end do
+   end function over_constrained
 
    !> The contact system from the mechanical Schur complement.
    subroutine set_contact(self)
