@@ -16,6 +16,7 @@ module increment_records
    use scheme_properties, only: is_explicit
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
+   use text, only: append, to_text
    use zone_edges, only: contact_edges, stick_edges
    implicit none
    private
@@ -61,6 +62,7 @@ contains
          record%fields%stress = next%stress
          record%fields%reaction = next%reaction
       end if
+      call warn_of_floor(step, record)
       if (solves_heat(step%analysis)) then
          record%fields%heat_flux = recover_heat_flux(model%mesh, model%sections, &
             model%materials, model%orientations, points, next%temperature)
@@ -73,6 +75,20 @@ contains
          record%contacts%heat_rate = record%heat_in
       end if
    end subroutine make_record
+
+   !> Warns where the last places of the displacements change omega by more than the tolerance: the
+   !> fixed point was then met no better than this.
+   pure subroutine warn_of_floor(step, record)
+      type(step_type), intent(in) :: step
+      type(increment_record_type), intent(inout) :: record
+
+      if (.not. allocated(record%iterations)) return
+      if (record%residual_floor <= step%fixed_point%tolerance) return
+      call append(record%warnings, 'increment '//to_text(record%increment)// &
+         ': the conductance of the contacts is known to '//to_text(record%residual_floor)// &
+         ' only, not to TOL='//to_text(step%fixed_point%tolerance)//': it takes its gaps from '// &
+         'displacements that are far larger, whose last places change it')
+   end subroutine warn_of_floor
 
    !> Slip counts from the instant of closing. Tangential positions that the contact system does not
    !> carry, of frictionless pairs, are taken from the recovered displacements, and such a pair

@@ -89,6 +89,26 @@ def test_swapped_faces(tmp_path):
     assert "overlap by 4" in one(found, "*CONTACT PAIR")
 
 
+def test_conductance_that_rounding_leaves_unknown(tmp_path):
+    """TOL below what a few units in the last place of the displacements change in omega."""
+    cards = blocks()
+    at = cards.index("*CONTACT PAIR, INTERACTION=I, NAME=F")
+    heated = PRESSED.copy()
+    heated[1:2] = ["*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.5, 1.", "*BOUNDARY",
+                   "A.BOTTOM, 11", "B.TOP, 11, 11, 50."]
+    del heated[6]
+    for tolerance, warned in (("1.E-8", False), ("1.E-25", True)):
+        deck = write(tmp_path / "deck.inp", cards[:at],
+                     ["*GAP LAW, TYPE=POWER", "0., 0.1, 1."], cards[at:],
+                     [f"*FIXED POINT, TOL={tolerance}"], heated)
+        process = run("run", "--quiet", deck, "--out", tmp_path)
+        assert process.returncode == 0, process.stderr
+        found = re.findall(r"increment 2: the conductance of the contacts is known to (\S+) only, "
+                           r"not to TOL=", process.stderr)
+        assert len(found) == warned
+        assert all(0 < float(value) < 1e-8 for value in found)
+
+
 def test_bodies_of_different_thickness(tmp_path):
     """The areas are the slave's; axisymmetric models have no thickness."""
     cards = blocks(thickness=("1.", "5."))
