@@ -7,7 +7,7 @@ module listing
    use kinds, only: dp
    use listing_model, only: print_model
    use listing_tables, only: print_contact_table, print_iterations, print_verdicts
-   use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
+   use listing_text, only: column, page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
    use records, only: contact_record_type, edges_kept, increment_record_type, &
       iteration_record_type, status_open, status_stick
@@ -175,9 +175,10 @@ contains
       if (.not. allocated(record%iterations)) return
       passes = size(record%iterations)
       if (passes == 0) return
-      write (unit, '(3x, 2(a, i0), 2(a, es9.2), a)') 'passes ', passes, '   cut-backs ', &
-         record%iterations(passes)%cut_backs, '   residual', record%iterations(passes)%residual, &
-         '  (floor', record%residual_floor, ')'
+      write (unit, '(3x, 2(a, i0), 5a)') 'passes ', passes, '   cut-backs ', &
+         record%iterations(passes)%cut_backs, '   residual', &
+         column(record%iterations(passes)%residual, 9, 2), '  (floor', &
+         column(record%residual_floor, 9, 2), ')'
    end subroutine print_increment
 
    subroutine print_interface(unit, name, contact)
@@ -190,10 +191,10 @@ contains
       write (unit, '(3x, a, 3(a, i0), 4a)') name, '   I ', zones(1), '   II ', zones(2), &
          '   III ', zones(3), '   edge of contact s = ', edge_text(contact%edge_contact), &
          '   of stick s = ', edge_text(contact%edge_stick)
-      write (unit, '(6x, 2(a, es14.6))', advance='no') 'normal force', contact%normal_force, &
-         '   shear force', contact%shear_force
+      write (unit, '(6x, 4a)', advance='no') 'normal force', &
+         column(contact%normal_force, 14, 6), '   shear force', column(contact%shear_force, 14, 6)
       if (allocated(contact%heat_flux)) then
-         write (unit, '(a, es14.6)', advance='no') '   heat rate', contact%heat_rate
+         write (unit, '(2a)', advance='no') '   heat rate', column(contact%heat_rate, 14, 6)
       end if
       write (unit, '()')
       call print_surplus(unit, 'contact', edge_count(contact%status /= status_open))
@@ -231,13 +232,14 @@ contains
       integer, intent(in) :: analysis
 
       if (solves_heat(analysis)) then
-         write (unit, '(3x, 2(a, es14.6), 2(a, es9.2))') 'heat in', record%heat_in, '   out', &
-            record%heat_out, '   heat imbalance', record%heat_imbalance, '   at this instant', &
-            record%heat_imbalance_pointwise
+         write (unit, '(3x, 8a)') 'heat in', column(record%heat_in, 14, 6), '   out', &
+            column(record%heat_out, 14, 6), '   heat imbalance', &
+            column(record%heat_imbalance, 9, 2), '   at this instant', &
+            column(record%heat_imbalance_pointwise, 9, 2)
       end if
       if (solves_mechanics(analysis)) then
-         write (unit, '(3x, 2(a, es9.2))') 'force imbalance', record%force_imbalance, &
-            '   contact conditions violated by', record%contact_violation
+         write (unit, '(3x, 4a)') 'force imbalance', column(record%force_imbalance, 9, 2), &
+            '   contact conditions violated by', column(record%contact_violation, 9, 2)
       end if
       associate (work => record%work)
          if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &
