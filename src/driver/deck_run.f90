@@ -8,8 +8,10 @@ module deck_run
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
    use errors, only: error_type, status_deck, status_no_convergence, status_verify
+   use increment_instants, only: next_instant
    use increments, only: simulation_type
    use kinds, only: dp
+   use load_courses, only: step_clock_type
    use model, only: model_type
    use pair_reports, only: pair_all
    use progress, only: deck_outcome_type
@@ -18,7 +20,7 @@ module deck_run
    use run_output, only: run_output_type
    use support_checks, only: check_over_constrained, check_supports
    use system_calls, only: make_folder
-   use text, only: string_type
+   use text, only: string_type, to_text
    use verify_places, only: check_arc_lengths
    implicit none
    private
@@ -49,6 +51,7 @@ contains
       call prepare_deck(path, command, cards, model, simulation, outcome%status)
       if (outcome%status == 0) then
          call simulation%reduce(model, error)
+         if (allocated(error)) call say_when(model, simulation, error)
          if (allocated(error)) call report_failure(path, error, outcome)
       end if
       if (outcome%status == 0) then
@@ -132,6 +135,11 @@ contains
             if (allocated(error)) return
          end do
          if (allocated(error)) then
+            ! An increment that had no number yet failed as it was set up.
+            if (record%increment == 0) call say_when(model, simulation, error)
+            if (record%increment == 0 .and. error%status == status_deck) then
+               error%status = status_no_convergence
+            end if
             allocate (passes(0))
             if (allocated(record%iterations)) passes = record%iterations
             call output%fail(error%message, passes)
@@ -142,6 +150,19 @@ contains
          end if
       end associate
    end subroutine solve_deck
+
+   !> Puts the increment that was tried before what went wrong.
+   subroutine say_when(model, simulation, error)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(error_type), intent(inout) :: error
+      type(step_clock_type) :: clock
+
+      clock = next_instant(model, model%steps(simulation%step), simulation%step_start, &
+         simulation%step_time)
+      error%message = 'increment '//to_text(simulation%increments + 1)//' (time '// &
+         to_text(clock%total_time)//'): '//error%message
+   end subroutine say_when
 
    !> Prints which checks of the deck failed.
    subroutine report_checks(path, lines)

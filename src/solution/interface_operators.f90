@@ -2,6 +2,7 @@
 !> needs, on the pairs alone.
 module interface_operators
    use bodies, only: bodies_on_axis
+   use body_names, only: body_name, reached_bodies
    use conductance_laws, only: conductance_law_type
    use contact_pairs, only: contact_pairs_type, make_pairs
    use contact_system, only: contact_system_type
@@ -190,7 +191,7 @@ contains
 
       call self%thermal%reduce(model%solver, error)
       if (allocated(error)) then
-         error%message = error%message//' (heat: no temperature holds it)'
+         call name_cold_bodies(self, model, error)
          return
       end if
       associate (map => self%thermal%map)
@@ -199,6 +200,35 @@ contains
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       if (self%is_coupled) call form_jump_load(self)
    end subroutine reduce_heat
+
+   !> Names the bodies that leave the heat problem singular: no prescribed temperature and no film
+   !> stands on them or on a body that pairs join to them.
+   subroutine name_cold_bodies(self, model, error)
+      type(interface_operators_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(error_type), intent(inout) :: error
+      logical :: warm(0:model%mesh%body_count)
+      character(:), allocatable :: words
+      integer :: body
+
+      warm = .false.
+      warm(pack(model%mesh%node_body, self%thermal%map%base > 0)) = .true.
+      if (allocated(self%thermal%added%value)) then
+         warm(model%mesh%node_body(pack(self%thermal%added%column, &
+            self%thermal%added%value > 0.0_dp))) = .true.
+      end if
+      associate (pairs => self%pairs)
+         warm(1:) = reached_bodies(model%mesh%node_body, warm(1:), pairs%slave, pairs%master, &
+            spread(.true., 1, size(pairs%slave)))
+      end associate
+      words = ''
+      do body = 1, model%mesh%body_count
+         if (.not. warm(body)) words = words//'; the temperature of '//body_name(model, body)// &
+            ' is undetermined'
+      end do
+      if (len(words) > 0) error%message = words(3:)//': no *BOUNDARY on dof 11 and no *FILM '// &
+         'with a coefficient above 0 at this time fixes it'
+   end subroutine name_cold_bodies
 
    !> Takes the films of an increment; where they differ from those of the factors, the heat problem
    !> is reduced again.

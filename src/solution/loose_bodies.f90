@@ -1,6 +1,7 @@
 !> Bodies that nothing holds and bodies whose temperature nothing determines, in words.
 module loose_bodies
    use bodies, only: bodies_on_axis
+   use body_names, only: body_name, reached_bodies
    use conductance_laws, only: law_none
    use interface_operators, only: pair_row_type
    use kinds, only: dp
@@ -36,8 +37,9 @@ contains
       end do
    end subroutine bodies_held_by_nothing
 
-   !> Bodies that the supports and the pairs in contact leave free, to be added to a message; empty
-   !> where all are held.
+   !> Bodies that the supports and the pairs in contact leave free, to be added to a message, and
+   !> what contact has to hold at all. The pairs are those of the set that was tried last, which need
+   !> not be the one from which the body parts.
    function bodies_held_by_no_pair(model, pairs, held, status) result(words)
       type(model_type), intent(in) :: model         !! the model
       type(pair_row_type), intent(in) :: pairs      !! all pairs
@@ -60,7 +62,32 @@ contains
          words = words//'; '//body_name(model, motions(i)%body)//' '//verb//' '//motions(i)%way// &
             motions(i)%company
       end do
+      words = words//held_by_contact_alone(model, pairs, held)
    end function bodies_held_by_no_pair
+
+   !> The motions that supports leave free, as the end of a message; empty where there are none.
+   function held_by_contact_alone(model, pairs, held) result(words)
+      type(model_type), intent(in) :: model
+      type(pair_row_type), intent(in) :: pairs
+      logical, intent(in) :: held(:)
+      character(:), allocatable :: words
+      type(free_motion_type), allocatable :: motions(:)
+      integer :: i, body
+
+      call free_motions(model, pairs, held, spread(status_open, 1, size(pairs%slave)), motions)
+      words = ''
+      body = 0
+      do i = 1, size(motions)
+         if (motions(i)%body == body) then
+            words = words//', '
+         else
+            words = words//'; only contact can keep '//body_name(model, motions(i)%body)//' from '
+         end if
+         body = motions(i)%body
+         words = words//trim(merge('turning', 'moving ', motions(i)%turns))//' '//motions(i)%way// &
+            motions(i)%company
+      end do
+   end function held_by_contact_alone
 
    !> The free motions with the pairs in these states.
    subroutine free_motions(model, pairs, held, status, motions)
@@ -137,27 +164,17 @@ contains
       integer, intent(in) :: step                       !! the step, for its films
       logical, intent(in) :: conducts(:)                !! (m) pairs that carry heat
       logical :: undetermined(model%mesh%body_count)    !! (bodies)
+      logical :: determined(model%mesh%body_count)
       integer :: k
-      logical :: spreads
 
-      undetermined = .not. bodies_with_film(model, step)
+      determined = bodies_with_film(model, step)
       do k = 1, size(held)
          if (held(k) .and. model%mesh%node_body(k) > 0) then
-            undetermined(model%mesh%node_body(k)) = .false.
+            determined(model%mesh%node_body(k)) = .true.
          end if
       end do
-      spreads = .true.
-      do while (spreads)
-         spreads = .false.
-         do k = 1, size(conducts)
-            if (.not. conducts(k)) cycle
-            associate (bodies => model%mesh%node_body([pairs%slave(k), pairs%master(k)]))
-               if (undetermined(bodies(1)) .eqv. undetermined(bodies(2))) cycle
-               undetermined(bodies) = .false.
-               spreads = .true.
-            end associate
-         end do
-      end do
+      undetermined = .not. reached_bodies(model%mesh%node_body, determined, pairs%slave, &
+         pairs%master, conducts)
    end function undetermined_bodies
 
    !> Bodies with a film in a step: its own ones and those of the steps before that it keeps.
@@ -179,28 +196,5 @@ contains
          end associate
       end do
    end function bodies_with_film
-
-   !> How a body is named to the user: its number, its material, its first node in the deck.
-   function body_name(model, body) result(name)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: body
-      character(:), allocatable :: name
-      character(:), allocatable :: materials
-      integer :: m
-
-      associate (mesh => model%mesh)
-         materials = ''
-         do m = 1, size(model%materials)
-            if (.not. any(mesh%element_body == body .and. &
-               model%sections(mesh%element_section)%material == m)) cycle
-            if (.not. allocated(model%materials(m)%name)) cycle
-            materials = materials//' and '//model%materials(m)%name
-         end do
-         name = 'body '//to_text(body)//' ('
-         if (len(materials) > 0) name = name//'of '//materials(6:)//', '
-         name = name//'first node '//to_text(minval(mesh%node_number, mask= &
-            mesh%node_body == body))//')'
-      end associate
-   end function body_name
 
 end module loose_bodies
