@@ -89,6 +89,66 @@ def test_swapped_faces(tmp_path):
     assert "overlap by 4" in one(found, "*CONTACT PAIR")
 
 
+def step(*cards):
+    """Return a step of mechanics with the load."""
+    return [*PRESSED[:-1], *cards, "*END STEP"]
+
+
+def test_a_second_value_for_one_degree_of_freedom(tmp_path):
+    """The last card of a step holds. What stands before the first step may be replaced there, and
+    the same value may be given twice."""
+    pushed = ["*BOUNDARY", "B.TOP, 1, 1, 0.", "B.LEFT, 1, 1, 0.1", "B.LEFT, 1, 1, 0.1"]
+    found = warnings(tmp_path, blocks(), step(*pushed))
+    assert re.fullmatch(r"node \d+: another card of this step gives degree of freedom 1 another "
+                        "value; the last one holds", one(found, "B.LEFT, 1, 1, 0.1"))
+    crossing = ["*BOUNDARY", "A.TOP, 2, 2, 0.", "A, 2, 2, 0.1"]
+    assert one(warnings(tmp_path, blocks(), step(*crossing)), "A, ").endswith("with two: 9")
+    assert warnings(tmp_path, blocks(), step("*BOUNDARY", "A.BOTTOM, 1, 2, 0.1")) == []
+    assert warnings(tmp_path, blocks(), step("*BOUNDARY", "A.BOTTOM, 1, 2, 0."),
+                    step("*BOUNDARY", "A.BOTTOM, 1, 2, 0.1")) == []
+
+
+def test_a_support_of_no_element(tmp_path):
+    orphan = ["*NODE, NSET=LOST", "901, 9., 9.", "902, 9., 8."]
+    message = one(warnings(tmp_path, blocks(), orphan, step("*BOUNDARY", "LOST, 1, 2")), "LOST")
+    assert message == ("node 901 belongs to no element: what is prescribed there has no effect; "
+                       "nodes without one: 2")
+
+
+def test_loads_that_no_step_solves_for(tmp_path):
+    """Mechanics in a deck of heat alone, heat in a deck of mechanics alone."""
+    heat = ["*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "A.BOTTOM, 11",
+            "B.TOP, 11, 11, 5."]
+    cards = blocks()
+    at = cards.index("*CONTACT PAIR, INTERACTION=I, NAME=F")
+    cards = [*cards[:at], "*GAP LAW, TYPE=POWER", "0., 1., 1.", *cards[at:]]
+    no_use = "without effect: no step from here on solves mechanics"
+    for load, what in (("*DSLOAD", "B.TOP, P, 1."), ("*CLOAD", "101, 1, 1."),
+                       ("*DLOAD", "B, BX, 1.")):
+        assert one(warnings(tmp_path, cards, heat, [load, what, "*END STEP"]), what) \
+            == f"a load {no_use}"
+    moved = [*heat, "B.TOP, 2, 2, 0.", "B.TOP, 1, 1, 0.1", "*END STEP"]
+    assert one(warnings(tmp_path, cards, moved), "B.TOP, 1") == f"a displacement {no_use}"
+    flux = step("*DFLUX", "B, BF, 1.")
+    assert "solves heat" in one(warnings(tmp_path, cards, flux), "B, BF")
+    assert warnings(tmp_path, cards, [*heat, "*END STEP"], PRESSED) == []
+
+
+@pytest.mark.parametrize(("keyword", "label"), [("*DLOAD", "P3, 1."), ("*DFLUX", "S3, 1."),
+                                                ("*FILM", "F3, 20., 1.")])
+def test_loads_on_sides_inside_a_body(tmp_path, keyword, label):
+    """Elements 101 to 104 are the lower row of the upper block."""
+    load = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", "*BOUNDARY",
+            "A.BOTTOM, 11", "B.TOP, 11", keyword]
+    for target, said in (("B", "side 3 of element 101 lies inside a body; the load acts there all "
+                          "the same; elements with such a side: 4"),
+                         ("102", "side 3 of element 102 lies inside a body; the load acts there "
+                          "all the same")):
+        found = warnings(tmp_path, blocks(), [*load, f"{target}, {label}", "*END STEP"])
+        assert one(found, target) == said
+    assert warnings(tmp_path, blocks(), [*load, f"105, {label}", "*END STEP"]) == []
+
+
 def test_conductance_that_rounding_leaves_unknown(tmp_path):
     """TOL below what a few units in the last place of the displacements change in omega."""
     cards = blocks()
