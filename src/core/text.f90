@@ -63,6 +63,7 @@ contains
          if (buffer(last:last) == '.') last = last - 1
       end if
       string = buffer(:last)//trim(buffer(exponent:))
+      if (string == '-0') string = '0'
    end function real_to_text
 
    !> A string with its letters a-z in upper case.
