@@ -37,9 +37,8 @@ contains
       end do
    end subroutine bodies_held_by_nothing
 
-   !> Bodies that the supports and the pairs in contact leave free, to be added to a message, and
-   !> what contact has to hold at all. The pairs are those of the set that was tried last, which need
-   !> not be the one from which the body parts.
+   !> Bodies that the supports and the pairs in contact leave free, to be added to a message; where
+   !> these pairs hold all, the bodies that only contact can hold.
    function bodies_held_by_no_pair(model, pairs, held, status) result(words)
       type(model_type), intent(in) :: model         !! the model
       type(pair_row_type), intent(in) :: pairs      !! all pairs
@@ -48,46 +47,46 @@ contains
       character(:), allocatable :: words            !! such as '; body 2 (...) slides along x'
       type(free_motion_type), allocatable :: motions(:), welded(:)
       integer, allocatable :: stuck(:)
-      character(:), allocatable :: verb
-      integer :: i
 
       call free_motions(model, pairs, held, status, motions)
-      stuck = merge(status_stick, status, status == status_slip .and. pairs%friction > 0.0_dp)
-      call free_motions(model, pairs, held, stuck, welded)
+      if (size(motions) > 0) then
+         stuck = merge(status_stick, status, status == status_slip .and. pairs%friction > 0.0_dp)
+         call free_motions(model, pairs, held, stuck, welded)
+         words = '; '//in_words(model, motions, trim(merge('moves ', 'slides', size(welded) > 0)), &
+            'turns')
+         return
+      end if
+      call free_motions(model, pairs, held, spread(status_open, 1, size(status)), motions)
       words = ''
-      do i = 1, size(motions)
-         verb = 'moves'
-         if (size(welded) == 0) verb = 'slides'
-         if (motions(i)%turns) verb = 'turns'
-         words = words//'; '//body_name(model, motions(i)%body)//' '//verb//' '//motions(i)%way// &
-            motions(i)%company
-      end do
-      words = words//held_by_contact_alone(model, pairs, held)
+      if (size(motions) > 0) words = '; without contact '//in_words(model, motions, 'moves', 'turns')
    end function bodies_held_by_no_pair
 
-   !> The motions that supports leave free, as the end of a message; empty where there are none.
-   function held_by_contact_alone(model, pairs, held) result(words)
+   !> Motions, each body named once.
+   function in_words(model, motions, moves, turns) result(words)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: pairs
-      logical, intent(in) :: held(:)
+      type(free_motion_type), intent(in) :: motions(:)
+      character(*), intent(in) :: moves, turns
       character(:), allocatable :: words
-      type(free_motion_type), allocatable :: motions(:)
-      integer :: i, body
+      integer :: i, last
 
-      call free_motions(model, pairs, held, spread(status_open, 1, size(pairs%slave)), motions)
       words = ''
-      body = 0
+      last = 0
       do i = 1, size(motions)
-         if (motions(i)%body == body) then
+         if (motions(i)%body == last) then
             words = words//', '
          else
-            words = words//'; only contact can keep '//body_name(model, motions(i)%body)//' from '
+            if (last > 0) words = words//'; '
+            words = words//body_name(model, motions(i)%body)//' '
          end if
-         body = motions(i)%body
-         words = words//trim(merge('turning', 'moving ', motions(i)%turns))//' '//motions(i)%way// &
-            motions(i)%company
+         last = motions(i)%body
+         if (motions(i)%turns) then
+            words = words//turns
+         else
+            words = words//moves
+         end if
+         words = words//' '//motions(i)%way//motions(i)%company
       end do
-   end function held_by_contact_alone
+   end function in_words
 
    !> The free motions with the pairs in these states.
    subroutine free_motions(model, pairs, held, status, motions)

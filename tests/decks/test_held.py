@@ -89,9 +89,7 @@ def test_a_block_that_is_pulled_off_is_named(tmp_path):
     pull = ["*DLOAD", f"3, P3, {-PRESSURE}", f"4, P3, {-PRESSURE}"]
     deck = write(tmp_path / "pull.inp", MESH, SOLIDS, interaction(MU), FACES, step(FLOOR, pull))
     text = refuse(deck, 2)
-    assert "body 1 (of UPPER, first node 1) moves along" in text
-    assert "only contact can keep body 1 (of UPPER, first node 1) from moving along x, " \
-        "moving along y, turning about (0." in text
+    assert "body 1 (of UPPER, first node 1) moves along x, moves along y, turns about (0." in text
 
 
 @pytest.mark.parametrize("friction", [0.0, MU])
