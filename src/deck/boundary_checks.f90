@@ -1,5 +1,5 @@
-!> What only shows of *BOUNDARY once all cards are read: whether it acts on something, in a step that
-!> has use for it, and says one thing only.
+!> What only shows of *BOUNDARY once all cards are read: whether it acts on something, in a step
+!> that has use for it, and says one thing only.
 module boundary_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type

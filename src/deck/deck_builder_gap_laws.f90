@@ -13,8 +13,8 @@ module deck_builder_gap_laws
    private
    public :: build_gap_law, build_gap_conductance, join_gap_conductance
 
-   !> Largest n of C0 + C1 p^n: laws that are measured have 1/2 to 2, and p^10 stays within the range
-   !> of numbers for every pressure that a material bears.
+   !> Largest n of C0 + C1 p^n: laws that are measured have 1/2 to 2, and p^10 stays within the
+   !> range of numbers for every pressure that a material bears.
    real(dp), parameter :: largest_exponent = 10.0_dp
 
 contains

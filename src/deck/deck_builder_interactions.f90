@@ -17,7 +17,7 @@ module deck_builder_interactions
    public :: build_interactions, find_interaction
 
    real(dp), parameter :: continuous = 1.0e-6_dp   !! a smaller jump is none, relative
-   !> Beyond it the cone of friction leaves nothing of the pressure in the last places of a force.
+   !> Beyond it, from some 1e7 on, a pressure is lost in the last places of mu times it.
    real(dp), parameter :: largest_friction = 1.0e6_dp
 
 contains

@@ -145,8 +145,8 @@ contains
 
       if (all(amplitude%values >= 0.0_dp)) return
       call report%error(parameter_place(card, 'FILM AMPLITUDE'), 'amplitude '//amplitude%name// &
-         ' becomes negative ('//to_text(minval(amplitude%values))//'), which a film coefficient '// &
-         'cannot be; give factors from 0 on')
+         ' becomes negative ('//to_text(minval(amplitude%values))//'), which a film '// &
+         'coefficient cannot be; give factors from 0 on')
    end subroutine check_film
 
    !> Node or set, first and last degree of freedom, value; 0 on the degrees 3 to 6, which a plane

@@ -78,8 +78,8 @@ contains
       end do
    end function set_names
 
-   !> Reports a name that nothing has. Where a card gives no name, which is reported there, it may be
-   !> the one that is missing, unless it looks like a slip of the pen.
+   !> Reports a name that nothing has. Where a card gives no name, which is reported there, it may
+   !> be the one that is missing, unless it looks like a slip of the pen.
    subroutine report_unknown(noun, name, names, place, report)
       character(*), intent(in) :: noun                  !! what is named, such as material
       character(*), intent(in) :: name                  !! the name that is not known

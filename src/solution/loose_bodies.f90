@@ -58,7 +58,8 @@ contains
       end if
       call free_motions(model, pairs, held, spread(status_open, 1, size(status)), motions)
       words = ''
-      if (size(motions) > 0) words = '; without contact '//in_words(model, motions, 'moves', 'turns')
+      if (size(motions) > 0) words = '; without contact '// &
+         in_words(model, motions, 'moves', 'turns')
    end function bodies_held_by_no_pair
 
    !> Motions, each body named once.
