@@ -4,7 +4,7 @@ module body_names
    use text, only: to_text
    implicit none
    private
-   public :: body_name, reached_bodies
+   public :: body_name, cold_bodies, reached_bodies
 
 contains
 
@@ -33,6 +33,29 @@ contains
          end do
       end do
    end function reached_bodies
+
+   !> Bodies to which no way over pairs leads from a node whose temperature something fixes, in
+   !> words; empty where there are none.
+   function cold_bodies(model, warm, slave, master) result(words)
+      type(model_type), intent(in) :: model     !! the model
+      logical, intent(in) :: warm(:)            !! (nodes) nodes that something fixes
+      integer, intent(in) :: slave(:)           !! (m) slave nodes
+      integer, intent(in) :: master(:)          !! (m) master nodes
+      character(:), allocatable :: words        !! such as the temperature of ... is undetermined
+      logical :: given(0:model%mesh%body_count)
+      integer :: body
+
+      given = .false.
+      given(pack(model%mesh%node_body, warm)) = .true.
+      given(1:) = reached_bodies(model%mesh%node_body, given(1:), slave, master, &
+         spread(.true., 1, size(slave)))
+      words = ''
+      do body = 1, model%mesh%body_count
+         if (given(body)) cycle
+         if (len(words) > 0) words = words//'; '
+         words = words//'the temperature of '//body_name(model, body)//' is undetermined'
+      end do
+   end function cold_bodies
 
    !> How a body is named to the user: its number, its material, its first node in the deck.
    function body_name(model, body) result(name)

@@ -2,7 +2,7 @@
 !> needs, on the pairs alone.
 module interface_operators
    use bodies, only: bodies_on_axis
-   use body_names, only: body_name, reached_bodies
+   use body_names, only: cold_bodies
    use conductance_laws, only: conductance_law_type
    use contact_pairs, only: contact_pairs_type, make_pairs
    use contact_system, only: contact_system_type
@@ -207,27 +207,16 @@ contains
       type(interface_operators_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(error_type), intent(inout) :: error
-      logical :: warm(0:model%mesh%body_count)
+      logical :: warm(size(model%mesh%node_body))
       character(:), allocatable :: words
-      integer :: body
 
-      warm = .false.
-      warm(pack(model%mesh%node_body, self%thermal%map%base > 0)) = .true.
+      warm = self%thermal%map%base(:size(warm)) > 0
       if (allocated(self%thermal%added%value)) then
-         warm(model%mesh%node_body(pack(self%thermal%added%column, &
-            self%thermal%added%value > 0.0_dp))) = .true.
+         warm(pack(self%thermal%added%column, self%thermal%added%value > 0.0_dp)) = .true.
       end if
-      associate (pairs => self%pairs)
-         warm(1:) = reached_bodies(model%mesh%node_body, warm(1:), pairs%slave, pairs%master, &
-            spread(.true., 1, size(pairs%slave)))
-      end associate
-      words = ''
-      do body = 1, model%mesh%body_count
-         if (.not. warm(body)) words = words//'; the temperature of '//body_name(model, body)// &
-            ' is undetermined'
-      end do
-      if (len(words) > 0) error%message = words(3:)//': no *BOUNDARY on dof 11 and no *FILM '// &
-         'with a coefficient above 0 at this time fixes it'
+      words = cold_bodies(model, warm, self%pairs%slave, self%pairs%master)
+      if (len(words) > 0) error%message = words//': no *BOUNDARY on dof 11 and no *FILM with a '// &
+         'coefficient above 0 at this time fixes it'
    end subroutine name_cold_bodies
 
    !> Takes the films of an increment; where they differ from those of the factors, the heat problem
