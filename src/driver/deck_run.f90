@@ -1,30 +1,27 @@
-!> One deck from its cards to its results, or to what is wrong with it.
+!> One deck to its results.
 module deck_run
    use, intrinsic :: iso_fortran_env, only: error_unit
    use cards, only: cards_type
    use clock, only: wall_seconds
    use command_line, only: command_type
-   use deck_builder, only: build_model
-   use deck_reader, only: read_deck
-   use deck_report, only: deck_report_type
-   use errors, only: error_type, status_deck, status_no_convergence, status_verify
-   use increment_instants, only: next_instant
+   use deck_preparation, only: prepare_deck
+   use errors, only: error_type, set_error, status_deck, status_interrupted, &
+      status_no_convergence, status_verify
+   use increment_control, only: increment_control_type
    use increments, only: simulation_type
+   use interruption, only: caught_signal
    use kinds, only: dp
    use load_courses, only: step_clock_type
    use model, only: model_type
-   use pair_reports, only: pair_all
    use progress, only: deck_outcome_type
-   use records, only: increment_record_type, iteration_record_type
+   use records, only: increment_record_type
    use run_description, only: describe_run
    use run_output, only: run_output_type
-   use support_checks, only: check_over_constrained, check_supports
    use system_calls, only: make_folder
    use text, only: string_type, to_text
-   use verify_places, only: check_arc_lengths
    implicit none
    private
-   public :: run_deck, prepare_deck, base_name
+   public :: run_deck, base_name
 
 contains
 
@@ -70,41 +67,6 @@ contains
       outcome%seconds = wall_seconds() - since
    end subroutine run_deck
 
-   !> Reads a deck and prepares its run. Warnings and errors go to stderr.
-   subroutine prepare_deck(path, command, cards, model, simulation, status)
-      character(*), intent(in) :: path                    !! the deck as given
-      type(command_type), intent(in) :: command           !! options of the command line
-      type(cards_type), intent(out) :: cards              !! its cards
-      type(model_type), intent(out) :: model              !! its model
-      type(simulation_type), intent(inout) :: simulation  !! a fresh run
-      integer, intent(out) :: status                      !! exit status so far
-      type(deck_report_type) :: report
-      type(error_type), allocatable :: error
-
-      status = 0
-      call read_deck(path, command%width, command%settings, cards, report)
-      call build_model(cards, model, report)
-      if (.not. report%has_errors()) then
-         call pair_all(model, simulation%operators%interfaces, report)
-      end if
-      if (.not. report%has_errors()) then
-         call simulation%start(model, error)
-         if (allocated(error)) then
-            call check_over_constrained(model, simulation, report)
-            if (report%has_errors()) deallocate (error)
-         else
-            call check_arc_lengths(model, simulation%operators%interfaces, report)
-            call check_supports(cards%last, model, simulation, report)
-         end if
-      end if
-      model%warnings = report%warnings()
-      call report%print(error_unit)
-      if (report%has_errors()) status = status_deck
-      if (.not. allocated(error)) return
-      status = error%status
-      write (error_unit, '(3a)') path, ': error: ', error%message
-   end subroutine prepare_deck
-
    !> All increments, with their output.
    subroutine solve_deck(path, command, cards, model, simulation, output, error)
       character(*), intent(in) :: path
@@ -116,7 +78,6 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: output_error
       type(increment_record_type) :: record
-      type(iteration_record_type), allocatable :: passes(:)
 
       associate (pairs => simulation%operators%interfaces, points => simulation%points)
          call make_folder(command%folder)
@@ -124,6 +85,11 @@ contains
             points%element_points, cards%images, command%quiet, error)
          if (allocated(error)) return
          do while (.not. simulation%finished(model))
+            call check_signals(simulation%control, error)
+            if (allocated(error)) then
+               record = increment_record_type()
+               exit
+            end if
             call simulation%advance(model, record, error)
             output%run%seconds_assemble = simulation%seconds%assemble
             output%run%seconds_reduce = simulation%seconds%reduce
@@ -135,14 +101,13 @@ contains
             if (allocated(error)) return
          end do
          if (allocated(error)) then
-            ! An increment that had no number yet failed as it was set up.
-            if (record%increment == 0) call say_when(model, simulation, error)
-            if (record%increment == 0 .and. error%status == status_deck) then
+            if (error%status == status_deck) then
+               ! What only an increment shows is no mistake of the deck's cards; one that has no
+               ! number yet failed as it was set up.
+               if (record%increment == 0) call say_when(model, simulation, error)
                error%status = status_no_convergence
             end if
-            allocate (passes(0))
-            if (allocated(record%iterations)) passes = record%iterations
-            call output%fail(error%message, passes)
+            call output%fail(error%message, record)
          end if
          call output%finish(model, pairs, output_error)
          if (allocated(output_error) .and. .not. allocated(error)) then
@@ -158,11 +123,27 @@ contains
       type(error_type), intent(inout) :: error
       type(step_clock_type) :: clock
 
-      clock = next_instant(model, model%steps(simulation%step), simulation%step_start, &
-         simulation%step_time)
-      error%message = 'increment '//to_text(simulation%increments + 1)//' (time '// &
+      clock = simulation%control%next_instant(model)
+      error%message = 'increment '//to_text(simulation%control%increments + 1)//' (time '// &
          to_text(clock%total_time)//'): '//error%message
    end subroutine say_when
+
+   !> A signal ends the run between two increments.
+   !> Error: status_interrupted.
+   subroutine check_signals(control, error)
+      type(increment_control_type), intent(in) :: control
+      type(error_type), allocatable, intent(out) :: error
+
+      if (caught_signal() == '') return
+      if (control%increments == 0) then
+         call set_error(error, status_interrupted, 'ended by '//caught_signal()// &
+            ' before the first increment')
+      else
+         call set_error(error, status_interrupted, 'ended by '//caught_signal()// &
+            ' after increment '//to_text(control%increments)//' (time '// &
+            to_text(control%step_start + control%step_time)//')')
+      end if
+   end subroutine check_signals
 
    !> Prints which checks of the deck failed.
    subroutine report_checks(path, lines)

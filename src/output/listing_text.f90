@@ -5,7 +5,8 @@ module listing_text
    use text, only: string_type
    implicit none
    private
-   public :: page_width, print_title, print_wrapped, print_list, print_deck, column
+   public :: page_width, print_title, print_wrapped, print_list, print_deck
+   public :: column, in_columns
 
    integer, parameter :: page_width = 132   !! columns of the line printer
 
@@ -45,6 +46,19 @@ contains
       end do
       string = buffer(41 - width:)
    end function column
+
+   !> Numbers in columns side by side.
+   pure function in_columns(values, width, decimals) result(string)
+      real(dp), intent(in) :: values(:)          !! (n) the numbers
+      integer, intent(in) :: width               !! columns of each, at least 9
+      integer, intent(in) :: decimals            !! digits behind the point where they fit
+      character(width*size(values)) :: string    !! as from column
+      integer :: i
+
+      do i = 1, size(values)
+         string(width*(i - 1) + 1:width*i) = column(values(i), width, decimals)
+      end do
+   end function in_columns
 
    !> Prints text under a mark, broken at blanks.
    subroutine print_wrapped(unit, mark, string)

@@ -59,19 +59,15 @@ contains
       class(status_file_type), intent(inout) :: self      !! the `.sta` file
       type(increment_record_type), intent(in) :: record   !! the increment
       character(line_length) :: line
-      integer :: passes, cut_backs
+      integer :: passes
       real(dp) :: residual
 
       passes = 0
-      cut_backs = 0
       residual = 0.0_dp
       if (allocated(record%iterations)) passes = size(record%iterations)
-      if (passes > 0) then
-         cut_backs = record%iterations(passes)%cut_backs
-         residual = record%iterations(passes)%residual
-      end if
+      if (passes > 0) residual = record%iterations(passes)%residual
       write (line, '(i0, t12, i4, 2a, i12, i11, 3a)') record%increment, record%step, &
-         column(record%time, 16, 8), column(record%load, 16, 8), passes, cut_backs, &
+         column(record%time, 16, 8), column(record%load, 16, 8), passes, record%cut_backs, &
          column(residual, 12, 3), column(record%heat_imbalance, 11, 2), &
          column(record%force_imbalance, 11, 2)
       call add_line(self, line)

@@ -37,8 +37,8 @@ contains
       end do
    end subroutine bodies_held_by_nothing
 
-   !> Bodies that the supports and the pairs in contact leave free, to be added to a message; where
-   !> these pairs hold all, the bodies that only contact can hold.
+   !> Bodies that the supports and the pairs in contact leave free, to be added to a message; empty
+   !> where all are held.
    function bodies_held_by_no_pair(model, pairs, held, status) result(words)
       type(model_type), intent(in) :: model         !! the model
       type(pair_row_type), intent(in) :: pairs      !! all pairs
@@ -49,24 +49,16 @@ contains
       integer, allocatable :: stuck(:)
 
       call free_motions(model, pairs, held, status, motions)
-      if (size(motions) > 0) then
-         stuck = merge(status_stick, status, status == status_slip .and. pairs%friction > 0.0_dp)
-         call free_motions(model, pairs, held, stuck, welded)
-         words = '; '//in_words(model, motions, trim(merge('moves ', 'slides', size(welded) > 0)), &
-            'turns')
-         return
-      end if
-      call free_motions(model, pairs, held, spread(status_open, 1, size(status)), motions)
-      words = ''
-      if (size(motions) > 0) words = '; without contact '// &
-         in_words(model, motions, 'moves', 'turns')
+      stuck = merge(status_stick, status, status == status_slip .and. pairs%friction > 0.0_dp)
+      call free_motions(model, pairs, held, stuck, welded)
+      words = in_words(model, motions, trim(merge('moves ', 'slides', size(welded) > 0)))
    end function bodies_held_by_no_pair
 
    !> Motions, each body named once.
-   function in_words(model, motions, moves, turns) result(words)
+   function in_words(model, motions, moves) result(words)
       type(model_type), intent(in) :: model
       type(free_motion_type), intent(in) :: motions(:)
-      character(*), intent(in) :: moves, turns
+      character(*), intent(in) :: moves
       character(:), allocatable :: words
       integer :: i, last
 
@@ -76,12 +68,11 @@ contains
          if (motions(i)%body == last) then
             words = words//', '
          else
-            if (last > 0) words = words//'; '
-            words = words//body_name(model, motions(i)%body)//' '
+            words = words//'; '//body_name(model, motions(i)%body)//' '
          end if
          last = motions(i)%body
          if (motions(i)%turns) then
-            words = words//turns
+            words = words//'turns'
          else
             words = words//moves
          end if

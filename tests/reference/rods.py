@@ -89,6 +89,32 @@ def table(*rows):
     return law
 
 
+def image(rods, open_law, closed_law):
+    """Return U of eq. (2.3): conductance -> heat -> gap or pressure -> conductance by the laws."""
+    def of(omega):
+        s = rods.separation(rods.flux(omega))
+        return open_law(s) if s > 0.0 else closed_law(-s / rods.compliance)
+
+    return of
+
+
+def passes(u, omega, tolerance, g=0.5, constant=3, method="ZAITSEV"):
+    """Return the residuals |U(omega) - omega|/omega of the passes until one is within a tolerance:
+    eq. (4.1), PICARD, or eq. (4.2), ZAITSEV, where no tangent reaches 1."""
+    residuals, stars, images = [], [], []
+    while not residuals or residuals[-1] > tolerance:
+        stars.append(omega)
+        images.append(u(omega))
+        residuals.append(abs(images[-1] - omega) / omega)
+        if method == "ZAITSEV" and len(stars) > max(constant, 1):
+            tangent = (images[-1] - images[-2]) / (stars[-1] - stars[-2])
+            if not tangent < 1.0:
+                raise ValueError("the paper gives no g")
+            g = min(1.0 / (1.0 - tangent), 1.0)
+        omega = images[-1] if method == "PICARD" else (1.0 - g) * omega + g * images[-1]
+    return residuals
+
+
 def solve(rods, open_law, closed_law):
     """Return the solution. A law that is missing is None: without the open one no heat crosses a
     gap, without the closed one a closed pair has the open value at no gap.
