@@ -191,7 +191,7 @@ BASE, 0.
 0.8, 0.24, 1.
 *CONTACT PAIR, INTERACTION=FACES, NAME=FACE
 CURVED, FLAT
-*FIXED POINT, METHOD=ZAITSEV
+*FIXED POINT, METHOD={method}
 *BOUNDARY
 TOP, 2, 2, 0.
 BOTTOM, 2, 2, 0.
@@ -274,14 +274,14 @@ APART = """\
 ** the cylinder stands 0.5 above it."""
 
 
-def write_deck(path, heading, first_touch, base_expansion, lift, checks):
+def write_deck(path, heading, first_touch, base_expansion, lift, method, checks):
     """Write one deck; no card image may be wider than 80 columns."""
     bodies = make_mesh(lift)
     check_mesh(bodies, lift)
     cards = OPENING.format(heading=heading, first_touch=first_touch).splitlines()
     cards += ['*OPTIONS, UNITS="cm MPa W C", LOAD=TOP,11']
     cards += mesh_cards(bodies)
-    cards += MODEL.format(base_expansion=base_expansion).splitlines() + checks.splitlines()
+    cards += MODEL.format(base_expansion=base_expansion, method=method).splitlines() + checks.splitlines()
     assert max(map(len, cards)) <= 80
     path.write_text("\n".join(cards) + "\n")
 
@@ -298,9 +298,9 @@ def reference_cards():
 def main():
     folder = Path(__file__).parent
     write_deck(folder / "cylinder.inp", "Cylinder on a base, heated from the top", TOUCH, "1.2E-5", 0.0,
-               CHECKS.format(reference=reference_cards()))
+               "ZAITSEV", CHECKS.format(reference=reference_cards()))
     write_deck(folder / "cylinder-coupled.inp", "Cylinder above a base that does not expand, strongly coupled",
-               APART, "0.", LIFT, COUPLED_CHECKS)
+               APART, "0.", LIFT, "NEWTON", COUPLED_CHECKS)
 
 
 if __name__ == "__main__":

@@ -38,15 +38,37 @@ contains
       type(contact_state_type) :: guess
 
       guess = state
+      system%several = .false.
       call search(system, load, state, error)
-      if (.not. allocated(error)) return
+      if (.not. allocated(error)) then
+         system%several = system%turns_back()
+         if (system%several) call take_forward(system, load, state)
+         return
+      end if
       state = guess
       if (size(system%motion, 2) > 0) then
          call hold_softly(system, load, state, error)
       else
          call follow_closing_path(system, load, state, error)
+         if (.not. allocated(error)) call system%solve_set(load, state, error)
       end if
    end subroutine solve_contact
+
+   !> Takes, in place of a state at which the path of states turns back, one at which it goes on,
+   !> where it can be found.
+   subroutine take_forward(system, load, state)
+      type(contact_system_type), intent(inout) :: system
+      real(dp), intent(in) :: load(:)
+      type(contact_state_type), intent(inout) :: state
+      type(contact_state_type) :: forward
+      type(error_type), allocatable :: error
+
+      forward = state
+      call follow_closing_path(system, load, forward, error)
+      if (allocated(error)) return
+      call system%solve_set(load, forward, error)
+      if (.not. allocated(error)) state = forward
+   end subroutine take_forward
 
    !> Corrects the active set until nothing violates its condition.
    !> Errors: as solve_set; the sets do not settle.

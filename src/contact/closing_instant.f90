@@ -183,6 +183,7 @@ contains
       law%compliance = compliance(2, :)
       if (previous%gap(k) > 0.0_dp) then
          law%fraction = previous%gap(k)/(previous%gap(k) + max(overlap, 0.0_dp))
+         if (overlap > 0.0_dp) law%rate = compliance(1, :)*law%fraction/(previous%gap(k) + overlap)
       end if
    end subroutine make_law
 

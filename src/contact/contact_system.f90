@@ -55,6 +55,7 @@ module contact_system
       real(dp) :: start = 0.0_dp               !! d_t,i [length]
       real(dp) :: fraction = 0.0_dp            !! f, the instant of closing
       real(dp) :: compliance(2) = 0.0_dp       !! c_n, c_t [length/force]
+      real(dp) :: rate(2) = 0.0_dp             !! derivative of f by lambda_n, lambda_t [1/force]
    end type closing_law_type
 
    !> The reduced system, and the factors for the active set of its last solution.
@@ -78,13 +79,16 @@ module contact_system
       integer, allocatable :: factored(:)         !! (m) status*3 + direction of the factors
       real(dp), allocatable :: loose(:, :)        !! (free, l) motions that the set leaves free
       logical :: driven = .false.                 !! whether the load drives one of them
+      logical :: several = .false.                !! whether other states under the load are proven
    contains
       procedure :: solve_set
       procedure :: solve_free
       procedure :: stiffness
+      procedure :: turns_back
       procedure :: friction_rows
       procedure :: slip
       procedure :: factor_set
+      procedure :: factor_rows
       procedure :: forget_factors
    end type contact_system_type
 
@@ -205,9 +209,7 @@ contains
       class(contact_system_type), intent(inout) :: self   !! the reduced system
       type(contact_state_type), intent(in) :: state       !! statuses and directions
       type(error_type), allocatable, intent(out) :: error !! see above
-      real(dp), allocatable :: rows(:, :)
       logical :: singular
-      integer :: f, i, l
 
       if (allocated(self%factored)) then
          if (all(self%factored == condition_code(state))) return
@@ -215,23 +217,32 @@ contains
       self%factored = condition_code(state)
       call list_free(self, state)
       call find_loose(self)
-      f = size(self%free)
-      l = size(self%loose, 2)
-      allocate (rows(f + l, f + l), source=0.0_dp)
-      associate (of_tail => self%friction_rows(self%schur(:, self%free)))
-         rows(:f, :f) = of_tail(self%free, :)
-      end associate
-      do i = 1, f
-         rows(i, i) = rows(i, i) + self%spring(self%free(i))
-      end do
-      self%border = max(maxval(abs(rows)), tiny(1.0_dp))
-      rows(:f, f + 1:) = self%border*self%loose
-      rows(f + 1:, :f) = self%border*transpose(self%loose)
-      call self%lu%factor(rows, singular)
+      call self%factor_rows(singular)
       if (.not. singular) return
       call self%forget_factors()
       call set_error(error, status_no_convergence, 'the contact system is singular')
    end subroutine factor_set
+
+   !> Factors the rows that are listed, bordered by the loose motions.
+   pure subroutine factor_rows(self, singular)
+      class(contact_system_type), intent(inout) :: self   !! the reduced system
+      logical, intent(out) :: singular                    !! the rows depend on each other
+      real(dp) :: rows(size(self%free) + size(self%loose, 2), size(self%free) + &
+         size(self%loose, 2))
+      integer :: i
+
+      rows = 0.0_dp
+      associate (f => size(self%free), of_tail => self%friction_rows(self%schur(:, self%free)))
+         rows(:f, :f) = of_tail(self%free, :)
+         do i = 1, f
+            rows(i, i) = rows(i, i) + self%spring(self%free(i))
+         end do
+         self%border = max(maxval(abs(rows)), tiny(1.0_dp))
+         rows(:f, f + 1:) = self%border*self%loose
+         rows(f + 1:, :f) = self%border*transpose(self%loose)
+      end associate
+      call self%lu%factor(rows, singular)
+   end subroutine factor_rows
 
    !> The unsupported motions that no place of the active set holds.
    subroutine find_loose(self)
@@ -357,6 +368,20 @@ contains
       forces = self%schur(places, places) + &
          matmul(self%schur(places, self%free), response(self%free, :))
    end function stiffness
+
+   !> Whether the set factored last turns the path of contact states back: its determinant is
+   !> negative, which needs friction. The signs at all states under one load add up to one, so that
+   !> then there are others. Closing laws, frozen in the set, are no part of that: with them none is
+   !> seen to turn.
+   pure logical function turns_back(self)
+      class(contact_system_type), intent(in) :: self  !! the reduced system
+
+      turns_back = .false.
+      if (any(self%closing%acts)) return
+      ! Every link and every loose motion borders a positive matrix, which turns its sign.
+      turns_back = self%lu%negative_determinant() .neqv. &
+         (mod(size(self%link) + size(self%loose, 2), 2) == 1)
+   end function turns_back
 
    !> One number per pair for its contact condition.
    pure function condition_code(state) result(codes)

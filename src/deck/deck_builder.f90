@@ -4,7 +4,7 @@ module deck_builder
    use bodies, only: find_bodies
    use cards, only: cards_type
    use conductance_laws, only: law_none
-   use controls, only: method_picard
+   use controls, only: method_names
    use deck_builder_contact, only: build_contacts
    use deck_builder_courses, only: build_amplitudes, build_temperatures
    use deck_builder_interactions, only: build_interactions
@@ -104,7 +104,6 @@ contains
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context
       type(model_type), intent(in) :: model
-      character(:), allocatable :: method
       integer :: i
 
       if (context%temperatures%count == 0) then
@@ -131,9 +130,8 @@ contains
       if (size(model%contacts) == 0) return
       if (.not. any(model%steps%analysis == analysis_coupled)) return
       associate (fixed_point => model%steps(1)%fixed_point)
-         method = 'ZAITSEV'
-         if (fixed_point%method == method_picard) method = 'PICARD'
-         call context%note('*FIXED POINT in step 1: METHOD='//method//', TOL='// &
+         call context%note('*FIXED POINT in step 1: METHOD='// &
+            trim(method_names(fixed_point%method))//', TOL='// &
             to_text(fixed_point%tolerance)//', MAXITER='//to_text(fixed_point%max_iterations)// &
             ', G='//to_text(fixed_point%g)//', CONSTANT='//to_text(fixed_point%constant))
       end associate

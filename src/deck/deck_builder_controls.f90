@@ -4,7 +4,7 @@ module deck_builder_controls
    use card_values, only: check_extra, field_place, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use controls, only: crank_nicolson_scheme, explicit_scheme, fixed_point_type, galerkin_scheme, &
-      implicit_scheme, method_picard, method_zaitsev, thermal_scheme_type
+      implicit_scheme, method_names, thermal_scheme_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use text, only: to_text
@@ -28,9 +28,8 @@ contains
 
       before = fixed_point
       method = ''
-      call choose(card, 'METHOD', 'PICARD/ZAITSEV', '', report, method)
-      if (method == 'PICARD') fixed_point%method = method_picard
-      if (method == 'ZAITSEV') fixed_point%method = method_zaitsev
+      call choose(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', '', report, method)
+      if (method /= '') fixed_point%method = findloc(method_names == method, .true., dim=1)
       call take_parameter(card, 'TOL', report, fixed_point%tolerance)
       call take_parameter(card, 'MAXITER', report, fixed_point%max_iterations)
       call take_parameter(card, 'G', report, fixed_point%g)

@@ -4,8 +4,9 @@ module deck_builder_steps
       take_parameter
    use card_values, only: check_extra, field_place, has_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use controls, only: fixed_point_type, implicit_scheme, thermal_scheme_type
+   use controls, only: fixed_point_type, implicit_scheme, start_type, thermal_scheme_type
    use deck_builder_controls, only: build_fixed_point, build_thermal_scheme
+   use deck_builder_start, only: build_start
    use deck_builder_loads, only: build_load_card
    use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
@@ -33,6 +34,7 @@ contains
       type(model_type), intent(inout) :: model             !! receives the steps
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(fixed_point_type) :: fixed_point
+      type(start_type) :: start
       type(thermal_scheme_type) :: scheme
       type(step_type) :: before
       integer :: k, n, analyses, files, node_prints, element_prints
@@ -59,6 +61,7 @@ contains
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
                model%steps(n)%fixed_point = fixed_point
+               model%steps(n)%start = start
                model%steps(n)%scheme = scheme
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT')
                analyses = analyses + 1
@@ -70,6 +73,9 @@ contains
             case ('FIXED POINT')
                call build_fixed_point(card, report, fixed_point)
                if (n > 0) model%steps(n)%fixed_point = fixed_point
+            case ('START')
+               call build_start(cards, card, model, report, start)
+               if (n > 0) model%steps(n)%start = start
             case ('THERMAL SCHEME')
                call build_thermal_scheme(cards, card, report, scheme)
                if (n > 0) model%steps(n)%scheme = scheme

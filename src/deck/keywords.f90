@@ -79,9 +79,10 @@ module keywords
       known_keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
       known_keyword_type('TRANSFORM', refused, in_model, 0, many, '')]
 
-   type(known_keyword_type), parameter :: control_keywords(9) = [ &
+   type(known_keyword_type), parameter :: control_keywords(10) = [ &
       known_keyword_type('FIXED POINT', built, in_both, 0, 0, &
       'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
+      known_keyword_type('START', built, in_both, 0, many, 'FROM='), &
       known_keyword_type('THERMAL SCHEME', built, in_both, 0, 1, 'TYPE='), &
       known_keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
       known_keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS='), &
@@ -121,7 +122,7 @@ module keywords
       known_keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Every keyword of the dialect.
-   type(known_keyword_type), parameter :: known_keywords(55) = &
+   type(known_keyword_type), parameter :: known_keywords(56) = &
       [model_keywords, control_keywords, step_keywords]
 
    type(refusal_type), parameter :: refusals(12) = [ &

@@ -3,7 +3,7 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgetrf, dgetrs, dgesvd, ilaver
+   public :: ddot, daxpy, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, ilaver
 
    interface
       !> Scalar product x.y.
@@ -49,6 +49,27 @@ module blas_lapack
          real(dp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)
          integer, intent(out) :: info
       end subroutine dgesvd
+
+      !> Eigenvalues, and eigenvectors where asked for, of a general matrix.
+      subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
+         import :: dp
+         character, intent(in) :: jobvl, jobvr
+         integer, intent(in) :: n, lda, ldvl, ldvr, lwork
+         real(dp), intent(inout) :: a(lda, *)
+         real(dp), intent(out) :: wr(*), wi(*), vl(ldvl, *), vr(ldvr, *), work(*)
+         integer, intent(out) :: info
+      end subroutine dgeev
+
+      !> Least squares of any rank, by an orthogonal factorisation with column exchanges.
+      subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)
+         import :: dp
+         integer, intent(in) :: m, n, nrhs, lda, ldb, lwork
+         real(dp), intent(inout) :: a(lda, *), b(ldb, *)
+         integer, intent(inout) :: jpvt(*)
+         real(dp), intent(in) :: rcond
+         integer, intent(out) :: rank, info
+         real(dp), intent(out) :: work(*)
+      end subroutine dgelsy
 
       !> Version of LAPACK.
       subroutine ilaver(major, minor, patch)

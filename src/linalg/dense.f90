@@ -1,10 +1,10 @@
 !> The few dense solves of the interface problem, by LAPACK.
 module dense
-   use blas_lapack, only: dgesvd, dgetrf, dgetrs
+   use blas_lapack, only: dgeev, dgelsy, dgesvd, dgetrf, dgetrs
    use kinds, only: dp
    implicit none
    private
-   public :: lu_type, null_space, column_space
+   public :: lu_type, null_space, column_space, eigenvalues, least_squares
 
    !> Pivot, relative to its column, below which it is rounding.
    real(dp), parameter :: lost = 1.0e-14_dp
@@ -17,6 +17,7 @@ module dense
    contains
       procedure :: factor
       procedure :: solve
+      procedure :: negative_determinant
    end type lu_type
 
 contains
@@ -90,5 +91,57 @@ contains
       end do
       basis = found(:, :rank)
    end function column_space
+
+   !> Whether the determinant of the matrix is negative.
+   pure function negative_determinant(self) result(negative)
+      class(lu_type), intent(in) :: self   !! the factors
+      logical :: negative                  !! det < 0
+      integer :: i
+
+      negative = .false.
+      do i = 1, size(self%pivots)
+         negative = negative .neqv. (self%factors(i, i) < 0.0_dp)
+         negative = negative .neqv. (self%pivots(i) /= i)
+      end do
+   end function negative_determinant
+
+   !> Eigenvalues of a general matrix.
+   subroutine eigenvalues(matrix, real_part, imaginary_part, found)
+      real(dp), intent(in) :: matrix(:, :)                      !! (n, n), n > 0
+      real(dp), allocatable, intent(out) :: real_part(:)        !! (n)
+      real(dp), allocatable, intent(out) :: imaginary_part(:)   !! (n)
+      logical, intent(out) :: found                             !! LAPACK found them
+      real(dp), allocatable :: copy(:, :), work(:)
+      real(dp) :: left(1, 1), right(1, 1), best(1)
+      integer :: info, n
+
+      n = size(matrix, 1)
+      copy = matrix
+      allocate (real_part(n), imaginary_part(n))
+      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, left, 1, right, 1, best, -1, info)
+      allocate (work(max(1, nint(best(1)))))
+      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, left, 1, right, 1, work, &
+         size(work), info)
+      found = info == 0
+   end subroutine eigenvalues
+
+   !> The shortest x for which |matrix x - rhs| is least; columns that depend on others to rounding
+   !> do not count.
+   function least_squares(matrix, rhs) result(x)
+      real(dp), intent(in) :: matrix(:, :)   !! (m, n), m and n > 0
+      real(dp), intent(in) :: rhs(:)         !! (m)
+      real(dp) :: x(size(matrix, 2))         !! (n)
+      real(dp) :: copy(size(matrix, 1), size(matrix, 2)), work(4*size(matrix, 2) + 64)
+      real(dp) :: solution(max(size(matrix, 1), size(matrix, 2)), 1)
+      integer :: free(size(matrix, 2)), info, rank
+
+      copy = matrix
+      solution = 0.0_dp
+      solution(:size(rhs), 1) = rhs
+      free = 0
+      call dgelsy(size(matrix, 1), size(matrix, 2), 1, copy, size(matrix, 1), solution, &
+         size(solution), free, lost, rank, work, size(work), info)
+      x = solution(:size(x), 1)
+   end function least_squares
 
 end module dense

@@ -1,11 +1,11 @@
 !> Contact conductance as a function of the gap and the pressure, eq. (1.8), with its derivatives.
 module conductance_laws
    use kinds, only: dp
-   use piecewise_lines, only: line_slope, line_value
+   use piecewise_lines, only: line_abscissa, line_slope, line_value
    implicit none
    private
    public :: conductance_law_type, law_none, law_gas, law_power, law_clearance, law_pressure
-   public :: conductance, conductance_slope, law_jump
+   public :: conductance, conductance_slope, conductance_inverse, law_jump, law_jumps
 
    integer, parameter :: law_none = 0        !! this side of the law was not given
    integer, parameter :: law_gas = 1         !! open: omega = A/(B + gamma)
@@ -81,6 +81,30 @@ contains
       end if
    end function conductance_slope
 
+   !> Gap of an open pair, or pressure of a closed one, that has a given omega; negative where there
+   !> is none, or where the law is constant.
+   pure function conductance_inverse(law, closed, omega) result(at)
+      type(conductance_law_type), intent(in) :: law !! the law
+      logical, intent(in) :: closed                 !! whether the pair is closed
+      real(dp), intent(in) :: omega                 !! [power/(length^2 temperature)]
+      real(dp) :: at                                !! gamma [length] or p [stress]
+
+      at = -1.0_dp
+      if (closed) then
+         if (law%closed_kind == law_power) then
+            if (law%power_c1 > 0.0_dp .and. omega >= law%power_c0) then
+               at = ((omega - law%power_c0)/law%power_c1)**(1.0_dp/law%power_n)
+            end if
+         else if (law%closed_kind == law_pressure) then
+            at = line_abscissa(law%table_pressure, law%closed_omega, omega)
+         end if
+      else if (law%open_kind == law_gas) then
+         if (omega > 0.0_dp) at = law%gas_a/omega - law%gas_b
+      else if (law%open_kind == law_clearance) then
+         at = line_abscissa(law%table_gap, law%open_omega, omega)
+      end if
+   end function conductance_inverse
+
    !> Jump of omega from the open to the closed side at gamma = p = 0; zero for a continuous law.
    pure function law_jump(law) result(jump)
       type(conductance_law_type), intent(in) :: law !! the law
@@ -88,6 +112,16 @@ contains
 
       jump = conductance(law, .true., 0.0_dp, 0.0_dp) - conductance(law, .false., 0.0_dp, 0.0_dp)
    end function law_jump
+
+   !> Whether the law jumps at gamma = p = 0 by more than rounding.
+   pure function law_jumps(law) result(jumps)
+      type(conductance_law_type), intent(in) :: law !! the law
+      logical :: jumps                              !! both sides have values of their own there
+      real(dp), parameter :: rounding = 1.0e-12_dp
+
+      jumps = abs(law_jump(law)) > rounding*max(conductance(law, .true., 0.0_dp, 0.0_dp), &
+         conductance(law, .false., 0.0_dp, 0.0_dp))
+   end function law_jumps
 
    pure function open_law(law, gap) result(omega)
       type(conductance_law_type), intent(in) :: law

@@ -3,18 +3,36 @@ module controls
    use kinds, only: dp
    implicit none
    private
-   public :: fixed_point_type, thermal_scheme_type
+   public :: fixed_point_type, start_type, thermal_scheme_type
+   public :: start_previous, start_open, start_closed, start_both, start_given
    public :: implicit_scheme, galerkin_scheme, crank_nicolson_scheme, explicit_scheme
-   public :: method_picard, method_zaitsev, solver_skyline, solver_mumps
+   public :: method_picard, method_zaitsev, method_anderson, method_newton, method_names
+   public :: solver_skyline, solver_mumps
 
    integer, parameter :: method_picard = 1    !! eq. (4.1)
    integer, parameter :: method_zaitsev = 2   !! eq. (4.2)
+   integer, parameter :: method_anderson = 3  !! Anderson's mixing of log omega
+   integer, parameter :: method_newton = 4    !! semismooth Newton
+   character(8), parameter :: method_names(4) = [character(8) :: 'PICARD', 'ZAITSEV', 'ANDERSON', &
+      'NEWTON']   !! of *FIXED POINT, by the constants above
    integer, parameter :: solver_skyline = 1   !! Crout LDL^T on a skyline
    integer, parameter :: solver_mumps = 2     !! MUMPS with METIS ordering
 
+   integer, parameter :: start_previous = 1   !! from the last increments
+   integer, parameter :: start_open = 2       !! from no heat across the pairs
+   integer, parameter :: start_closed = 3     !! from perfect contact
+   integer, parameter :: start_both = 4       !! from the last increments, and from both ends
+   integer, parameter :: start_given = 5      !! from given conductances
+
+   !> *START.
+   type :: start_type
+      integer :: kind = start_previous          !! one of the start_* constants
+      real(dp), allocatable :: conductance(:)   !! (contacts) of start_given [power/(l^2 temp.)]
+   end type start_type
+
    !> *FIXED POINT.
    type :: fixed_point_type
-      integer :: method = method_zaitsev      !! method_picard or method_zaitsev
+      integer :: method = method_newton       !! one of the method_* constants
       real(dp) :: tolerance = 1.0e-8_dp       !! on max |U(w) - w|/w [-]
       integer :: max_iterations = 50          !! passes of U in an increment
       real(dp) :: g = 0.5_dp                  !! constant g of the first iterations, in (0, 1]

@@ -1,6 +1,6 @@
 !> Steps of a model: analysis, increments, loads and supports, output requests.
 module steps
-   use controls, only: fixed_point_type, thermal_scheme_type, implicit_scheme
+   use controls, only: fixed_point_type, start_type, thermal_scheme_type, implicit_scheme
    use kinds, only: dp
    use print_requests, only: print_request_type
    implicit none
@@ -71,6 +71,7 @@ module steps
       logical :: ends_loads(load_kind_count) = .false.
       logical :: ends_boundaries = .false.   !! *BOUNDARY, OP=NEW: former prescribed values end
       type(fixed_point_type) :: fixed_point                  !! fixed point of this step
+      type(start_type) :: start                              !! where its fixed point starts
       type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step
       integer :: field_frequency = 1                 !! fields at every n-th increment and the last
       integer :: contact_print_frequency = 0         !! *CONTACT PRINT likewise; 0 never

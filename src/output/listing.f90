@@ -171,6 +171,11 @@ contains
       type(increment_record_type), intent(in) :: record
       integer :: i
 
+      if (allocated(record%notes)) then
+         do i = 1, size(record%notes)
+            call print_wrapped(self%unit, '   ', 'note: '//record%notes(i)%value)
+         end do
+      end if
       if (.not. allocated(record%warnings)) return
       do i = 1, size(record%warnings)
          call print_wrapped(self%unit, '   ', 'warning: '//record%warnings(i)%value)

@@ -29,6 +29,9 @@ contains
       write (unit, '(3x, 2(a, i0), 5a)') 'passes ', passes, '   cut-backs ', record%cut_backs, &
          '   residual', column(record%iterations(passes)%residual, 9, 2), '  (floor', &
          column(record%residual_floor, 9, 2), ')'
+      if (.not. ieee_is_nan(record%coupling_gain)) write (unit, '(3x, 4a)') &
+         'quasi-static coupling gain ', text_or_none(record%coupling_gain), &
+         '   largest real one ', text_or_none(record%coupling_gain_max)
    end subroutine print_increment
 
    !> Prints the attempts at an increment that failed.
@@ -53,8 +56,8 @@ contains
 
       zones = zone_counts(contact%status)
       write (unit, '(3x, a, 3(a, i0), 4a)') name, '   I ', zones(1), '   II ', zones(2), &
-         '   III ', zones(3), '   edge of contact s = ', edge_text(contact%edge_contact), &
-         '   of stick s = ', edge_text(contact%edge_stick)
+         '   III ', zones(3), '   edge of contact s = ', text_or_none(contact%edge_contact), &
+         '   of stick s = ', text_or_none(contact%edge_stick)
       write (unit, '(6x, 4a)', advance='no') 'normal force', &
          column(contact%normal_force, 14, 6), '   shear force', column(contact%shear_force, 14, 6)
       if (allocated(contact%heat_flux)) then
@@ -82,13 +85,13 @@ contains
          edges_kept
    end subroutine print_surplus
 
-   function edge_text(edge) result(string)
-      real(dp), intent(in) :: edge
+   function text_or_none(value) result(string)
+      real(dp), intent(in) :: value
       character(:), allocatable :: string
 
       string = 'none'
-      if (.not. ieee_is_nan(edge)) string = to_text(edge)
-   end function edge_text
+      if (.not. ieee_is_nan(value)) string = to_text(value)
+   end function text_or_none
 
    !> Prints what balances, and the work of the re-factorisation.
    subroutine print_balances(unit, record, analysis)

@@ -13,9 +13,9 @@ module record_values
    integer, parameter :: name_length = 24   !! length of the names below
 
    !> Datasets of `/history`, one number an increment.
-   character(name_length), parameter :: history_names(8) = [character(name_length) :: &
+   character(name_length), parameter :: history_names(10) = [character(name_length) :: &
       'time', 'load', 'iterations', 'heat_in', 'heat_out', 'heat_imbalance', &
-      'heat_imbalance_pointwise', 'force_imbalance']
+      'heat_imbalance_pointwise', 'force_imbalance', 'coupling_gain', 'coupling_gain_max']
 
    !> Datasets of `/contact/<name>`, one number a pair and increment.
    character(name_length), parameter :: contact_pair_names(5) = [character(name_length) :: &
@@ -66,6 +66,10 @@ contains
          value = record%heat_imbalance_pointwise
       case ('force_imbalance')
          value = record%force_imbalance
+      case ('coupling_gain')
+         value = record%coupling_gain
+      case ('coupling_gain_max')
+         value = record%coupling_gain_max
       case default
          value = not_a_number()
       end select

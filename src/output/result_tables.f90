@@ -48,15 +48,17 @@ module result_tables
 contains
 
    !> Prepares the datasets.
-   subroutine start_history(self, has_heat, has_mechanics, expected)
+   subroutine start_history(self, has_heat, has_mechanics, has_coupling, expected)
       class(history_results_type), intent(inout) :: self  !! the group
       logical, intent(in) :: has_heat                     !! whether a step solves heat
       logical, intent(in) :: has_mechanics                !! whether a step solves mechanics
+      logical, intent(in) :: has_coupling                 !! whether a step couples both in contact
       integer, intent(in) :: expected                     !! increments that are expected
       integer :: i, storage
 
       self%names = pack(history_names, (has_heat .or. index(history_names, 'heat_') /= 1) .and. &
-         (has_mechanics .or. history_names /= 'force_imbalance'))
+         (has_mechanics .or. history_names /= 'force_imbalance') .and. &
+         (has_coupling .or. index(history_names, 'coupling_') /= 1))
       allocate(self%sets(size(self%names)))
       do i = 1, size(self%names)
          storage = merge(as_integer, as_real, self%names(i) == 'iterations')

@@ -13,7 +13,7 @@ module contact_operator
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
    private
-   public :: increment_data_type, temperature_jumps, condensed_load, law_conductance
+   public :: increment_data_type, temperature_jumps, condensed_load, law_conductance, law_pressure
    public :: contact_operator_pass, kept_contact, residual_floor, thermal_forces
 
    !> What stays fixed while the iteration of an increment runs.
@@ -112,7 +112,21 @@ contains
       type(contact_state_type), intent(in) :: state             !! contact state
       real(dp) :: omega(size(state%status))                     !! (m)
       real(dp) :: pressure(size(state%status))
-      integer :: first, i, k, last
+      integer :: k
+
+      pressure = law_pressure(operators, state)
+      do k = 1, size(omega)
+         omega(k) = conductance(operators%pairs%law(k), state%status(k) /= status_open, &
+            state%gap(k), pressure(k))
+      end do
+   end function law_conductance
+
+   !> Pressure by which the closed law goes: the printed one.
+   pure function law_pressure(operators, state) result(pressure)
+      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      type(contact_state_type), intent(in) :: state             !! contact state
+      real(dp) :: pressure(size(state%status))                  !! (m) [stress]
+      integer :: first, i, last
 
       do i = 1, size(operators%interfaces)
          first = operators%pairs%interface_start(i)
@@ -120,11 +134,7 @@ contains
          pressure(first:last) = tractions(state%force(first:last), &
             operators%interfaces(i)%weight, operators%interfaces(i)%position(1, :), even=.true.)
       end do
-      do k = 1, size(omega)
-         omega(k) = conductance(operators%pairs%law(k), state%status(k) /= status_open, &
-            state%gap(k), pressure(k))
-      end do
-   end function law_conductance
+   end function law_pressure
 
    !> Contact state that a step without mechanics finds. Before any mechanics pairs without a gap
    !> touch: they are closed and carry no pressure.

@@ -1,28 +1,42 @@
-!> Accelerators of the fixed point omega = U(omega), section 4 of the paper. The loop and its
-!> tolerances are the caller's; an accelerator only chooses the next omega*.
+!> The fixed point omega = U(omega), section 4 of the paper: what an accelerator is, and the paper's
+!> two, (4.1) and (4.2). The loop and its tolerances are the caller's; an accelerator only chooses
+!> the next omega*.
 module fixed_point
-   use controls, only: fixed_point_type, method_picard
    use kinds, only: dp
    implicit none
    private
-   public :: accelerator_type, make_accelerator, fixed_point_residual, predicted_conductance
+   public :: accelerator_type, pass_type, picard_type, zaitsev_type
+   public :: pair_residual, predicted_conductance
+
+   !> One pass of U.
+   type :: pass_type
+      integer :: iteration = 0                !! pass, from 1
+      real(dp), allocatable :: omega(:)       !! (m) omega*
+      real(dp), allocatable :: image(:)       !! (m) U(omega*)
+      real(dp), allocatable :: opening(:)     !! (m) openings that it found [length]
+      !> (m, m) derivative of the openings by omega*, where the accelerator asked and there is one
+      real(dp), allocatable :: slope(:, :)
+      !> (m) conductance that the bodies put in series with each pair; set with the slope
+      real(dp), allocatable :: body(:)
+   end type pass_type
 
    !> What turns omega* and its image U(omega*) into the next omega*.
    type, abstract :: accelerator_type
-      real(dp), allocatable :: g(:)   !! (m) g of the last pass
+      real(dp), allocatable :: g(:)   !! (m) part of the way that each pair goes
       integer :: kept = 0 !! pairs whose g was kept in the last pass, eq. (4.2) giving none
    contains
+      procedure :: asks_slope
       procedure(next_interface), deferred :: next
+      procedure :: retreat
    end type accelerator_type
 
    abstract interface
       !> The next omega*.
-      subroutine next_interface(self, iteration, omega, image)
-         import :: accelerator_type, dp
+      subroutine next_interface(self, pass, omega)
+         import :: accelerator_type, pass_type, dp
          class(accelerator_type), intent(inout) :: self  !! memory of the iteration
-         integer, intent(in) :: iteration                !! pass, from 1
-         real(dp), intent(inout) :: omega(:)             !! (m) omega* in, next omega* out
-         real(dp), intent(in) :: image(:)                !! (m) U(omega*)
+         type(pass_type), intent(in) :: pass             !! the last pass
+         real(dp), intent(out) :: omega(:)               !! (m) next omega*
       end subroutine next_interface
    end interface
 
@@ -34,61 +48,59 @@ module fixed_point
 
    !> Eq. (4.2): each pair mixed by its own secant.
    type, extends(accelerator_type) :: zaitsev_type
-      private
-      real(dp) :: constant_g = 0.5_dp            !! g of the first iterations
-      integer :: constant_iterations = 3         !! their number
-      real(dp), allocatable :: last_omega(:)     !! (m) omega*^(i-2)
-      real(dp), allocatable :: last_image(:)     !! (m) omega^(i-1)
+      integer :: constant_iterations = 3 !! number of passes that keep g as it was set
+      real(dp), allocatable, private :: last_omega(:)     !! (m) omega*^(i-2)
+      real(dp), allocatable, private :: last_image(:)     !! (m) omega^(i-1)
    contains
       procedure :: next => next_zaitsev
    end type zaitsev_type
 
 contains
 
-   !> The accelerator that the deck asks for.
-   subroutine make_accelerator(controls, pairs, accelerator)
-      type(fixed_point_type), intent(in) :: controls                      !! *FIXED POINT
-      integer, intent(in) :: pairs                                        !! number of pairs
-      class(accelerator_type), allocatable, intent(out) :: accelerator    !! fresh memory
+   !> Whether next wants the derivative of this pass.
+   pure function asks_slope(self, pass) result(asks)
+      class(accelerator_type), intent(in) :: self    !! memory of the iteration
+      type(pass_type), intent(in) :: pass            !! the last pass, its slope not set
+      logical :: asks                                !! pass%slope is to be set
 
-      if (controls%method == method_picard) then
-         allocate (picard_type :: accelerator)
-         allocate (accelerator%g(pairs), source=1.0_dp)
-      else
-         allocate (accelerator, source=zaitsev_type(constant_g=controls%g, &
-            constant_iterations=controls%constant))
-         allocate (accelerator%g(pairs), source=controls%g)
-      end if
-   end subroutine make_accelerator
+      asks = allocated(pass%slope) .and. self%kept < 0
+   end function asks_slope
+
+   !> The next omega* where the contact zones of a pass were not found.
+   subroutine retreat(self, omega, possible)
+      class(accelerator_type), intent(inout) :: self !! memory of the iteration
+      real(dp), intent(inout) :: omega(:)            !! (m) omega* that failed in, next omega* out
+      logical, intent(out) :: possible               !! whether the accelerator has another one
+
+      possible = self%kept < 0 .and. size(omega) == 0
+   end subroutine retreat
 
    !> omega* becomes its image.
-   subroutine next_picard(self, iteration, omega, image)
+   subroutine next_picard(self, pass, omega)
       class(picard_type), intent(inout) :: self
-      integer, intent(in) :: iteration
-      real(dp), intent(inout) :: omega(:)
-      real(dp), intent(in) :: image(:)
+      type(pass_type), intent(in) :: pass
+      real(dp), intent(out) :: omega(:)
 
-      if (iteration > 0) omega = image
+      omega = pass%image
       self%kept = 0
    end subroutine next_picard
 
    !> g_i = 1/(1 - tan a_i) clipped to (0, 1]. Where tan a_i >= 1 or is 0/0 the paper is silent: the
    !> pair's last g stays.
-   subroutine next_zaitsev(self, iteration, omega, image)
+   subroutine next_zaitsev(self, pass, omega)
       class(zaitsev_type), intent(inout) :: self
-      integer, intent(in) :: iteration
-      real(dp), intent(inout) :: omega(:)
-      real(dp), intent(in) :: image(:)
+      type(pass_type), intent(in) :: pass
+      real(dp), intent(out) :: omega(:)
       real(dp) :: star_change, tangent
       integer :: k
 
       self%kept = 0
-      if (iteration > max(self%constant_iterations, 1)) then
+      if (pass%iteration > max(self%constant_iterations, 1)) then
          do k = 1, size(omega)
-            star_change = omega(k) - self%last_omega(k)
+            star_change = pass%omega(k) - self%last_omega(k)
             tangent = 1.0_dp
-            if (abs(star_change) > 2*epsilon(1.0_dp)*abs(omega(k))) then
-               tangent = (image(k) - self%last_image(k))/star_change
+            if (abs(star_change) > 2*epsilon(1.0_dp)*abs(pass%omega(k))) then
+               tangent = (pass%image(k) - self%last_image(k))/star_change
             end if
             if (tangent < 1.0_dp) then
                self%g(k) = min(1.0_dp/(1.0_dp - tangent), 1.0_dp)
@@ -97,27 +109,24 @@ contains
             end if
          end do
       end if
-      self%last_omega = omega
-      self%last_image = image
-      omega = omega*(1.0_dp - self%g) + image*self%g
+      self%last_omega = pass%omega
+      self%last_image = pass%image
+      omega = pass%omega*(1.0_dp - self%g) + pass%image*self%g
    end subroutine next_zaitsev
 
-   !> max |U(omega) - omega|/omega over the pairs that carry heat.
-   pure function fixed_point_residual(omega, image) result(residual)
-      real(dp), intent(in) :: omega(:)   !! (m) omega*
-      real(dp), intent(in) :: image(:)   !! (m) U(omega*)
-      real(dp) :: residual               !! relative residual
-      integer :: k
+   !> |U(omega) - omega|/omega of a pair; 1 where only one of both carries no heat.
+   elemental function pair_residual(omega, image) result(residual)
+      real(dp), intent(in) :: omega   !! omega*
+      real(dp), intent(in) :: image   !! U(omega*)
+      real(dp) :: residual            !! relative residual
 
       residual = 0.0_dp
-      do k = 1, size(omega)
-         if (omega(k) > 0.0_dp) then
-            residual = max(residual, abs(image(k) - omega(k))/omega(k))
-         else if (image(k) > 0.0_dp) then
-            residual = max(residual, 1.0_dp)
-         end if
-      end do
-   end function fixed_point_residual
+      if (omega > 0.0_dp) then
+         residual = abs(image - omega)/omega
+      else if (image > 0.0_dp) then
+         residual = 1.0_dp
+      end if
+   end function pair_residual
 
    !> omega*^0 of an increment, below (4.2): linear extrapolation; where that is not positive
    !> omega_i is kept.

@@ -12,7 +12,7 @@ module increment_checks
    use thermal_matrix, only: contact_diagonal
    implicit none
    private
-   public :: check_heat, check_violation, warn_of_motions
+   public :: check_heat, check_violation, warn_of_choices
 
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
 
@@ -52,8 +52,9 @@ contains
       call set_error(error, status_no_convergence, words)
    end subroutine check_heat
 
-   !> Warns of motions that nothing drives and nothing holds, once for as long as they stay.
-   subroutine warn_of_motions(model, operators, loads, next, record, undecided)
+   !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
+   !> and nothing holds, contact states of which friction allows several.
+   subroutine warn_of_choices(model, operators, loads, next, record, undecided)
       type(model_type), intent(in) :: model                     !! the model
       type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
       type(loads_type), intent(in) :: loads                     !! supports of the increment
@@ -63,12 +64,15 @@ contains
       character(:), allocatable :: words
 
       words = ''
-      if (size(operators%contact%loose, 2) > 0) words = bodies_held_by_no_pair(model, &
-         operators%pairs, loads%displacement%active, next%contact%status)
+      if (operators%contact%several) words = &
+         'with so much friction other contact states satisfy all conditions, too'
+      if (size(operators%contact%loose, 2) > 0) words = &
+         'the least motion is taken where nothing drives or holds one'// &
+         bodies_held_by_no_pair(model, operators%pairs, loads%displacement%active, &
+         next%contact%status)
       if (words /= undecided .and. len(words) > 0) call append(record%warnings, &
-         'increment '//to_text(record%increment)//': the least motion is taken where nothing '// &
-         'drives or holds one'//words)
+         'increment '//to_text(record%increment)//': '//words)
       undecided = words
-   end subroutine warn_of_motions
+   end subroutine warn_of_choices
 
 end module increment_checks

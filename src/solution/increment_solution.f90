@@ -1,13 +1,13 @@
 !> One increment on the pairs: load, fixed-point iteration of section 4, and the fields behind it.
 module increment_solution
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
    use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
-      law_conductance, residual_floor, temperature_jumps, thermal_forces
+      law_conductance, temperature_jumps, thermal_forces
    use contact_system, only: closing_law_type
-   use errors, only: error_type, set_error, status_no_convergence
+   use errors, only: error_type
    use films, only: film_history
-   use fixed_point, only: accelerator_type, fixed_point_residual, make_accelerator, &
-      predicted_conductance
+   use coupled_increment, only: solve_coupled
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -17,7 +17,6 @@ module increment_solution
    use scheme_start, only: warn_of_imbalance
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
-   use text, only: to_text
    use thermal_matrix, only: field_history, scheme_load
    implicit none
    private
@@ -45,6 +44,8 @@ contains
       data%jump_old = previous%jump
       next%omega_start = data%omega_old
       next%keeps_imbalance = .false.
+      record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
+      record%coupling_gain_max = record%coupling_gain
       if (solves_heat(step%analysis)) then
          call load_heat(operators, loads, previous, data, next)
          call warn_of_imbalance(operators, loads, data, previous, next, record)
@@ -63,7 +64,7 @@ contains
          if (is_explicit(step%scheme)) then
             call pass_once(operators, previous, data, next, record, error)
          else
-            call iterate(operators, step, previous, data, next, record, error)
+            call solve_coupled(operators, step, previous, data, next, record, error)
          end if
       else
          call solve_increment(operators%contact, data%previous, data%welded_load, next%contact, &
@@ -71,6 +72,7 @@ contains
          if (allocated(error)) return
          next%omega = law_conductance(operators, next%contact)
          next%omega_before = next%omega
+         next%resting = .false.
       end if
       next%has_mechanics = .true.
    end subroutine solve_pairs
@@ -101,6 +103,7 @@ contains
 
       next%omega = law_conductance(operators, kept_contact(previous%contact, &
          previous%has_mechanics))
+      where (previous%resting) next%omega = previous%omega
       data%omega_old = next%omega
       call temperature_jumps(operators, data, next%omega, next%jump, record%work)
       next%omega_before = next%omega
@@ -121,6 +124,7 @@ contains
          next%omega, record%work, error)
       if (allocated(error)) return
       next%omega_before = previous%omega
+      next%resting = .false.
       record%iterations = [iteration_record_type(increment=record%increment, iteration=1, &
          pairs_changed=count(next%contact%status /= previous%contact%status))]
    end subroutine pass_once
@@ -162,49 +166,6 @@ contains
       call operators%mechanical%condense_load()
       data%welded_load = operators%mechanical%condensed
    end subroutine load_mechanics
-
-   !> The fixed-point iteration omega = U(omega) of an increment, section 4.
-   subroutine iterate(operators, step, previous, data, next, record, error)
-      type(interface_operators_type), intent(inout) :: operators
-      type(step_type), intent(in) :: step
-      type(solution_state_type), intent(in) :: previous
-      type(increment_data_type), intent(inout) :: data
-      type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
-      type(error_type), allocatable, intent(out) :: error
-      class(accelerator_type), allocatable :: accelerator
-      type(iteration_record_type) :: passes(step%fixed_point%max_iterations)
-      real(dp) :: image(size(next%omega)), ratio
-      integer :: status_before(size(next%omega)), i
-
-      ratio = 1.0_dp
-      if (previous%increment_size > 0.0_dp) ratio = next%increment_size/previous%increment_size
-      next%omega = predicted_conductance(previous%omega, previous%omega_before, ratio)
-      call make_accelerator(step%fixed_point, size(next%omega), accelerator)
-      do i = 1, step%fixed_point%max_iterations
-         status_before = next%contact%status
-         call contact_operator_pass(operators, data, next%omega, next%jump, next%contact, &
-            image, record%work, error)
-         if (allocated(error)) exit
-         record%residual_floor = residual_floor(operators, data, next%contact, image)
-         passes(i) = iteration_record_type(increment=record%increment, iteration=i, &
-            residual=fixed_point_residual(next%omega, image), g_min=minval(accelerator%g), &
-            g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
-            pairs_changed=count(next%contact%status /= status_before))
-         if (passes(i)%residual <= max(step%fixed_point%tolerance, record%residual_floor)) exit
-         call accelerator%next(i, next%omega, image)
-      end do
-      next%omega_before = previous%omega
-      record%iterations = passes(:min(i, size(passes)))
-      if (allocated(error)) then
-         record%iterations = passes(:i - 1)
-      else if (i > size(passes)) then
-         call set_error(error, status_no_convergence, 'the conductance does not converge in '// &
-            to_text(size(passes))//' iterations; last residual '// &
-            to_text(passes(size(passes))%residual)//', wanted '// &
-            to_text(max(step%fixed_point%tolerance, record%residual_floor)))
-      end if
-   end subroutine iterate
 
    !> Fields of the whole bodies, from the solution on the pairs.
    subroutine recover_fields(operators, loads, model, step, next)

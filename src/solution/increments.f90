@@ -4,7 +4,7 @@ module increments
    use errors, only: error_type, set_error, status_no_convergence
    use field_recovery, only: make_points, point_map_type
    use films, only: left_films
-   use increment_checks, only: check_heat, check_violation, warn_of_motions
+   use increment_checks, only: check_heat, check_violation, warn_of_choices
    use increment_control, only: increment_control_type
    use increment_records, only: make_record
    use increment_solution, only: recover_fields, solve_pairs
@@ -36,7 +36,7 @@ module increments
       type(increment_control_type) :: control       !! place in the steps, size of increments
       type(run_seconds_type) :: seconds             !! where the time went
       type(run_size_type) :: sizes                  !! sizes over all steps
-      character(:), allocatable :: undecided        !! motions that were last warned of
+      character(:), allocatable :: undecided        !! what was last warned of
    contains
       procedure :: start
       procedure :: reduce
@@ -210,7 +210,7 @@ contains
                next%contact%status)
             return
          end if
-         if (solves_mechanics(step%analysis)) call warn_of_motions(model, operators, self%loads, &
+         if (solves_mechanics(step%analysis)) call warn_of_choices(model, operators, self%loads, &
             next, record, self%undecided)
          since = wall_seconds()
          call recover_fields(operators, self%loads, model, step, next)

@@ -26,6 +26,7 @@ contains
             contact%shear_force(m), state%closing(m), source=0.0_dp)
          contact%gap = operators%pairs%initial_gap
          state%smallest_gap = contact%gap
+         allocate (state%resting(m), source=.false.)
          state%omega = law_conductance(operators, contact)
          state%omega_before = state%omega
          state%omega_start = state%omega

@@ -104,6 +104,9 @@ module records
       real(dp) :: load = 0.0_dp              !! value on the load axis
       !> Floor of the residual: what the last places of the displacements change in omega.
       real(dp) :: residual_floor = 0.0_dp
+      !> Real part of the eigenvalue of U' largest in modulus; NaN where nothing is iterated.
+      real(dp) :: coupling_gain = 0.0_dp
+      real(dp) :: coupling_gain_max = 0.0_dp !! largest real eigenvalue of U'; NaN likewise
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
       real(dp) :: heat_imbalance = 0.0_dp    !! of (3.4), relative to the largest rate
@@ -122,6 +125,7 @@ module records
       !> One an *EL PRINT of the step; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work                            !! re-factorisation
+      type(string_type), allocatable :: notes(:)                !! unallocated for none
       type(string_type), allocatable :: warnings(:)             !! unallocated for none
    end type increment_record_type
 

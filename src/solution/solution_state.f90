@@ -12,6 +12,7 @@ module solution_state
       type(contact_state_type) :: contact           !! contact state of all pairs
       real(dp), allocatable :: closing(:)           !! (m) d_t at which a pair last closed [length]
       real(dp), allocatable :: omega(:)             !! (m) conductance
+      logical, allocatable :: resting(:)            !! (m) pairs that rest, where a law jumps
       real(dp), allocatable :: omega_start(:)       !! (m) omega_i that (3.4) took last
       real(dp), allocatable :: omega_before(:)      !! (m) conductance an increment earlier
       real(dp), allocatable :: jump(:)              !! (m) T_xi - T_eta [temperature]

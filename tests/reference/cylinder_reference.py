@@ -278,25 +278,44 @@ class Contact:
             status, closing = new, laws
         raise RuntimeError("the contact zones do not settle")
 
-    def increment(self, before, load, tolerance=1e-12):
-        """State at the next load: Newton's method on log(omega) = log(U(omega))."""
+    def image(self, before, load, w, status):
+        """The state to which a conductance leads, with its own conductance w = U: one pass of section 2 of the paper."""
+        conductor = np.diag(1 / w) + self.resistance
+        q = np.linalg.solve(conductor, load * self.jump_by_load)
+        free = np.r_[self.initial_gap, np.zeros(self.count)] + load * self.by_load + self.by_heat @ q
+        state = SimpleNamespace(load=load, w_before=before.w, q=q)
+        state.status, state.p, state.t, state.g, state.l, state.slip, closing = self.mechanics(status, before, free)
+        state.w = self.law(state)
+        return state, closing, conductor
+
+    def gains(self, before, state, change=1e-6):
+        """Eigenvalues of U' at a solution, by central differences of U."""
+        slope = np.empty((self.count, self.count))
+        for k in range(self.count):
+            ends = []
+            for sign in (-1, 1):
+                w = state.w.copy()
+                w[k] *= 1 + sign * change
+                ends.append(self.image(before, state.load, w, state.status)[0].w)
+            slope[:, k] = (ends[1] - ends[0]) / (2 * change * state.w[k])
+        return np.linalg.eigvals(slope)
+
+    def increment(self, before, load, tolerance=1e-12, guess=None):
+        """State at the next load: Newton's method on log(omega) = log(U(omega)), from a guess of omega near it or from
+        the last increments."""
         m = self.count
-        guess = 2 * before.w - before.w_before
+        near = guess is not None
+        guess = guess if near else 2 * before.w - before.w_before
         x, status = np.log(np.where(guess > 0, guess, before.w)), before.status
         for iteration in range(100):
-            state = SimpleNamespace(load=load, w_before=before.w)
-            conductor = np.diag(np.exp(-x)) + self.resistance
-            q = np.linalg.solve(conductor, load * self.jump_by_load)
-            free = np.r_[self.initial_gap, np.zeros(m)] + load * self.by_load + self.by_heat @ q
-            status, p, t, g, l, slip, closing = self.mechanics(status, before, free)
-            state.status, state.p, state.t, state.g, state.l, state.q = status, p, t, g, l, q
-            state.w = self.law(state)
+            state, closing, conductor = self.image(before, load, np.exp(x), status)
+            status, g, q = state.status, state.g, state.q
             residual = np.log(state.w) - x
             if np.abs(residual).max() < tolerance:
-                state.slip = np.where(status != OPEN, slip + np.where(before.status != OPEN, before.slip, 0), 0)
+                state.slip = np.where(status != OPEN, state.slip + np.where(before.status != OPEN, before.slip, 0), 0)
                 state.iterations = iteration + 1
                 return state
-            if iteration < 3:
+            if iteration < 3 and not near:
                 x = x + residual / 2
                 continue
             heat_slope = np.linalg.solve(conductor, np.diag(q * np.exp(-x)))

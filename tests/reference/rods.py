@@ -17,6 +17,7 @@ bisection: no derivative of a law is asked for.
 
 from bisect import bisect_right
 from dataclasses import dataclass
+from itertools import pairwise
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,40 @@ def passes(u, omega, tolerance, g=0.5, constant=3, method="ZAITSEV"):
             g = min(1.0 / (1.0 - tangent), 1.0)
         omega = images[-1] if method == "PICARD" else (1.0 - g) * omega + g * images[-1]
     return residuals
+
+
+def gain(rods, open_law, closed_law, omega):
+    """Return U' by a central difference."""
+    step = 1e-5 * omega
+    ends = [image(rods, open_law, closed_law)(omega + k * step) for k in (-1, 1)]
+    return (ends[1] - ends[0]) / (2 * step)
+
+
+def solutions(rods, open_law, closed_law, count=200000):
+    """Return the conductances of all solutions: changes of sign of U(omega) - omega between count
+    conductances over all magnitudes, each narrowed down by bisection."""
+    of = image(rods, open_law, closed_law)
+
+    def excess(omega):
+        return of(omega) - omega
+
+    found = []
+    omegas = [10.0 ** (-4.0 + 20.0 * k / count) for k in range(count + 1)]
+    for low, high in pairwise(omegas):
+        rises = excess(low) < 0.0
+        if rises == (excess(high) < 0.0):
+            continue
+        while low < (middle := (low + high) / 2) < high:
+            low, high = (middle, high) if (excess(middle) < 0.0) == rises else (low, middle)
+        found.append(middle)
+    return found
+
+
+def resting(rods):
+    """Return the conductance with which neither gap nor pressure is left: s = 0."""
+    slope = rods.separation(1.0) - rods.separation(0.0)
+    flux = -rods.separation(0.0) / slope
+    return 1.0 / ((rods.temperature[0] - rods.temperature[1]) / flux - rods.resistance)
 
 
 def solve(rods, open_law, closed_law):

@@ -1,0 +1,82 @@
+!> How the contact state follows its load while all pairs keep their conditions: the derivative of
+!> the partial solution of (2.4). The instants of closing follow too: with f = f(lambda) the row of
+!> a pair that closes and sticks, r = (1 - f) (d_t - d_t,i) + f c.lambda, has
+!>
+!>    dr = (1 - f) dd_t + (f c + (c.lambda - d_t + d_t,i) df/dlambda).dlambda.
+module contact_tangent
+   use contact_system, only: contact_state_type, contact_system_type
+   use kinds, only: dp
+   use records, only: status_open, status_stick
+   implicit none
+   private
+   public :: contact_response
+
+contains
+
+   !> Changes of gaps and normal forces with the condensed load, one column a change of load.
+   pure subroutine contact_response(system, state, load, gap, force, sound)
+      type(contact_system_type), intent(in) :: system !! the system, as its last solution left it
+      type(contact_state_type), intent(in) :: state   !! that solution
+      real(dp), intent(in) :: load(:, :)              !! (tail, n) changes of c [force]
+      real(dp), intent(out) :: gap(:, :)              !! (m, n) changes of the gaps [length]
+      real(dp), intent(out) :: force(:, :) !! (m, n) changes of the compressive forces [force]
+      logical, intent(out) :: sound                   !! whether the derivative exists
+      real(dp) :: motion(size(load, 1), size(load, 2)), lambda(size(load, 1), size(load, 2))
+      integer :: k
+
+      motion = load
+      sound = .true.
+      if (any(closes(system, state))) then
+         call move_with_instants(system, state, motion, sound)
+      else
+         call system%solve_free(motion)
+      end if
+      lambda = matmul(system%schur(:, system%free), motion(system%free, :)) - load
+      gap = 0.0_dp
+      force = 0.0_dp
+      do k = 1, size(state%status)
+         if (state%status(k) == status_open) then
+            gap(k, :) = -motion(system%normal(k), :)
+         else
+            force(k, :) = -lambda(system%normal(k), :)
+         end if
+      end do
+   end subroutine contact_response
+
+   !> Pairs whose place of sticking depends on their forces.
+   pure function closes(system, state)
+      type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: state
+      logical :: closes(size(state%status))   !! (m)
+
+      closes = system%closing%acts .and. state%status == status_stick .and. system%tangent > 0
+   end function closes
+
+   !> Motion under changes of load, the instants of closing following.
+   pure subroutine move_with_instants(system, state, motion, sound)
+      type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: state
+      real(dp), intent(inout) :: motion(:, :)   !! loads in; displacements in the free rows out
+      logical, intent(out) :: sound
+      type(contact_system_type) :: tangent
+      logical :: moves(size(state%status)), singular
+      real(dp) :: arm
+      integer :: k
+
+      tangent = system
+      moves = closes(system, state)
+      do k = 1, size(moves)
+         if (.not. moves(k)) cycle
+         associate (law => system%closing(k), place => system%tangent(k))
+            arm = (dot_product(law%compliance, [-state%force(k), state%shear_force(k)]) - &
+               (state%tangential(k) - law%start))/(law%compliance(2) + system%give(k))
+            tangent%share(place) = tangent%share(place) + arm*law%rate(1)
+            tangent%own(place) = tangent%own(place) + arm*law%rate(2)
+         end associate
+      end do
+      call tangent%factor_rows(singular)
+      sound = .not. singular
+      if (sound) call tangent%solve_free(motion)
+   end subroutine move_with_instants
+
+end module contact_tangent

@@ -1,0 +1,227 @@
+!> The conductance of a pair along one coordinate, its *place*, that runs from closed to open.
+!>
+!> The *opening* of a pair is its gap where it is open and -p/modulus where it is closed: one number
+!> for both sides of (1.8), with no complementarity left in it. The conductance is a function of it
+!> but where the law jumps at gamma = p = 0: there the pair may rest with any conductance between
+!> the two values. The place passes through these values as well:
+!>
+!>    place < 0             closed, opening = place
+!>    0 <= place <= width   rest, opening = 0, between the closed and the open value
+!>    place > width         open, opening = place - width
+!>
+!> At rest omega/(omega + body) is linear in the place, which is nearly so for the heat that crosses
+!> the pair: with 1/body the resistance of the bodies it goes like 1/(1/body + 1/omega).
+module conductance_graph
+   use conductance_laws, only: conductance, conductance_inverse, conductance_law_type, &
+      conductance_slope
+   use kinds, only: dp
+   implicit none
+   private
+   public :: conductance_graph_type
+
+   !> Law and scales of one pair.
+   type :: conductance_graph_type
+      type(conductance_law_type) :: law   !! the law
+      real(dp) :: modulus = 1.0_dp        !! pressure per overlap, > 0 [stress/length]
+      real(dp) :: width = 0.0_dp !! length of the rest, 0 where the law is continuous [length]
+      real(dp) :: body = 1.0_dp           !! > 0, about that of the bodies [as omega]
+   contains
+      procedure :: omega
+      procedure :: slope
+      procedure :: opening
+      procedure :: advance
+      procedure :: rests
+      procedure :: stopped
+      procedure :: moved
+      procedure :: place_of_opening
+      procedure :: place_of_omega
+      procedure :: may_rest
+   end type conductance_graph_type
+
+   real(dp), parameter :: straight = 1.0e-3_dp   !! change of omega that a slope gives, relative
+   real(dp), parameter :: beyond = 1.0e-100_dp   !! overlap that counts for none [length]
+
+contains
+
+   !> Conductance at a place.
+   elemental function omega(self, place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: place                      !! [length]
+      real(dp) :: omega                                  !! [power/(length^2 temperature)]
+      real(dp) :: ends(2), part
+
+      if (self%rests(place)) then
+         ends = end_shares(self)
+         part = ends(1) + (ends(2) - ends(1))*place/self%width
+         omega = self%body*part/(1.0_dp - part)
+      else
+         omega = conductance(self%law, place < 0.0_dp, place - self%width, -self%modulus*place)
+      end if
+   end function omega
+
+   !> Its derivative by the place; on the open side where both meet.
+   elemental function slope(self, place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: place                      !! [length]
+      real(dp) :: slope                                  !! d omega/d place
+      real(dp) :: ends(2), part
+
+      if (self%rests(place)) then
+         ends = end_shares(self)
+         part = ends(1) + (ends(2) - ends(1))*place/self%width
+         slope = self%body/(1.0_dp - part)**2*(ends(2) - ends(1))/self%width
+      else if (place < 0.0_dp) then
+         slope = -self%modulus*conductance_slope(self%law, .true., 0.0_dp, -self%modulus*place)
+      else
+         slope = conductance_slope(self%law, .false., place - self%width, 0.0_dp)
+      end if
+   end function slope
+
+   !> omega/(omega + body) at the two ends of the rest: closed and open.
+   pure function end_shares(self) result(shares)
+      class(conductance_graph_type), intent(in) :: self
+      real(dp) :: shares(2)
+
+      shares = [conductance(self%law, .true., 0.0_dp, 0.0_dp), &
+         conductance(self%law, .false., 0.0_dp, 0.0_dp)]
+      shares = shares/(shares + self%body)
+   end function end_shares
+
+   !> Opening at a place.
+   elemental function opening(self, place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: place                      !! [length]
+      real(dp) :: opening                                !! gap, or -p/modulus [length]
+
+      opening = min(place, 0.0_dp) + max(place - self%width, 0.0_dp)
+   end function opening
+
+   !> Its derivative by the place.
+   elemental function advance(self, place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: place                      !! [length]
+      real(dp) :: advance                                !! 0 at rest, else 1
+
+      advance = merge(0.0_dp, 1.0_dp, self%rests(place))
+   end function advance
+
+   !> A move that goes no farther than across the first end of the side it starts on.
+   elemental function stopped(self, from, to) result(place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: from                       !! place where the move starts [length]
+      real(dp), intent(in) :: to                         !! place where it would end [length]
+      real(dp) :: place                                  !! [length]
+
+      place = to
+      if (from < 0.0_dp) then
+         place = min(to, 0.0_dp)
+      else if (self%width <= 0.0_dp) then
+         if (from > 0.0_dp) place = max(to, 0.0_dp)
+      else if (self%rests(from)) then
+         if (to < 0.0_dp) place = -beyond
+         if (to > self%width) place = self%width*(1.0_dp + 2*epsilon(1.0_dp))
+      else if (to <= self%width) then
+         place = self%width
+      end if
+   end function stopped
+
+   !> Where a pair comes to that Newton's method would move by `change`, with the law itself in
+   !> place of its slope. For the pair alone the equation is opening(z) - kappa share(z) = const,
+   !> share = omega/(omega + body): kappa is constant where its heat goes with share. From the linear change
+   !> of the left-hand side the move follows by bisection; with kappa >= 0, where heat opens the gap
+   !> that it crosses, the left-hand side grows with z on all of the graph. Elsewhere the move stops
+   !> at the first kink.
+   elemental function moved(self, from, change, body, own) result(place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: from                       !! place where the move starts [length]
+      real(dp), intent(in) :: change                     !! of the place, to first order [length]
+      real(dp), intent(in) :: body                       !! of the bodies about the pair [as omega]
+      real(dp), intent(in) :: own    !! derivative of the pair's opening by its omega
+      real(dp) :: place                                  !! [length]
+      real(dp) :: kappa, start, reach(2), wanted, omega_start, omega_slope
+      integer :: i
+
+      omega_start = self%omega(from)
+      omega_slope = self%slope(from)
+      place = from + change
+      if (abs(own) <= 0.0_dp) return
+      place = self%stopped(from, place)
+      if (own <= 0.0_dp) return
+      if (abs(omega_slope*change) <= straight*omega_start .and. (from*place > 0.0_dp)) return
+      kappa = own*(omega_start + body)**2/body
+      start = omega_start/(omega_start + body)
+      wanted = (self%advance(from) - own*omega_slope)*change
+      reach = self%place_of_opening(self%opening(from) + wanted + kappa*[-start, 1.0_dp - start])
+      if (reach(1) <= self%width .and. reach(1) > 0.0_dp) reach(1) = 0.0_dp
+      do i = 1, 200
+         place = 0.5_dp*(reach(1) + reach(2))
+         if (reach(2) - reach(1) <= 2*epsilon(1.0_dp)*abs(place)) exit
+         if (self%opening(place) - self%opening(from) - kappa*body*(self%omega(place) - &
+            omega_start)/((self%omega(place) + body)*(omega_start + body)) > wanted) then
+            reach(2) = place
+         else
+            reach(1) = place
+         end if
+      end do
+   end function moved
+
+   !> Whether the pair rests at a place.
+   elemental function rests(self, place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: place                      !! [length]
+      logical :: rests                                   !! gamma = p = 0 by the place
+
+      rests = self%width > 0.0_dp .and. place >= 0.0_dp .and. place <= self%width
+   end function rests
+
+   !> Whether the pair may rest with a conductance.
+   elemental function may_rest(self, omega)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: omega                      !! conductance
+      logical :: may_rest                                !! it lies between the two values
+      real(dp) :: closed, open
+
+      closed = conductance(self%law, .true., 0.0_dp, 0.0_dp)
+      open = conductance(self%law, .false., 0.0_dp, 0.0_dp)
+      may_rest = self%width > 0.0_dp .and. omega >= min(closed, open) .and. &
+         omega <= max(closed, open)
+   end function may_rest
+
+   !> Place of an opening that is not 0.
+   elemental function place_of_opening(self, opening) result(place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: opening                    !! gap, or -p/modulus [length]
+      real(dp) :: place                                  !! [length]
+
+      place = opening
+      if (opening >= 0.0_dp) place = opening + self%width
+   end function place_of_opening
+
+   !> A place with a given conductance, the one of a given opening where that has it; elsewhere that
+   !> of the opening, and then the conductance is another one.
+   elemental function place_of_omega(self, omega, opening) result(place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), intent(in) :: omega                      !! conductance
+      real(dp), intent(in) :: opening                    !! gap, or -p/modulus [length]
+      real(dp) :: place                                  !! [length]
+      real(dp) :: at(2), ends(2)
+      real(dp), parameter :: rounding = 1.0e-12_dp
+
+      place = self%place_of_opening(opening)
+      if (abs(self%omega(place) - omega) <= rounding*omega) return
+      if (self%may_rest(omega)) then
+         ends = end_shares(self)
+         place = self%width*(omega/(omega + self%body) - ends(1))/(ends(2) - ends(1))
+         place = min(max(place, 0.0_dp), self%width)
+         return
+      end if
+      at = [-conductance_inverse(self%law, .true., omega)/self%modulus, &
+         conductance_inverse(self%law, .false., omega) + self%width]
+      if (at(1) < 0.0_dp .and. (opening < 0.0_dp .or. at(2) < self%width)) then
+         place = at(1)
+      else if (at(2) >= self%width) then
+         place = at(2)
+      end if
+   end function place_of_omega
+
+end module conductance_graph

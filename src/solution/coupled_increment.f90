@@ -1,0 +1,202 @@
+!> An increment in which heat and mechanics are solved together: where its fixed point starts, and
+!> what is said of the solution.
+module coupled_increment
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use conductance_graph, only: conductance_graph_type
+   use contact_operator, only: increment_data_type
+   use controls, only: start_both, start_closed, start_given, start_open, start_previous
+   use coupling_gains, only: coupling_gain_type, find_gain
+   use errors, only: error_type
+   use fixed_point, only: pass_type, predicted_conductance
+   use increment_iteration, only: iterate
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use opening_slopes, only: make_graph, opening_slope
+   use records, only: increment_record_type
+   use resting_pairs, only: contact_scales, contact_scales_type
+   use solution_state, only: solution_state_type
+   use steps, only: step_type
+   use text, only: append, to_text
+   implicit none
+   private
+   public :: solve_coupled
+
+   real(dp), parameter :: end_conductance(2) = [1.0e-8_dp, 1.0e8_dp] !! of the starts open and
+   !! closed, in the conductance of the bodies about the pair
+   real(dp), parameter :: different = 1.0e-3_dp !! in omega, relative: more than residuals explain
+   real(dp), parameter :: near_turning_point = 0.1_dp !! distance of the largest real eigenvalue
+   !! from 1
+
+contains
+
+   !> Conductances, jumps and contact state of an increment.
+   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
+   subroutine solve_coupled(operators, step, previous, data, next, record, error)
+      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+      type(step_type), intent(in) :: step                        !! the step
+      type(solution_state_type), intent(in) :: previous          !! state at the start
+      type(increment_data_type), intent(inout) :: data           !! the increment
+      type(solution_state_type), intent(inout) :: next           !! guess in, solution out
+      type(increment_record_type), intent(inout) :: record       !! receives passes and work
+      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(contact_scales_type) :: scales
+      type(conductance_graph_type), allocatable :: graph(:)
+      type(pass_type) :: pass
+
+      scales = contact_scales(operators, data)
+      graph = make_graph(operators, scales%length)
+      next%omega_before = previous%omega
+      if (step%start%kind == start_both) then
+         call solve_from_both(operators, step, graph, scales, previous, data, next, record, pass, &
+            error)
+      else
+         call iterate(operators, step%fixed_point, graph, scales, starting_conductance(operators, &
+            step, step%start%kind, previous, next), data, next, record, pass, error)
+      end if
+      if (.not. allocated(error)) call judge(operators, data, graph, next, pass, record)
+   end subroutine solve_coupled
+
+   !> omega*^0 of a start.
+   function starting_conductance(operators, step, kind, previous, next) result(omega)
+      type(interface_operators_type), intent(in) :: operators
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: kind
+      type(solution_state_type), intent(in) :: previous
+      type(solution_state_type), intent(in) :: next
+      real(dp) :: omega(size(previous%omega))
+      real(dp), allocatable :: conductor(:, :)
+      real(dp) :: ratio
+      integer :: i, k
+
+      select case (kind)
+      case (start_given)
+         do i = 1, size(operators%interfaces)
+            omega(operators%pairs%interface_start(i):operators%pairs%interface_start(i + 1) - 1) = &
+               step%start%conductance(i)
+         end do
+      case (start_open, start_closed)
+         omega = previous%omega
+         conductor = operators%thermal%solver%schur_complement()
+         do k = 1, size(omega)
+            if (operators%jump_place(k) == 0 .or. operators%pairs%weight(k) <= 0.0_dp) cycle
+            omega(k) = end_conductance(merge(1, 2, kind == start_open))* &
+               conductor(operators%jump_place(k), operators%jump_place(k))/ &
+               operators%pairs%weight(k)
+         end do
+      case default
+         ratio = 1.0_dp
+         if (previous%increment_size > 0.0_dp) ratio = next%increment_size/previous%increment_size
+         omega = predicted_conductance(previous%omega, previous%omega_before, ratio)
+      end select
+   end function starting_conductance
+
+   !> The increment from the last ones, and from both ends of the conductance: do all lead to one
+   !> solution? That of the first start that leads to any is the increment's. It is found last, for
+   !> the factors to be its own.
+   subroutine solve_from_both(operators, step, graph, scales, previous, data, next, record, pass, &
+      error)
+      type(interface_operators_type), intent(inout) :: operators
+      type(step_type), intent(in) :: step
+      type(conductance_graph_type), intent(in) :: graph(:)
+      type(contact_scales_type), intent(in) :: scales
+      type(solution_state_type), intent(in) :: previous
+      type(increment_data_type), intent(inout) :: data
+      type(solution_state_type), intent(inout) :: next
+      type(increment_record_type), intent(inout) :: record
+      type(pass_type), intent(out) :: pass
+      type(error_type), allocatable, intent(out) :: error
+      integer, parameter :: kinds(3) = [start_open, start_closed, start_previous]
+      character(*), parameter :: names(3) = [character(8) :: 'OPEN', 'CLOSED', 'PREVIOUS']
+      type(solution_state_type) :: guess
+      type(increment_record_type) :: other_record
+      real(dp) :: omega(size(graph), 3)
+      logical :: found(3)
+      integer :: i
+
+      guess = next
+      do i = 1, 3
+         next = guess
+         other_record = increment_record_type(increment=record%increment)
+         call iterate(operators, step%fixed_point, graph, scales, starting_conductance(operators, &
+            step, kinds(i), previous, next), data, next, other_record, pass, error)
+         found(i) = .not. allocated(error)
+         omega(:, i) = next%omega
+         if (allocated(error)) call append(record%notes, 'the start from '//trim(names(i))// &
+            ' finds no solution: '//error%message)
+      end do
+      if (.not. found(3) .and. any(found)) then
+         i = findloc(found, .true., dim=1)
+         next = guess
+         other_record = increment_record_type(increment=record%increment)
+         call iterate(operators, step%fixed_point, graph, scales, starting_conductance(operators, &
+            step, kinds(i), previous, next), data, next, other_record, pass, error)
+      end if
+      call move_alloc(other_record%iterations, record%iterations)
+      record%residual_floor = other_record%residual_floor
+      record%work = other_record%work
+      call compare(omega(:, 1), omega(:, 2), omega(:, 3), found, record)
+   end subroutine solve_from_both
+
+   !> Says whether all starts lead to one solution.
+   subroutine compare(from_open, from_closed, from_previous, found, record)
+      real(dp), intent(in) :: from_open(:), from_closed(:), from_previous(:)
+      logical, intent(in) :: found(:)
+      type(increment_record_type), intent(inout) :: record
+
+      if (found(1) .and. found(2) .and. differ(from_open, from_closed)) then
+         call append(record%warnings, 'increment '//to_text(record%increment)//': the starts '// &
+            'from OPEN and from CLOSED lead to different solutions; this is one of several')
+      else if (found(3) .and. ((found(1) .and. differ(from_open, from_previous)) .or. &
+         (found(2) .and. differ(from_closed, from_previous)))) then
+         call append(record%warnings, 'increment '//to_text(record%increment)//': the start '// &
+            'from PREVIOUS leads elsewhere than that from the ends; this is one of several '// &
+            'solutions')
+      else if (found(1) .and. found(2)) then
+         call append(record%notes, 'the starts from OPEN and from CLOSED lead to one solution')
+      end if
+   end subroutine compare
+
+   !> Whether two conductances belong to different solutions.
+   pure logical function differ(a, b)
+      real(dp), intent(in) :: a(:), b(:)
+
+      differ = any(abs(a - b) > different*max(a, b))
+   end function differ
+
+   !> The gain of the coupling, and what follows from it.
+   subroutine judge(operators, data, graph, next, pass, record)
+      type(interface_operators_type), intent(in) :: operators
+      type(increment_data_type), intent(in) :: data
+      type(conductance_graph_type), intent(in) :: graph(:)
+      type(solution_state_type), intent(in) :: next
+      type(pass_type), intent(inout) :: pass
+      type(increment_record_type), intent(inout) :: record
+      type(coupling_gain_type) :: gain
+      character(:), allocatable :: at
+      logical :: found
+
+      record%coupling_gain = 0.0_dp
+      record%coupling_gain_max = 0.0_dp
+      if (.not. (any(abs(graph%slope(graph%place_of_opening(pass%opening))) > 0.0_dp) .or. &
+         any(next%resting))) return
+      record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
+      record%coupling_gain_max = record%coupling_gain
+      at = 'increment '//to_text(record%increment)//': '
+      call opening_slope(operators, data, graph, next%jump, next%contact, pass%slope, pass%body)
+      if (.not. allocated(pass%slope)) return
+      call find_gain(graph, pass%opening, pass%slope, next%resting, gain, found)
+      if (.not. found) return
+      record%coupling_gain = gain%largest
+      record%coupling_gain_max = gain%largest_real
+      if (gain%largest_real <= -huge(1.0_dp)) record%coupling_gain_max = &
+         ieee_value(1.0_dp, ieee_quiet_nan)
+      if (gain%largest < -1.0_dp) call append(record%warnings, at//'the coupling gain is '// &
+         to_text(gain%largest)//', below -1: plain iteration (4.1) would diverge')
+      if (abs(gain%largest_real - 1.0_dp) <= near_turning_point) call append(record%warnings, at// &
+         'the largest real gain is '//to_text(gain%largest_real)//', near 1: a turning point, '// &
+         'where solutions meet and small changes of the load change much')
+      if (gain%is_one_of_several) call append(record%warnings, at//'det(I - U'') is negative: '// &
+         'the branch is unstable, and there are at least two other solutions')
+   end subroutine judge
+
+end module coupled_increment

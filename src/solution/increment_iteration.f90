@@ -1,0 +1,159 @@
+!> The fixed-point iteration omega = U(omega) of an increment, section 4, from one start or another.
+module increment_iteration
+   use accelerators, only: make_accelerator
+   use conductance_graph, only: conductance_graph_type
+   use contact_operator, only: contact_operator_pass, increment_data_type, residual_floor
+   use contact_system, only: closing_law_type, contact_state_type
+   use controls, only: fixed_point_type, method_newton
+   use errors, only: error_type, set_error, status_no_convergence
+   use fixed_point, only: accelerator_type, pass_type
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use opening_slopes, only: opening_slope, openings
+   use records, only: increment_record_type, iteration_record_type, status_open
+   use resting_pairs, only: contact_scales_type, find_residual, settle
+   use solution_state, only: solution_state_type
+   use text, only: append, to_text
+   implicit none
+   private
+   public :: iterate
+
+   integer, parameter :: most_turns = 4   !! openings and closings of a pair whose law jumps
+
+contains
+
+   !> Conductances, jumps and contact state of an increment, from a start. Where laws jump, a method
+   !> that knows no pairs at rest hands an increment that it cannot solve to Newton's.
+   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
+   subroutine iterate(operators, controls, graph, scales, start, data, next, &
+      record, pass, error)
+      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+      type(fixed_point_type), intent(in) :: controls             !! *FIXED POINT
+      type(conductance_graph_type), intent(in) :: graph(:)       !! (m) graphs of the conductance
+      type(contact_scales_type), intent(in) :: scales            !! largest values
+      real(dp), intent(in) :: start(:)                           !! (m) omega*^0
+      type(increment_data_type), intent(inout) :: data           !! the increment
+      type(solution_state_type), intent(inout) :: next           !! guess in, solution out
+      type(increment_record_type), intent(inout) :: record       !! receives passes and work
+      type(pass_type), intent(out) :: pass                       !! the last pass
+      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(fixed_point_type) :: fallback
+      type(contact_state_type) :: guess
+
+      guess = next%contact
+      pass%omega = start
+      allocate (record%iterations(0))
+      call use_method(operators, controls, graph, scales, data, next, record, pass, error)
+      if (allocated(error) .and. size(record%iterations) == 0) then
+         ! Not even the contact zones of the start were found: those of the last increment may be.
+         next%contact = guess
+         pass%omega = data%omega_old
+         call use_method(operators, controls, graph, scales, data, next, record, pass, error)
+      end if
+      if (.not. (allocated(error) .and. any(graph%width > 0.0_dp))) return
+      if (controls%method == method_newton) return
+      deallocate (error)
+      call append(record%notes, 'a pair whose conductance jumps comes to no state by the '// &
+         'method of the deck; the increment is handed to NEWTON')
+      fallback = controls
+      fallback%method = method_newton
+      next%contact = guess
+      pass%omega = start
+      call use_method(operators, fallback, graph, scales, data, next, record, pass, error)
+   end subroutine iterate
+
+   !> The iteration by one method.
+   subroutine use_method(operators, controls, graph, scales, data, next, record, pass, error)
+      type(interface_operators_type), intent(inout) :: operators
+      type(fixed_point_type), intent(in) :: controls
+      type(conductance_graph_type), intent(in) :: graph(:)
+      type(contact_scales_type), intent(in) :: scales
+      type(increment_data_type), intent(inout) :: data
+      type(solution_state_type), intent(inout) :: next
+      type(increment_record_type), intent(inout) :: record
+      type(pass_type), intent(inout) :: pass
+      type(error_type), allocatable, intent(out) :: error
+      class(accelerator_type), allocatable :: accelerator
+      type(iteration_record_type) :: passes(controls%max_iterations)
+      type(contact_state_type) :: good
+      type(closing_law_type), allocatable :: good_closing(:)
+      integer :: turns(size(graph)), i, before
+      logical :: possible
+
+      before = size(record%iterations)
+      turns = 0
+      pass%image = pass%omega
+      operators%contact%closing = closing_law_type()
+      call operators%contact%forget_factors()
+      call make_accelerator(controls, graph, accelerator)
+      do i = 1, size(passes)
+         good = next%contact
+         good_closing = operators%contact%closing
+         pass%iteration = i
+         call contact_operator_pass(operators, data, pass%omega, next%jump, next%contact, &
+            pass%image, record%work, error)
+         passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
+            residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
+            g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
+            pairs_changed=count(next%contact%status /= good%status))
+         if (allocated(error)) then
+            call accelerator%retreat(pass%omega, possible)
+            if (.not. possible) exit
+            deallocate (error)
+            next%contact = good
+            operators%contact%closing = good_closing
+            call operators%contact%forget_factors()
+            cycle
+         end if
+         pass%opening = openings(operators, graph, next%contact)
+         call find_residual(graph, operators%pairs%weight, pass, scales, passes(i)%residual, &
+            next%resting)
+         record%residual_floor = residual_floor(operators, data, next%contact, pass%image)
+         next%omega = pass%omega
+         if (passes(i)%residual <= max(controls%tolerance, record%residual_floor)) exit
+         where ((next%contact%status == status_open) .neqv. (good%status == status_open)) &
+            turns = turns + 1
+         if (controls%method /= method_newton .and. any(turns > most_turns .and. &
+            graph%width > 0.0_dp)) exit
+         call find_slope(operators, data, graph, next, accelerator, pass)
+         call accelerator%next(pass, next%omega)
+         pass%omega = next%omega
+      end do
+      call close_passes(record, passes, i, max(controls%tolerance, record%residual_floor), error)
+      if (.not. allocated(error)) call settle(next%resting, next%contact)
+   end subroutine use_method
+
+   !> Keeps the passes, and says so where the last one is not good enough.
+   subroutine close_passes(record, passes, last, wanted, error)
+      type(increment_record_type), intent(inout) :: record
+      type(iteration_record_type), intent(in) :: passes(:)
+      integer, intent(in) :: last
+      real(dp), intent(in) :: wanted
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: n
+
+      n = min(last, size(passes))
+      if (allocated(error)) n = last - 1
+      record%iterations = [record%iterations, passes(:n)]
+      if (allocated(error) .or. n == 0) return
+      if (passes(n)%residual <= wanted) return
+      call set_error(error, status_no_convergence, 'the conductance does not converge in '// &
+         to_text(n)//' iterations; last residual '//to_text(passes(n)%residual)//', wanted '// &
+         to_text(wanted))
+   end subroutine close_passes
+
+   !> The derivative of a pass, where the accelerator asks for it.
+   subroutine find_slope(operators, data, graph, next, accelerator, pass)
+      type(interface_operators_type), intent(in) :: operators
+      type(increment_data_type), intent(in) :: data
+      type(conductance_graph_type), intent(in) :: graph(:)
+      type(solution_state_type), intent(in) :: next
+      class(accelerator_type), intent(in) :: accelerator
+      type(pass_type), intent(inout) :: pass
+
+      if (allocated(pass%slope)) deallocate (pass%slope)
+      if (accelerator%asks_slope(pass)) call opening_slope(operators, data, graph, next%jump, &
+         next%contact, pass%slope, pass%body)
+   end subroutine find_slope
+
+end module increment_iteration

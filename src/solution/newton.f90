@@ -1,0 +1,239 @@
+!> Newton's method for omega = U(omega), semismooth (Qi & Sun 1993), with the exact derivative of
+!> the contact state and of the conductance laws.
+!>
+!> Unknowns are the places z of the pairs on the graphs of their laws (conductance_graph), in which
+!> the equation is
+!>
+!>    r(z) = opening(z) - H(L(omega(z))) = 0,    J = diag(opening') - slope diag(omega'),
+!>
+!> slope being the derivative of the openings H(L(omega)) by omega. Each pair then goes along the
+!> curve of its own law, not along the tangent (conductance_graph, `moved`).
+!>
+!> A pass is taken unless earlier ones, all but one, were better by both of its measures: |r|, and
+!> the mismatch of the shares omega/(omega + body) by which the heat goes (a filter: Gould, Leyffer
+!> & Toint 2004). Else its step is shortened. Where a short one does not help either, the method
+!> goes over to pseudo-transient continuation: (1/tau + J) dz = -r, implicit Euler steps of dz/dt =
+!> -r whose tau grows as |r| falls (Kelley & Keyes 1998). That leads to a state which is stable in
+!> this sense, and there the steps are Newton's again.
+module newton
+   use conductance_graph, only: conductance_graph_type
+   use dense, only: lu_type
+   use fixed_point, only: accelerator_type, pass_type
+   use kinds, only: dp
+   implicit none
+   private
+   public :: newton_type
+
+   real(dp), parameter :: least_fall = 0.1_dp         !! of a measure by a full step, needed
+   integer, parameter :: patience = 1           !! better passes in spite of which one is taken
+   real(dp), parameter :: shortest = 0.2_dp           !! part of a step below which it is given up
+   real(dp), parameter :: retreating = 0.25_dp !! part of it left where no contact zones were found
+   real(dp), parameter :: last_retreat = 1.0e-4_dp    !! part of it that is tried last then
+   real(dp), parameter :: first_time_step = 0.3_dp    !! tau at first
+   real(dp), parameter :: growth = 2.0_dp             !! of tau where |r| stays
+   real(dp), parameter :: growth_limits(2) = [0.1_dp, 4.0_dp]   !! of tau in a step
+   real(dp), parameter :: endless = 1.0e4_dp          !! tau above which a step is Newton's
+   real(dp), parameter :: rounding = 1.0e-15_dp       !! |r| that is rounding, relative
+
+   !> Memory of the method.
+   type, extends(accelerator_type) :: newton_type
+      type(conductance_graph_type), allocatable :: graph(:)    !! (m) laws of the pairs
+      real(dp), allocatable, private :: place(:)       !! (m) z of the last pass taken [length]
+      real(dp), allocatable, private :: rest(:)        !! (m) r there [length]
+      real(dp), allocatable, private :: jacobian(:, :) !! (m, m) J there; unallocated if unknown
+      real(dp), allocatable, private :: own(:)         !! (m) derivative of opening k by omega k
+      real(dp), allocatable, private :: body(:) !! (m) conductance of the bodies about a pair
+      real(dp), allocatable, private :: step(:)        !! (m) dz of the present step [length]
+      real(dp), allocatable, private :: trial(:)       !! (m) z of the pass that runs [length]
+      real(dp), allocatable, private :: filter(:, :)   !! (2, passes taken) their measures
+      real(dp), private :: part = 1.0_dp               !! part of the present step that is tried
+      real(dp), private :: time_step = huge(1.0_dp)    !! tau; huge for Newton's method
+   contains
+      procedure :: asks_slope
+      procedure :: next
+      procedure :: retreat
+   end type newton_type
+
+contains
+
+   !> Whether next wants the derivative of this pass: it is taken, and there are laws to follow.
+   pure function asks_slope(self, pass) result(asks)
+      class(newton_type), intent(in) :: self   !! memory of the method
+      type(pass_type), intent(in) :: pass      !! the last pass
+      logical :: asks                          !! pass%slope is to be set
+
+      asks = takes(self, pass)
+      if (asks) asks = any(abs(self%graph%slope(places_of(self, pass))) > 0.0_dp)
+   end function asks_slope
+
+   !> Places of a pass; those of the first one by its conductances.
+   pure function places_of(self, pass) result(place)
+      class(newton_type), intent(in) :: self
+      type(pass_type), intent(in) :: pass
+      real(dp) :: place(size(pass%omega))
+
+      if (allocated(self%trial)) then
+         place = self%trial
+      else
+         place = self%graph%place_of_omega(pass%omega, pass%opening)
+      end if
+   end function places_of
+
+   !> Whether a pass is taken.
+   pure function takes(self, pass)
+      class(newton_type), intent(in) :: self
+      type(pass_type), intent(in) :: pass
+      logical :: takes
+      real(dp) :: found(2)
+      integer :: better, i
+
+      takes = .true.
+      if (.not. allocated(self%filter)) return
+      found = measures(self, pass)
+      better = 0
+      do i = 1, size(self%filter, 2)
+         if (all(found > (1.0_dp - least_fall*self%part)*self%filter(:, i))) better = better + 1
+      end do
+      takes = better <= patience .or. self%time_step < endless .or. &
+         found(1) <= rounding*norm2(pass%opening)
+   end function takes
+
+   !> How far a pass is from the solution, in the openings and in the shares.
+   pure function measures(self, pass)
+      class(newton_type), intent(in) :: self
+      type(pass_type), intent(in) :: pass
+      real(dp) :: measures(2)
+
+      measures(1) = norm2(residual(self, pass))
+      measures(2) = norm2(self%body*(pass%image - pass%omega)/((pass%image + self%body)* &
+         (pass%omega + self%body)))
+   end function measures
+
+   !> r of a pass.
+   pure function residual(self, pass) result(r)
+      class(newton_type), intent(in) :: self
+      type(pass_type), intent(in) :: pass
+      real(dp) :: r(size(pass%omega))   !! (m) [length]
+
+      r = self%graph%opening(places_of(self, pass)) - pass%opening
+   end function residual
+
+   !> A new step from a pass that is taken, else a shorter one.
+   subroutine next(self, pass, omega)
+      class(newton_type), intent(inout) :: self   !! memory of the method
+      type(pass_type), intent(in) :: pass         !! the last pass
+      real(dp), intent(out) :: omega(:)           !! (m) next omega*
+      real(dp) :: fall
+
+      if (takes(self, pass)) then
+         if (self%time_step < endless) then
+            fall = norm2(self%rest)/max(norm2(residual(self, pass)), tiny(1.0_dp))
+            self%time_step = self%time_step*min(max(growth*fall, growth_limits(1)), &
+               growth_limits(2))
+         end if
+         if (self%time_step >= endless) self%time_step = huge(1.0_dp)
+         call take(self, pass)
+         call make_step(self)
+      else
+         self%part = self%part*shortening(self, pass)
+         if (self%part < shortest) then
+            self%time_step = first_time_step
+            call make_step(self)
+         end if
+      end if
+      call try(self, omega)
+   end subroutine next
+
+   !> A shorter step where the contact zones were not found.
+   subroutine retreat(self, omega, possible)
+      class(newton_type), intent(inout) :: self   !! memory of the method
+      real(dp), intent(inout) :: omega(:)         !! (m) omega* that failed in, next omega* out
+      logical, intent(out) :: possible            !! whether there is one
+
+      possible = allocated(self%step) .and. self%part > last_retreat
+      if (.not. possible) return
+      self%part = retreating*self%part
+      call try(self, omega)
+   end subroutine retreat
+
+   !> Takes a pass.
+   subroutine take(self, pass)
+      class(newton_type), intent(inout) :: self
+      type(pass_type), intent(in) :: pass
+      real(dp) :: slope(size(pass%omega))
+      integer :: k
+
+      self%rest = residual(self, pass)
+      self%place = places_of(self, pass)
+      if (.not. allocated(self%filter)) then
+         allocate (self%body(size(slope)), source=1.0_dp)
+         if (allocated(pass%slope)) self%body = pass%body
+         allocate (self%filter(2, 0))
+      end if
+      self%filter = reshape([self%filter, measures(self, pass)], [2, size(self%filter, 2) + 1])
+      if (allocated(self%jacobian)) deallocate (self%jacobian)
+      if (.not. allocated(pass%slope)) return
+      slope = self%graph%slope(self%place)
+      self%own = [(pass%slope(k, k), k=1, size(slope))]
+      allocate (self%jacobian, mold=pass%slope)
+      do k = 1, size(slope)
+         self%jacobian(:, k) = -pass%slope(:, k)*slope(k)
+         self%jacobian(k, k) = self%jacobian(k, k) + self%graph(k)%advance(self%place(k))
+      end do
+   end subroutine take
+
+   !> The next omega*. Without a derivative every pair goes to the opening that was found.
+   subroutine try(self, omega)
+      class(newton_type), intent(inout) :: self
+      real(dp), intent(out) :: omega(:)
+
+      if (allocated(self%jacobian)) then
+         self%trial = self%graph%moved(self%place, self%part*self%step, self%body, self%own)
+      else
+         self%trial = self%graph%place_of_opening(self%graph%opening(self%place) + self%step)
+      end if
+      omega = self%graph%omega(self%trial)
+      self%g = spread(self%part, 1, size(omega))
+   end subroutine try
+
+   !> Part of the step that is tried next: where the parabola through |r|^2 is lowest.
+   pure function shortening(self, pass) result(part)
+      class(newton_type), intent(in) :: self
+      type(pass_type), intent(in) :: pass
+      real(dp) :: part
+      real(dp) :: ratio
+
+      ratio = (norm2(self%rest)/norm2(residual(self, pass)))**2
+      part = self%part*ratio/(1.0_dp + (2.0_dp*self%part - 1.0_dp)*ratio)
+      part = min(max(part, 0.1_dp), 0.5_dp)
+   end function shortening
+
+   !> dz from the pass that was taken last.
+   subroutine make_step(self)
+      class(newton_type), intent(inout) :: self
+      real(dp) :: matrix(size(self%rest), size(self%rest)), step(size(self%rest), 1)
+      type(lu_type) :: lu
+      logical :: singular
+      integer :: k
+
+      self%part = 1.0_dp
+      self%step = -self%rest
+      if (.not. allocated(self%jacobian)) return
+      matrix = self%jacobian
+      step(:, 1) = -self%rest
+      do k = 1, size(step)
+         if (self%time_step < endless) matrix(k, k) = matrix(k, k) + 1.0_dp/self%time_step
+         if (.not. self%graph(k)%rests(self%place(k))) cycle
+         ! No conductance at which the pair may rest brings its opening to 0: it does not rest.
+         if (sum(abs(self%jacobian(k, :)))*self%graph(k)%width > abs(self%rest(k))) cycle
+         matrix(k, :) = 0.0_dp
+         matrix(k, k) = 1.0_dp
+         step(k, 1) = self%graph(k)%place_of_opening(-self%rest(k)) - self%place(k)
+      end do
+      call lu%factor(matrix, singular)
+      if (singular) return
+      call lu%solve(step)
+      self%step = step(:, 1)
+   end subroutine make_step
+
+end module newton

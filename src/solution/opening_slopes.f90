@@ -1,0 +1,121 @@
+!> The derivative of the contact operator of section 2, pair by pair on the reduced system: how the
+!> openings of the pairs follow their conductances.
+!>
+!> From (3.4) on the tail, (S_T + diag(d)) theta = Q_c - history with d = weight (a2 omega_i + a3
+!> omega)/a1,
+!>
+!>    dtheta = -(S_T + diag(d))^-1 diag(weight (a3 theta + b3 theta_i)/a1) domega;
+!>
+!> the condensed load follows by J dtheta, gaps and forces by the contact system with the conditions
+!> that hold.
+module opening_slopes
+   use conductance_graph, only: conductance_graph_type
+   use conductance_laws, only: law_jumps
+   use contact_operator, only: increment_data_type, law_pressure
+   use contact_system, only: contact_state_type
+   use contact_tangent, only: contact_response
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use records, only: status_open
+   implicit none
+   private
+   public :: make_graph, openings, opening_slope
+
+   !> Smallest stiffness of a pair, of the largest one, that scales its overlap: a pair alone that
+   !> holds a body has none.
+   real(dp), parameter :: least_stiffness = 1.0e-6_dp
+
+contains
+
+   !> Graphs of the conductance of all pairs.
+   pure function make_graph(operators, length) result(graph)
+      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+      real(dp), intent(in) :: length                          !! of a rest, > 0 [length]
+      type(conductance_graph_type), allocatable :: graph(:)   !! (m)
+      real(dp) :: stiffness(size(operators%pairs%weight)), weight(size(operators%pairs%weight))
+      real(dp), allocatable :: conductor(:, :)
+      integer :: k
+
+      allocate (graph(size(weight)))
+      weight = operators%pairs%weight
+      where (weight <= 0.0_dp) weight = maxval(weight)
+      do k = 1, size(weight)
+         stiffness(k) = operators%contact%schur(operators%contact%normal(k), &
+            operators%contact%normal(k))
+         graph(k)%law = operators%pairs%law(k)
+      end do
+      stiffness = max(stiffness, least_stiffness*maxval(stiffness))
+      where (stiffness <= 0.0_dp) stiffness = 1.0_dp
+      graph%modulus = stiffness/weight
+      if (.not. any([(law_jumps(graph(k)%law), k=1, size(graph))])) return
+      conductor = operators%thermal%solver%schur_complement()
+      do k = 1, size(weight)
+         if (operators%pairs%weight(k) <= 0.0_dp .or. operators%jump_place(k) == 0) cycle
+         if (.not. law_jumps(graph(k)%law)) cycle
+         graph(k)%width = length
+         graph(k)%body = conductor(operators%jump_place(k), operators%jump_place(k))/weight(k)
+      end do
+   end function make_graph
+
+   !> Openings of the pairs: gaps, or pressures as overlaps.
+   pure function openings(operators, graph, state) result(opening)
+      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+      type(conductance_graph_type), intent(in) :: graph(:)    !! (m) graphs of the conductance
+      type(contact_state_type), intent(in) :: state           !! contact state
+      real(dp) :: opening(size(graph))                        !! (m) [length]
+
+      opening = -law_pressure(operators, state)/graph%modulus
+      where (state%status == status_open) opening = max(state%gap, 0.0_dp)
+   end function openings
+
+   !> Derivative of the openings by the conductances, for the state that the last pass found with
+   !> the given jumps; unallocated where it does not exist. Pairs of weight 0 carry no heat: their
+   !> rows stay 0.
+   subroutine opening_slope(operators, data, graph, jump, state, slope, body)
+      type(interface_operators_type), intent(in) :: operators !! as the last pass left them
+      type(increment_data_type), intent(in) :: data           !! the increment
+      type(conductance_graph_type), intent(in) :: graph(:)    !! (m) graphs of the conductance
+      real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
+      type(contact_state_type), intent(in) :: state           !! contact state
+      real(dp), allocatable, intent(out) :: slope(:, :)       !! (m, m)
+      !> (m) conductance that the bodies put in series with each pair, 1 where that means nothing
+      real(dp), allocatable, intent(out) :: body(:)
+      real(dp), allocatable :: of_jump(:, :), gap(:, :), force(:, :)
+      real(dp) :: heat(size(jump))
+      integer, allocatable :: active(:)
+      integer :: k, n
+      logical :: sound
+
+      allocate (slope(size(jump), size(jump)), source=0.0_dp)
+      allocate (body(size(jump)), source=1.0_dp)
+      associate (weight => operators%pairs%weight, place => operators%jump_place, &
+         a => data%scheme%a)
+         heat = -weight/a(1)*(a(3)*jump + data%scheme%b(3)*data%jump_old)
+         active = pack([(k, k=1, size(jump))], place > 0 .and. abs(heat) > 0.0_dp)
+         n = size(active)
+         if (n == 0) return
+         allocate (of_jump(operators%thermal%map%tail, n), source=0.0_dp)
+         do k = 1, n
+            associate (j => active(k))
+               of_jump(place(j), k) = heat(j)
+               call operators%thermal%solver%solve_tail(of_jump(:, k))
+               body(j) = (heat(j)/of_jump(place(j), k) - data%diagonal(place(j)))/weight(j)
+            end associate
+         end do
+         where (body <= 0.0_dp) body = 1.0_dp
+         allocate (gap(size(jump), n), force(size(jump), n))
+         call contact_response(operators%contact, state, matmul(operators%jump_load, of_jump), &
+            gap, force, sound)
+         do k = 1, size(jump)
+            if (weight(k) <= 0.0_dp) cycle
+            if (state%status(k) == status_open) then
+               slope(k, active) = gap(k, :)
+            else
+               slope(k, active) = -force(k, :)/(weight(k)*graph(k)%modulus)
+            end if
+         end do
+      end associate
+      if (.not. sound) deallocate (slope)
+   end subroutine opening_slope
+
+end module opening_slopes

@@ -1,0 +1,89 @@
+!> Pairs that rest: gamma = p = 0 with a conductance between the values of a law that jumps there.
+!> Without them some increments have no solution, (1.8) asking for a law without a jump.
+module resting_pairs
+   use conductance_graph, only: conductance_graph_type
+   use contact_operator, only: increment_data_type
+   use contact_system, only: contact_state_type
+   use fixed_point, only: pair_residual, pass_type
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use records, only: status_open, status_slip
+   implicit none
+   private
+   public :: contact_scales_type, contact_scales, find_residual, settle
+
+   !> Part of the pressure that the overlap of a whole displacement would make, below which none
+   !> counts as the largest of an increment.
+   real(dp), parameter :: least_pressure = 1.0e-6_dp
+
+   !> Largest values of an increment, by which gaps and pressures are small.
+   type :: contact_scales_type
+      real(dp) :: length = 0.0_dp   !! gap or displacement [length]
+      real(dp) :: force = 0.0_dp    !! nodal force at its start [force]
+   end type contact_scales_type
+
+contains
+
+   !> Largest values that are known at the start of an increment. Its load counts by the overlap
+   !> that it makes at a pair alone.
+   pure function contact_scales(operators, data) result(scales)
+      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+      type(increment_data_type), intent(in) :: data           !! the increment
+      type(contact_scales_type) :: scales                     !! largest values, length > 0
+      real(dp) :: stiffness
+      integer :: k
+
+      scales%force = maxval(data%previous%force)
+      scales%length = max(data%displacement_scale, maxval(abs(data%previous%gap)))
+      do k = 1, size(operators%contact%normal)
+         associate (place => operators%contact%normal(k))
+            stiffness = operators%contact%schur(place, place)
+            if (stiffness > 0.0_dp) scales%length = max(scales%length, &
+               abs(data%welded_load(place))/stiffness)
+         end associate
+      end do
+      if (scales%length <= 0.0_dp) scales%length = 1.0_dp
+   end function contact_scales
+
+   !> Largest residual of a pass, and the pairs that rest in it: a conductance between the two
+   !> values of its law needs no more of a pair than that neither gap nor pressure is left.
+   pure subroutine find_residual(graph, weight, pass, scales, residual, resting)
+      type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
+      real(dp), intent(in) :: weight(:)                     !! (m) tributary areas [length^2]
+      type(pass_type), intent(in) :: pass                   !! the pass
+      type(contact_scales_type), intent(in) :: scales       !! largest values of the increment
+      real(dp), intent(out) :: residual                     !! relative
+      logical, intent(out) :: resting(:)                    !! (m) pairs that rest
+      real(dp) :: by_law(size(graph)), by_rest(size(graph)), pressure(size(graph))
+      real(dp) :: largest
+
+      by_law = pair_residual(pass%omega, pass%image)
+      resting = graph%may_rest(pass%omega)
+      if (any(resting)) then
+         pressure = graph%modulus*max(-pass%opening, 0.0_dp)
+         largest = max(maxval(pressure), scales%force/max(maxval(weight), tiny(1.0_dp)))
+         by_rest = max(pass%opening, 0.0_dp)/max(scales%length, maxval(pass%opening)) + &
+            pressure/max(largest, least_pressure* &
+            graph%modulus*scales%length)
+         resting = resting .and. by_rest < by_law
+         where (resting) by_law = by_rest
+      end if
+      residual = maxval(by_law)
+   end subroutine find_residual
+
+   !> Leaves nothing of gap, pressure and shear at pairs that rest; they count as closed.
+   pure subroutine settle(resting, state)
+      logical, intent(in) :: resting(:)                  !! (m) pairs that rest
+      type(contact_state_type), intent(inout) :: state   !! contact state
+
+      where (resting .and. state%status == status_open) state%reference = state%tangential
+      where (resting)
+         state%status = status_slip
+         state%direction = 0
+         state%gap = 0.0_dp
+         state%force = 0.0_dp
+         state%shear_force = 0.0_dp
+      end where
+   end subroutine settle
+
+end module resting_pairs
