@@ -6,7 +6,8 @@ program thercon
       command_version, read_command, usage
    use deck_check, only: check_deck
    use deck_run, only: base_name, run_deck
-   use errors, only: error_type, status_deck
+   use errors, only: error_type, status_deck, status_interrupted
+   use interruption, only: catch_signals, caught_signal
    use progress, only: deck_outcome_type, print_batch_summary
    use version_report, only: print_versions
    implicit none
@@ -74,14 +75,31 @@ contains
          end do
       end do
       if (worst > 0) return
+      call catch_signals()
       do deck = 1, size(command%decks)
-         call run_deck(command%decks(deck)%value, command, outcomes(deck))
+         if (caught_signal() == '') then
+            call run_deck(command%decks(deck)%value, command, outcomes(deck))
+         else
+            call leave_out(command%decks(deck)%value, outcomes(deck))
+         end if
          worst = max(worst, outcomes(deck)%status)
-         if (.not. command%quiet .and. outcomes(deck)%status /= status_deck) then
+         if (.not. command%quiet .and. outcomes(deck)%status /= status_deck .and. &
+            .not. outcomes(deck)%left_out) then
             call outcomes(deck)%print(command%folder//'/'//base_name(outcomes(deck)%path))
          end if
       end do
       if (size(outcomes) > 1 .and. .not. command%quiet) call print_batch_summary(outcomes)
    end subroutine run_all
+
+   !> Leaves out a deck that stands behind the one at which a signal came.
+   subroutine leave_out(path, outcome)
+      character(*), intent(in) :: path
+      type(deck_outcome_type), intent(inout) :: outcome
+
+      outcome%path = path
+      outcome%status = status_interrupted
+      outcome%left_out = .true.
+      write (error_unit, '(4a)') path, ': error: not started because of ', caught_signal()
+   end subroutine leave_out
 
 end program thercon

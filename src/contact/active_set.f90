@@ -4,14 +4,13 @@
 !> by correcting only the last offending pair (Murty's least-index rule), which cannot cycle on the
 !> P-matrix of a frictionless problem.
 !>
-!> Where contact alone holds a body, a set may leave it loose. A first guess that does is given up
-!> for all pairs closed. A correction that does is taken back, and fewer pairs, the worst ones, are
-!> corrected. If even a single pair cannot be taken, the body moves on until another pair stops it:
-!> an open one that closes, or a slipping one whose slip would turn. If none does, it is loose.
+!> Where contact alone holds a body, a set may leave it loose. The body is then held softly where it
+!> was, and let go in steps, from the place that each step leads to (proximal point method), until
+!> the set that is found also holds without that. What drives off through all steps is loose.
 module active_set
    use closing_path, only: follow_closing_path
    use contact_system, only: condition_code, contact_state_type, contact_system_type
-   use errors, only: error_type
+   use errors, only: error_type, set_error, status_no_convergence
    use friction, only: next_status
    use kinds, only: dp
    use records, only: status_open, status_slip, status_stick
@@ -20,167 +19,163 @@ module active_set
    public :: solve_contact
 
    integer, parameter :: most_sets = 200           !! active sets tried before giving up
-   real(dp), parameter :: least_motion = 1.0e-8_dp !! part of a motion that is more than rounding
+   integer, parameter :: soft_steps = 12           !! steps in which a softly held body is let go
+   real(dp), parameter :: first_hold = 1.0e-3_dp   !! of the pairs' stiffness, in the first of them
+   real(dp), parameter :: least_hold = 1.0e-10_dp  !! the same in the last ones
+   real(dp), parameter :: nothing = 1.0e-12_dp     !! part of the largest stiffness that is rounding
+   character(*), parameter :: unsettled = 'the contact zones do not settle'
 
 contains
 
    !> Contact state under a condensed load, the references of friction being given.
-   !> Errors: no active set satisfies all conditions; the bodies are not held, and then loose is set
-   !> and the status is the one to which all corrections together led.
+   !> Errors: no active set satisfies all conditions; the bodies are not held, and then driven is
+   !> set, and the status is the one in which they are driven away.
    subroutine solve_contact(system, load, state, error)
       type(contact_system_type), intent(inout) :: system  !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
-      type(contact_state_type), intent(inout) :: state    !! guess of the status in, solution out
+      type(contact_state_type), intent(inout) :: state    !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error !! see above
+      type(contact_state_type) :: guess
+
+      guess = state
+      system%several = .false.
+      call search(system, load, state, error)
+      if (.not. allocated(error)) then
+         system%several = system%turns_back()
+         if (system%several) call take_forward(system, load, state)
+         return
+      end if
+      state = guess
+      if (size(system%motion, 2) > 0) then
+         call hold_softly(system, load, state, error)
+      else
+         call follow_closing_path(system, load, state, error)
+         if (.not. allocated(error)) call system%solve_set(load, state, error)
+      end if
+   end subroutine solve_contact
+
+   !> Takes, in place of a state at which the path of states turns back, one at which it goes on,
+   !> where it can be found.
+   subroutine take_forward(system, load, state)
+      type(contact_system_type), intent(inout) :: system
+      real(dp), intent(in) :: load(:)
+      type(contact_state_type), intent(inout) :: state
+      type(contact_state_type) :: forward
+      type(error_type), allocatable :: error
+
+      forward = state
+      call follow_closing_path(system, load, forward, error)
+      if (allocated(error)) return
+      call system%solve_set(load, forward, error)
+      if (.not. allocated(error)) state = forward
+   end subroutine take_forward
+
+   !> Corrects the active set until nothing violates its condition.
+   !> Errors: as solve_set; the sets do not settle.
+   subroutine search(system, load, state, error)
+      type(contact_system_type), intent(inout) :: system
+      real(dp), intent(in) :: load(:)
+      type(contact_state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(out) :: error
       integer :: visited(size(state%status), most_sets)
-      real(dp) :: excess(size(state%status))
-      integer, allocatable :: loosest(:)
       integer :: next(2, size(state%status)), k, set
-      logical :: one_at_a_time
+      real(dp) :: excess(size(state%status))
+      logical :: corrected(size(state%status)), one_at_a_time
 
       one_at_a_time = .false.
-      call system%solve_set(load, state, error)
-      if (allocated(error)) then
-         state%status = merge(status_stick, status_slip, system%tangent > 0)
-         state%direction = 0
-         call system%solve_set(load, state, error)
-      end if
       do set = 1, most_sets
-         if (allocated(error)) exit
+         call system%solve_set(load, state, error)
+         if (allocated(error)) return
+         call judge(system, load, state, next, excess)
+         corrected = excess > 0.0_dp
+         if (.not. any(corrected)) return
          visited(:, set) = condition_code(state)
          do k = 1, set - 1
             one_at_a_time = one_at_a_time .or. all(visited(:, k) == visited(:, set))
          end do
-         call judge(system, load, state, next, excess)
-         if (all(excess <= 0.0_dp)) return
-         call correct(system, load, next, excess, one_at_a_time, loosest, state, error)
+         if (one_at_a_time) corrected(:findloc(corrected, .true., dim=1, back=.true.) - 1) = .false.
+         where (corrected)
+            state%status = next(1, :)
+            state%direction = next(2, :)
+         end where
       end do
-      if (allocated(loosest)) state%status = loosest
-      if (.not. allocated(error)) call follow_closing_path(system, load, state, error)
-   end subroutine solve_contact
+      call set_error(error, status_no_convergence, unsettled)
+   end subroutine search
 
-   !> Corrects the offending pairs, all of them or one at a time, and solves; as few as it takes to
-   !> leave the bodies held.
-   !> Error: every correction leaves a body loose.
-   subroutine correct(system, load, next, excess, one_at_a_time, loosest, state, error)
+   !> Contact state where the supports alone do not hold the bodies.
+   !> Errors: as solve_contact.
+   subroutine hold_softly(system, load, state, error)
       type(contact_system_type), intent(inout) :: system
       real(dp), intent(in) :: load(:)
-      integer, intent(in) :: next(:, :)
-      real(dp), intent(in) :: excess(:)
-      logical, intent(inout) :: one_at_a_time
-      integer, allocatable, intent(inout) :: loosest(:) !! status that all corrections would give
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      type(contact_state_type) :: sound
-      logical :: chosen(size(excess))
-      integer :: k, n
+      type(contact_system_type) :: soft
+      real(dp) :: hold, place(size(system%motion, 2))
+      integer :: step
 
-      sound = state
-      if (.not. one_at_a_time) then
-         n = count(excess > 0.0_dp)
-         do while (n > 1)
-            chosen = excess > 0.0_dp
-            do k = n + 1, count(excess > 0.0_dp)
-               chosen(minloc(excess, dim=1, mask=chosen)) = .false.
-            end do
-            call solve_corrected(system, load, sound, next, chosen, state, error)
-            if (.not. allocated(error)) then
-               if (allocated(loosest) .and. n == count(excess > 0.0_dp)) then
-                  deallocate (loosest)
-               end if
-               return
-            end if
-            if (.not. allocated(loosest)) loosest = state%status
-            n = n/2
-         end do
-      end if
-      one_at_a_time = one_at_a_time .or. allocated(error)
-      do k = size(excess), 1, -1
-         if (excess(k) <= 0.0_dp) cycle
-         chosen = [(n == k, n=1, size(excess))]
-         call solve_corrected(system, load, sound, next, chosen, state, error)
-         if (allocated(error)) call stop_motion(system, load, k, state, error)
-         if (.not. allocated(error)) return
+      soft = system
+      soft%motion = system%motion(:, :0)
+      place = matmul(positions(system, state), system%motion)
+      do step = 1, soft_steps
+         hold = max(first_hold*0.1_dp**(step - 1), least_hold)*stiffness_of_pairs(system)
+         soft%schur = system%schur + hold*matmul(system%motion, transpose(system%motion))
+         call soft%forget_factors()
+         associate (soft_load => load + hold*matmul(system%motion, place))
+            call search(soft, soft_load, state, error)
+            if (allocated(error)) call follow_closing_path(soft, soft_load, state, error)
+         end associate
+         if (allocated(error)) return
+         place = matmul(positions(system, state), system%motion)
+         if (holds_exactly(system, load, state)) return
       end do
-      if (.not. allocated(loosest)) loosest = merge(next(1, :), sound%status, excess > 0.0_dp)
-   end subroutine correct
-
-   !> Solution with some pairs corrected.
-   subroutine solve_corrected(system, load, sound, next, corrected, state, error)
-      type(contact_system_type), intent(inout) :: system
-      real(dp), intent(in) :: load(:)
-      type(contact_state_type), intent(in) :: sound
-      integer, intent(in) :: next(:, :)
-      logical, intent(in) :: corrected(:)
-      type(contact_state_type), intent(inout) :: state
-      type(error_type), allocatable, intent(out) :: error
-
-      state = sound
-      where (corrected)
-         state%status = next(1, :)
-         state%direction = next(2, :)
-      end where
+      ! The last trial says why: driven is set, or some pair is wrong without the hold.
       call system%solve_set(load, state, error)
-   end subroutine solve_corrected
+      if (.not. allocated(error)) call set_error(error, status_no_convergence, unsettled)
+   end subroutine hold_softly
 
-   !> Lets a body that is loose since a pair was taken from it move on until other pairs hold it.
-   !> Error: none does.
-   subroutine stop_motion(system, load, taken, state, error)
+   !> Whether a set that was found with the hold satisfies all conditions without it; then the state
+   !> is the exact one.
+   logical function holds_exactly(system, load, state)
       type(contact_system_type), intent(inout) :: system
       real(dp), intent(in) :: load(:)
-      integer, intent(in) :: taken
-      type(contact_state_type), intent(inout) :: state   !! the loose set, values of the one before
-      type(error_type), allocatable, intent(inout) :: error
-      integer :: k, n
+      type(contact_state_type), intent(inout) :: state
+      type(contact_state_type) :: exact
+      type(error_type), allocatable :: error
+      integer :: next(2, size(state%status))
+      real(dp) :: excess(size(state%status))
 
-      do n = 1, size(state%status)
-         k = stopping_pair(system, state, taken)
-         if (k == 0) return
-         state%status(k) = merge(status_stick, status_slip, system%tangent(k) > 0)
-         state%direction(k) = 0
-         call system%solve_set(load, state, error)
-         if (.not. allocated(error)) return
-      end do
-   end subroutine stop_motion
+      exact = state
+      call system%solve_set(load, exact, error)
+      holds_exactly = .not. allocated(error)
+      if (.not. holds_exactly) return
+      call judge(system, load, exact, next, excess)
+      holds_exactly = all(excess <= 0.0_dp)
+      if (holds_exactly) state = exact
+   end function holds_exactly
 
-   !> The pair that first stops the motion on which a body sets out when a pair is taken from it; 0
-   !> where none does. The motion is the null vector of the set that was factored last.
-   pure function stopping_pair(system, state, taken) result(first)
+   !> Relative displacements of a state.
+   pure function positions(system, state) result(d)
       type(contact_system_type), intent(in) :: system
-      type(contact_state_type), intent(in) :: state   !! the loose set, values of the one before it
-      integer, intent(in) :: taken                    !! the pair
-      integer :: first
-      real(dp) :: motion(size(system%schur, 1)), sense, way, nearest, distance
+      type(contact_state_type), intent(in) :: state
+      real(dp) :: d(size(system%schur, 1))
       integer :: k
 
-      first = 0
-      motion = 0.0_dp
-      motion(system%free) = system%lu%null_vector()
-      if (state%status(taken) == status_open) then
-         sense = -motion(system%normal(taken))
-      else if (system%tangent(taken) == 0) then
-         return
-      else
-         sense = -state%direction(taken)*motion(system%tangent(taken))
-      end if
-      if (abs(sense) <= least_motion*maxval(abs(motion))) return
-      motion = sign(1.0_dp, sense)*motion/maxval(abs(motion))
-      nearest = huge(1.0_dp)
+      d = 0.0_dp
       do k = 1, size(state%status)
-         if (k == taken .or. state%status(k) == status_stick) cycle
-         if (state%status(k) == status_open) then
-            way = motion(system%normal(k))
-            distance = max(state%gap(k), 0.0_dp)
-         else
-            if (system%tangent(k) == 0) cycle
-            way = state%direction(k)*motion(system%tangent(k))
-            distance = abs(system%slip(state, k))
-         end if
-         if (way <= least_motion .or. distance >= nearest*way) cycle
-         nearest = distance/way
-         first = k
+         d(system%normal(k)) = system%initial_gap(k) - state%gap(k)
+         if (system%tangent(k) > 0) d(system%tangent(k)) = state%tangential(k)
       end do
-   end function stopping_pair
+   end function positions
+
+   !> Stiffness of the softest pair, alone; pairs that close a ring have none of their own.
+   pure real(dp) function stiffness_of_pairs(system)
+      type(contact_system_type), intent(in) :: system
+      integer :: i
+
+      associate (own => [(system%schur(i, i), i=1, size(system%schur, 1))])
+         stiffness_of_pairs = minval(own, mask=own > nothing*maxval(own))
+      end associate
+   end function stiffness_of_pairs
 
    !> What status each pair should have, and by how much it violates the present one.
    subroutine judge(system, load, state, next, excess)

@@ -30,6 +30,7 @@ module closing_instant
    integer, parameter :: most_passes = 60                 !! passes over the closing laws
    integer, parameter :: free_passes = 10 !! of these, with the pairs holding that are closed
    real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
+   real(dp), parameter :: rounding = 1.0e-10_dp   !! the same where it does not come down to that
 
 contains
 
@@ -53,7 +54,7 @@ contains
          holds = state%status /= status_open .or. (holds .and. pass > free_passes)
          call update_laws(system, previous, state, holds, change, error)
          if (allocated(error)) return
-         if (change <= settled) then
+         if (change <= merge(settled, rounding, pass <= free_passes)) then
             do k = 1, size(state%status)
                if (system%closing(k)%acts .and. state%status(k) /= status_open) then
                   state%reference(k) = state%tangential(k) - system%slip(state, k)

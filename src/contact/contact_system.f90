@@ -17,14 +17,24 @@
 !> Pairs that form rings have the forces of their links (ring_links) among the unknowns, on which
 !> nothing else acts; where such a pair sticks it gives a little: d_t + give lambda_t takes the
 !> place of d_t.
+!>
+!> Supports may leave bodies free to move as rigid ones: S has these motions as null vectors. Where
+!> an active set does not hold them either, the system is solved beside the motions, bordered by
+!> them. A load that drives one of them has no solution; without such a load the least motion is
+!> taken.
 module contact_system
-   use dense, only: lu_type
+   use dense, only: lu_type, null_space
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
    use records, only: status_open, status_slip, status_stick
    implicit none
    private
    public :: contact_system_type, contact_state_type, closing_law_type, condition_code
+
+   !> Force along a loose motion that is rounding, as part of the load and of the terms of S d.
+   real(dp), parameter :: balanced = 1.0e-10_dp, rounding = 1.0e-13_dp
+   !> Spring of a row, as part of the pair's stiffness, that does not hold a body.
+   real(dp), parameter :: slack = 1.0e-9_dp
 
    !> Contact state of all pairs.
    type :: contact_state_type
@@ -58,18 +68,23 @@ module contact_system
       type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing pairs
       real(dp), allocatable :: give(:) !! (m) of stuck pairs, not zero in rings [length/force]
       integer, allocatable :: link(:)             !! (links) places of the links' forces
+      real(dp), allocatable :: motion(:, :) !! (tail, q) unsupported rigid motions, orthonormal
       integer, allocatable :: free(:)             !! places on the tail that are sought
       integer, allocatable :: partner(:) !! (tail) place of d_n whose force enters the row, or 0
       real(dp), allocatable :: share(:)           !! (tail) factor of that force
       real(dp), allocatable :: own(:)             !! (tail) factor of the row's own force
       real(dp), allocatable :: spring(:)          !! (tail) factor of the row's displacement
-      type(lu_type) :: lu                         !! factors on the free places
+      type(lu_type) :: lu                         !! factors on the free places, bordered
+      real(dp) :: border = 1.0_dp                 !! scale of the border [force/length]
       integer, allocatable :: factored(:)         !! (m) status*3 + direction of the factors
-      logical :: loose = .false.                  !! the set factored last leaves a body loose
+      real(dp), allocatable :: loose(:, :)        !! (free, l) motions that the set leaves free
+      logical :: driven = .false.                 !! whether the load drives one of them
+      logical :: several = .false.                !! whether other states under the load are proven
    contains
       procedure :: solve_set
       procedure :: solve_free
       procedure :: stiffness
+      procedure :: turns_back
       procedure :: friction_rows
       procedure :: slip
       procedure :: factor_set
@@ -97,16 +112,19 @@ contains
       end associate
    end function slip
 
-   !> Solution for one active set. Where that leaves a body loose, the values stay as they are.
-   !> Error: as factor_set.
+   !> Solution for one active set. Where the load drives a body that the set leaves loose, driven
+   !> is set, and the values stay as they are.
+   !> Errors: as factor_set; a body is driven away.
    subroutine solve_set(self, load, state, error)
       class(contact_system_type), intent(inout) :: self   !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
       type(contact_state_type), intent(inout) :: state    !! its statuses in, the values out
       type(error_type), allocatable, intent(out) :: error !! see above
       real(dp) :: d(size(load)), lambda(size(load)), residual(size(load), 1)
+      real(dp), allocatable :: unbalanced(:, :)
       integer :: k
 
+      self%driven = .false.
       call factor_set(self, state, error)
       if (allocated(error)) return
       d = 0.0_dp
@@ -117,8 +135,16 @@ contains
          d(self%tangent(k)) = merge(self%closing(k)%start, state%reference(k), self%closing(k)%acts)
       end do
       residual(:, 1) = load - matmul(self%schur, d)
-      call self%solve_free(residual)
-      d(self%free) = d(self%free) + residual(self%free, 1)
+      if (size(self%loose, 2) > 0) then
+         call self%solve_free(residual, unbalanced)
+         d(self%free) = d(self%free) + residual(self%free, 1)
+         call check_balance(self, load, d, unbalanced(:, 1), error)
+         if (allocated(error)) return
+         call move_least(self, state, d)
+      else
+         call self%solve_free(residual)
+         d(self%free) = d(self%free) + residual(self%free, 1)
+      end if
       lambda = matmul(self%schur, d) - load
       state%link = d(self%link)
       do k = 1, size(state%status)
@@ -142,38 +168,103 @@ contains
       end do
    end subroutine solve_set
 
+   !> Whether the load drives the loose motions, by more than rounding.
+   !> Error: it does.
+   subroutine check_balance(self, load, d, unbalanced, error)
+      class(contact_system_type), intent(inout) :: self
+      real(dp), intent(in) :: load(:), d(:)
+      real(dp), intent(in) :: unbalanced(:)
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: terms
+
+      terms = balanced*maxval(abs(load)) + rounding*maxval(matmul(abs(self%schur), abs(d)))
+      self%driven = maxval(abs(unbalanced)) > terms
+      if (self%driven) call set_error(error, status_no_convergence, &
+         'the bodies are not held by their supports and the pairs that are in contact')
+   end subroutine check_balance
+
+   !> Moves loose bodies so that pairs slip least, and open ones stay where they were.
+   pure subroutine move_least(self, state, d)
+      class(contact_system_type), intent(in) :: self
+      type(contact_state_type), intent(in) :: state
+      real(dp), intent(inout) :: d(:)
+      real(dp) :: way(size(d))
+      integer :: k
+
+      way = 0.0_dp
+      do k = 1, size(state%status)
+         if (state%status(k) == status_open) way(self%normal(k)) = d(self%normal(k)) - &
+            (self%initial_gap(k) - state%gap(k))
+         if (self%tangent(k) == 0) cycle
+         way(self%tangent(k)) = d(self%tangent(k)) - state%tangential(k)
+         if (state%status(k) == status_slip) way(self%tangent(k)) = d(self%tangent(k)) - &
+            merge(self%closing(k)%start, state%reference(k), self%closing(k)%acts)
+      end do
+      d(self%free) = d(self%free) - matmul(self%loose, matmul(way(self%free), self%loose))
+   end subroutine move_least
+
    !> Factors the system of an active set, unless that is the set factored last.
-   !> Error: the bodies are not held.
+   !> Error: the system is singular.
    subroutine factor_set(self, state, error)
       class(contact_system_type), intent(inout) :: self   !! the reduced system
       type(contact_state_type), intent(in) :: state       !! statuses and directions
       type(error_type), allocatable, intent(out) :: error !! see above
+      logical :: singular
 
       if (allocated(self%factored)) then
          if (all(self%factored == condition_code(state))) return
       end if
       self%factored = condition_code(state)
       call list_free(self, state)
-      call self%factor_rows()
-      if (.not. self%loose) return
+      call self%factor_rows(singular)
+      if (.not. singular) return
       call self%forget_factors()
-      call set_error(error, status_no_convergence, &
-         'the bodies are not held by their supports and the pairs that are in contact')
+      call set_error(error, status_no_convergence, 'the contact system is singular')
    end subroutine factor_set
 
-   !> Factors the rows that are listed.
-   pure subroutine factor_rows(self)
+   !> Factors the rows that are listed, bordered by the motions that they leave free.
+   pure subroutine factor_rows(self, singular)
       class(contact_system_type), intent(inout) :: self   !! the reduced system
+      logical, intent(out) :: singular                    !! as of lu_type
       real(dp), allocatable :: rows(:, :)
-      integer :: i
+      integer :: f, i, l
 
-      rows = self%friction_rows(self%schur(:, self%free))
-      rows = rows(self%free, :)
-      do i = 1, size(self%free)
+      call find_loose(self)
+      f = size(self%free)
+      l = size(self%loose, 2)
+      allocate (rows(f + l, f + l), source=0.0_dp)
+      associate (of_tail => self%friction_rows(self%schur(:, self%free)))
+         rows(:f, :f) = of_tail(self%free, :)
+      end associate
+      do i = 1, f
          rows(i, i) = rows(i, i) + self%spring(self%free(i))
       end do
-      call self%lu%factor(rows, self%loose)
+      self%border = max(maxval(abs(rows)), tiny(1.0_dp))
+      rows(:f, f + 1:) = self%border*self%loose
+      rows(f + 1:, :f) = self%border*transpose(self%loose)
+      call self%lu%factor(rows, singular)
    end subroutine factor_rows
+
+   !> The unsupported motions that no place of the active set holds.
+   pure subroutine find_loose(self)
+      class(contact_system_type), intent(inout) :: self
+      logical :: held(size(self%schur, 1))
+      integer :: i
+
+      if (size(self%motion, 2) == 0) then
+         self%loose = reshape([real(dp) ::], [size(self%free), 0])
+         return
+      end if
+      held = .true.
+      do i = 1, size(self%free)
+         associate (place => self%free(i))
+            held(place) = self%spring(place) > slack*abs(self%schur(place, place))
+         end associate
+      end do
+      associate (places => pack([(i, i=1, size(held))], held))
+         self%loose = matmul(self%motion(self%free, :), null_space(self%motion(places, :)))
+      end associate
+   end subroutine find_loose
 
    !> Makes the next solution factor anew, because a closing law has changed.
    pure subroutine forget_factors(self)
@@ -247,16 +338,22 @@ contains
    end function friction_rows
 
    !> Free displacements that take up forces, with the factors of the last active set.
-   pure subroutine solve_free(self, x)
+   pure subroutine solve_free(self, x, unbalanced)
       class(contact_system_type), intent(in) :: self  !! the reduced system
       real(dp), intent(inout) :: x(:, :) !! (tail, columns) forces; displacements in free rows
-      real(dp), allocatable :: rows(:, :)
+      !> (l, columns) forces along the loose motions that nothing takes up.
+      real(dp), allocatable, intent(out), optional :: unbalanced(:, :)
+      real(dp) :: rows(size(self%free) + size(self%loose, 2), size(x, 2))
 
-      if (size(self%free) == 0) return
-      rows = self%friction_rows(x)
-      rows = rows(self%free, :)
-      call self%lu%solve(rows)
-      x(self%free, :) = rows
+      associate (f => size(self%free))
+         rows = 0.0_dp
+         associate (of_tail => self%friction_rows(x))
+            rows(:f, :) = of_tail(self%free, :)
+         end associate
+         if (size(rows, 1) > 0) call self%lu%solve(rows)
+         x(self%free, :) = rows(:f, :)
+         if (present(unbalanced)) unbalanced = self%border*rows(f + 1:, :)
+      end associate
    end subroutine solve_free
 
    !> Forces at some places of the tail for unit displacements there, the free ones following; with
@@ -272,6 +369,20 @@ contains
       forces = self%schur(places, places) + &
          matmul(self%schur(places, self%free), response(self%free, :))
    end function stiffness
+
+   !> Whether the set factored last turns the path of contact states back: its determinant is
+   !> negative, which needs friction. The signs at all states under one load add up to one, so that
+   !> then there are others. Closing laws, frozen in the set, are no part of that: with them none is
+   !> seen to turn.
+   pure logical function turns_back(self)
+      class(contact_system_type), intent(in) :: self  !! the reduced system
+
+      turns_back = .false.
+      if (any(self%closing%acts)) return
+      ! Every link and every loose motion borders a positive matrix, which turns its sign.
+      turns_back = (self%lu%determinant_sign() < 0) .neqv. &
+         (mod(size(self%link) + size(self%loose, 2), 2) == 1)
+   end function turns_back
 
    !> One number per pair for its contact condition.
    pure function condition_code(state) result(codes)

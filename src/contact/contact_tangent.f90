@@ -59,7 +59,7 @@ contains
       real(dp), intent(inout) :: motion(:, :)   !! loads in; displacements in the free rows out
       logical, intent(out) :: sound
       type(contact_system_type) :: tangent
-      logical :: moves(size(state%status))
+      logical :: moves(size(state%status)), singular
       real(dp) :: arm
       integer :: k
 
@@ -74,8 +74,8 @@ contains
             tangent%own(place) = tangent%own(place) + arm*law%rate(2)
          end associate
       end do
-      call tangent%factor_rows()
-      sound = .not. tangent%loose
+      call tangent%factor_rows(singular)
+      sound = .not. singular
       if (sound) call tangent%solve_free(motion)
    end subroutine move_with_instants
 

@@ -8,13 +8,15 @@ module deck_builder_steps
    use deck_builder_controls, only: build_fixed_point, build_thermal_scheme
    use deck_builder_start, only: build_start
    use deck_builder_loads, only: build_load_card
+   use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, is_misspelt
    use keywords, only: refusal
    use kinds, only: dp
    use model, only: model_type
-   use steps, only: analysis_coupled, analysis_heat, analysis_static, solves_heat, step_type
+   use steps, only: analysis_coupled, analysis_heat, analysis_static, least_increment, &
+      solves_heat, step_type
    use text, only: to_text, to_upper
    implicit none
    private
@@ -35,7 +37,7 @@ contains
       type(start_type) :: start
       type(thermal_scheme_type) :: scheme
       type(step_type) :: before
-      integer :: k, n, analyses, files
+      integer :: k, n, analyses, files, node_prints, element_prints
 
       n = card_count(cards, 'STEP')
       allocate(model%steps(n), context%step_place(n))
@@ -43,6 +45,8 @@ contains
       scheme = implicit_scheme
       analyses = 0
       files = 0
+      node_prints = 0
+      element_prints = 0
       context%boundaries_sound = .not. is_misspelt(cards, 'BOUNDARY')
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
@@ -51,6 +55,8 @@ contains
                n = n + 1
                analyses = 0
                files = 0
+               node_prints = 0
+               element_prints = 0
                context%step_place(n) = card%place
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
@@ -77,6 +83,14 @@ contains
                call build_load_card(cards, card, n, model, context, report)
             case ('NODE FILE', 'EL FILE', 'CONTACT FILE')
                if (n > 0) call build_file_output(card, files, context, report, model%steps(n))
+            case ('NODE PRINT')
+               node_prints = node_prints + 1
+               if (n > 0) call build_print(cards, card, node_prints == 1, context, model%mesh, &
+                  report, model%steps(n)%node_prints)
+            case ('EL PRINT')
+               element_prints = element_prints + 1
+               if (n > 0) call build_print(cards, card, element_prints == 1, context, model%mesh, &
+                  report, model%steps(n)%element_prints)
             case ('CONTACT PRINT')
                if (n > 0) call read_frequency(card, report, model%steps(n)%contact_print_frequency)
             case default
@@ -107,6 +121,8 @@ contains
       step%ramped = course == 'RAMP'
       step%field_frequency = before%field_frequency
       step%contact_print_frequency = before%contact_print_frequency
+      if (allocated(before%node_prints)) step%node_prints = before%node_prints
+      if (allocated(before%element_prints)) step%element_prints = before%element_prints
       if (.not. has_parameter(card, 'NLGEOM')) return
       if (to_upper(parameter_text(card, 'NLGEOM')) /= 'NO') call report%error( &
          parameter_place(card, 'NLGEOM'), 'NLGEOM is refused on *STEP: '//refusal('STEP', 'NLGEOM'))
@@ -163,13 +179,15 @@ contains
       call take_field(data, 3, 'smallest increment', report, step%smallest_increment, valid)
       call take_field(data, 4, 'largest increment', report, step%largest_increment, valid)
       call check_extra(data, 4, 'first increment, period, smallest, largest increment', report)
-      call note_increments(data, context)
+      call note_increments(data, step, context)
       times = [step%first_increment, step%period, step%smallest_increment, step%largest_increment]
-      do i = 1, 4
-         if (.not. valid .or. times(i) > 0.0_dp) cycle
-         call report%error(field_place(data, i), 'increments and periods must be positive')
-         valid = .false.
-      end do
+      if (valid) then
+         do i = 1, 4
+            if (times(i) > 0.0_dp .or. .not. has_field(data, i)) cycle
+            call report%error(field_place(data, i), 'increments and periods must be positive')
+            valid = .false.
+         end do
+      end if
       if (.not. valid) then
          step%first_increment = 1.0_dp
          step%period = 1.0_dp
@@ -179,17 +197,30 @@ contains
          call report%error(field_place(data, 3), 'the smallest increment is longer than the first')
       else if (step%largest_increment < step%first_increment) then
          call report%error(field_place(data, 4), 'the largest increment is shorter than the first')
+      else if (step%smallest_increment < least_increment*step%period) then
+         step%smallest_increment = least_increment*step%period
+         call context%note('smallest increment raised to '//to_text(step%smallest_increment)// &
+            ': a smaller part of the period is lost in rounding')
       end if
    end subroutine build_increments
 
-   subroutine note_increments(data, context)
+   !> Notes the defaults of the card, and what of it does not act.
+   subroutine note_increments(data, step, context)
       type(data_card_type), intent(in) :: data
+      type(step_type), intent(in) :: step
       type(deck_context_type), intent(inout) :: context
 
       if (.not. has_field(data, 1)) call context%note('first increment not given: 1')
       if (.not. has_field(data, 2)) call context%note('period not given: 1')
-      if (has_field(data, 3) .or. has_field(data, 4)) call context%note('smallest and largest '// &
-         'increment not used: increments are fixed, cutting back is not built yet')
+      if (step%direct) then
+         if (has_field(data, 3) .or. has_field(data, 4)) call context%note( &
+            'smallest and largest increment not needed: with DIRECT increments are fixed')
+         return
+      end if
+      if (.not. has_field(data, 3)) call context%note('smallest increment not given: '// &
+         to_text(step%smallest_increment))
+      if (has_field(data, 4)) call context%note( &
+         'largest increment not needed: no increment is longer than the first')
    end subroutine note_increments
 
    !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0
@@ -212,18 +243,5 @@ contains
       if (files > 1) frequency = min(frequency, step%field_frequency)
       step%field_frequency = frequency
    end subroutine build_file_output
-
-   !> FREQUENCY=n, default 1.
-   subroutine read_frequency(card, report, frequency)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: frequency
-
-      frequency = 1
-      call take_parameter(card, 'FREQUENCY', report, frequency)
-      if (frequency >= 0) return
-      call report%error(parameter_place(card, 'FREQUENCY'), 'FREQUENCY= must not be negative')
-      frequency = 1
-   end subroutine read_frequency
 
 end module deck_builder_steps

@@ -64,7 +64,13 @@ contains
 
       kind = 'ELEMENT'
       call need_parameter(card, 'NAME', report, surface%name)
-      call choose(card, 'TYPE', 'ELEMENT', 'NODE', report, kind)
+      call choose(card, 'TYPE', 'ELEMENT/NODE', '', report, kind)
+      if (kind == 'NODE') then
+         call report%error(parameter_place(card, 'TYPE'), 'TYPE=NODE is refused on *SURFACE: '// &
+            'pairs need the areas and normals of faces; name elements and faces S1 to S4')
+         allocate(surface%faces(2, 0))
+         return
+      end if
       allocate(keys(0))
       do j = card%first_data, card%last_data
          valid = .true.

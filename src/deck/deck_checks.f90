@@ -4,7 +4,7 @@ module deck_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use elasticity, only: equivalent_poisson
-   use element_kinds, only: axisymmetric, plane_stress, quad8, triangle3
+   use element_kinds, only: axisymmetric, plane_stress, quad8, triangle3, triangle6
    use kinds, only: dp, long
    use load_checks, only: check_loads
    use mesh, only: mesh_type
@@ -19,8 +19,9 @@ module deck_checks
    !> The entries of all elements' 16 x 16 matrices are numbered in default integers.
    integer, parameter :: most_elements = 2**23 - 1
 
-   !> Largest equivalent Poisson's ratio that is not warned of where elements lock.
-   real(dp), parameter :: most_compressible = 0.49_dp
+   !> Largest equivalent Poisson's ratio that is not warned of where elements lock: 0.49, which the
+   !> entries of the stiffness give but for rounding.
+   real(dp), parameter :: most_compressible = 0.49_dp*(1 + 1.0e-9_dp)
 
 contains
 
@@ -102,30 +103,47 @@ contains
       end do
    end subroutine check_materials
 
-   !> Warns of a nearly incompressible material in elements that cannot follow it.
+   !> Warns of a nearly incompressible material in elements that cannot follow it: those with too
+   !> many integration points lock; six-node triangles do not, but their mean stress scatters and
+   !> does not converge.
    subroutine check_locking(context, model, m, report)
       type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
       integer, intent(in) :: m
       type(deck_report_type), intent(inout) :: report
+
+      if (maxval(abs(model%materials(m)%elasticity)) <= 0.0_dp) return
+      if (equivalent_poisson(model%materials(m)%elasticity) <= most_compressible) return
+      call warn_of_kinds(context, model, m, [quad8, triangle3], 'elements such as ', &
+         ' are too stiff', report)
+      call warn_of_kinds(context, model, m, [triangle6], 'the stresses of elements such as ', &
+         ' scatter', report)
+   end subroutine check_locking
+
+   !> Warns of the first element of some kinds that has the material and is not in plane stress.
+   subroutine warn_of_kinds(context, model, m, kinds, subject, trouble, report)
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: m
+      integer, intent(in) :: kinds(:)
+      character(*), intent(in) :: subject, trouble
+      type(deck_report_type), intent(inout) :: report
       integer :: e
 
       associate (mesh => model%mesh)
-         if (maxval(abs(model%materials(m)%elasticity)) <= 0.0_dp) return
-         if (equivalent_poisson(model%materials(m)%elasticity) <= most_compressible) return
          do e = 1, size(mesh%element_number)
             if (mesh%element_section(e) == 0 .or. .not. context%element_valid(e)) cycle
             if (model%sections(mesh%element_section(e))%material /= m) cycle
             if (mesh%element_plane(e) == plane_stress) cycle
-            if (mesh%element_kind(e) /= quad8 .and. mesh%element_kind(e) /= triangle3) cycle
+            if (all(mesh%element_kind(e) /= kinds)) cycle
             call report%warning(context%material_place(m), 'material '//model%materials(m)%name// &
-               ' is nearly incompressible: elements such as '//to_text(mesh%element_number(e))// &
-               ' are too stiff with it; take '//trim(merge('CAX8R', 'CPE8R', &
+               ' is nearly incompressible: '//subject//to_text(mesh%element_number(e))// &
+               trouble//' with it; take '//trim(merge('CAX8R', 'CPE8R', &
                mesh%element_plane(e) == axisymmetric)))
             return
          end do
       end associate
-   end subroutine check_locking
+   end subroutine warn_of_kinds
 
    !> The axis of a cylindrical orientation is parallel to z, where an axisymmetric model has none.
    subroutine check_orientations(context, model, report)

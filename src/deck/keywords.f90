@@ -112,8 +112,10 @@ module keywords
       'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
       known_keyword_type('CONTACT FILE', built, in_step, 0, many, &
       'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
-      known_keyword_type('NODE PRINT', later, in_step, 0, many, ''), &
-      known_keyword_type('EL PRINT', later, in_step, 0, many, ''), &
+      known_keyword_type('NODE PRINT', built, in_step, 1, many, &
+      'NSET=/FREQUENCY=/TOTALS=/~GLOBAL=/~FREQUENCYF=/!TIME POINTS='), &
+      known_keyword_type('EL PRINT', built, in_step, 1, many, &
+      'ELSET=/FREQUENCY=/GLOBAL=/~TOTALS=/~FREQUENCYF=/!TIME POINTS='), &
       known_keyword_type('CONTACT PRINT', built, in_step, 0, many, &
       'FREQUENCY=/~SLAVE=/~MASTER=/~NSET=/~GLOBAL=/~TOTALS='), &
       known_keyword_type('END STEP', built, in_step, 0, 0, ''), &
@@ -123,7 +125,7 @@ module keywords
    type(known_keyword_type), parameter :: known_keywords(56) = &
       [model_keywords, control_keywords, step_keywords]
 
-   type(refusal_type), parameter :: refusals(10) = [ &
+   type(refusal_type), parameter :: refusals(12) = [ &
       refusal_type('TRANSFORM', '', 'displacements and forces are along x and y'), &
       refusal_type('EQUATION', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('MPC', '', 'bodies are held by *BOUNDARY and by contact only'), &
@@ -133,6 +135,8 @@ module keywords
       refusal_type('GAP CONDUCTANCE', 'DEPENDENCIES', 'conductance depends on the pressure only'), &
       refusal_type('CONTACT PAIR', 'ADJUST', 'it would move nodes; gaps are those of the mesh'), &
       refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; let the bodies share nodes'), &
+      refusal_type('NODE PRINT', 'TIME POINTS', 'FREQUENCY= says which increments are printed'), &
+      refusal_type('EL PRINT', 'TIME POINTS', 'FREQUENCY= says which increments are printed'), &
       refusal_type('STEP', 'NLGEOM', 'displacements and strains are small')]
 
 contains

@@ -3,7 +3,7 @@ module deck_check
    use, intrinsic :: iso_fortran_env, only: output_unit
    use cards, only: cards_type
    use command_line, only: command_type
-   use deck_run, only: prepare_deck
+   use deck_preparation, only: prepare_deck
    use increments, only: simulation_type
    use model, only: model_type
    use run_description, only: describe_run

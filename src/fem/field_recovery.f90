@@ -2,16 +2,14 @@
 !> nodes, averaged over the elements of one body and section. A node shared by several sections so
 !> is several points.
 module field_recovery
-   use element_conduction, only: heat_flux_at
-   use element_elasticity, only: stress_at
+   use element_fields, only: element_heat_flux, element_stress
    use element_kinds, only: element_node_count
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
-   use orientations, only: material_axes, orientation_type
-   use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
-   use quadrature, only: most_points, recovery_count, recovery_points, recovery_weights
-   use shape_functions, only: element_shape, node_position
+   use orientations, only: orientation_type
+   use quadrature, only: recovery_points, recovery_weights
+   use shape_functions, only: node_position
    implicit none
    private
    public :: point_map_type, make_points, recover_stress, recover_heat_flux
@@ -77,26 +75,14 @@ contains
       real(dp), intent(in) :: displacement(:, :)            !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp) :: stress(4, size(points%node))              !! xx, yy, zz, xy [stress]
-      real(dp) :: at_points(4, most_points), place(2, most_points), axes(2, 2)
-      integer :: element, g
+      integer :: element
 
       stress = 0.0_dp
       do element = 1, size(mesh%element_number)
-         associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
-            section => sections(mesh%element_section(element)), &
-            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
-            place(:, :recovery_count(kind)) = recovery_points(kind)
-            do g = 1, recovery_count(kind)
-               axes = material_axes(orientations, section%orientation, &
-                  matmul(mesh%coordinates(:, nodes), element_shape(kind, place(:, g))))
-               associate (material => materials(section%material))
-                  at_points(:, g) = stress_at(kind, plane, mesh%coordinates(:, nodes), &
-                     place(:, g), elasticity_in(plane, material, axes), &
-                     thermal_modulus_in(plane, material, axes), displacement(:, nodes), &
-                     temperature(nodes))
-               end associate
-            end do
-            call spread_to_nodes(kind, at_points, points%element_points(:, element), stress)
+         associate (kind => mesh%element_kind(element))
+            call spread_to_nodes(kind, element_stress(mesh, sections, materials, orientations, &
+               element, recovery_points(kind), displacement, temperature), &
+               points%element_points(:, element), stress)
          end associate
       end do
       call average(points, stress)
@@ -112,22 +98,14 @@ contains
       type(point_map_type), intent(in) :: points            !! the points
       real(dp), intent(in) :: temperature(:)                !! (nodes) [temperature]
       real(dp) :: flux(2, size(points%node))                !! x, y [power/length^2]
-      real(dp) :: at_points(2, most_points), place(2, most_points), axes(2, 2)
-      integer :: element, g
+      integer :: element
 
       flux = 0.0_dp
       do element = 1, size(mesh%element_number)
-         associate (kind => mesh%element_kind(element), &
-            section => sections(mesh%element_section(element)), &
-            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
-            place(:, :recovery_count(kind)) = recovery_points(kind)
-            do g = 1, recovery_count(kind)
-               axes = material_axes(orientations, section%orientation, &
-                  matmul(mesh%coordinates(:, nodes), element_shape(kind, place(:, g))))
-               at_points(:, g) = heat_flux_at(kind, mesh%coordinates(:, nodes), place(:, g), &
-                  conductivity_in(materials(section%material), axes), temperature(nodes))
-            end do
-            call spread_to_nodes(kind, at_points, points%element_points(:, element), flux)
+         associate (kind => mesh%element_kind(element))
+            call spread_to_nodes(kind, element_heat_flux(mesh, sections, materials, orientations, &
+               element, recovery_points(kind), temperature), points%element_points(:, element), &
+               flux)
          end associate
       end do
       call average(points, flux)
@@ -145,7 +123,7 @@ contains
       position = node_position(kind)
       do q = 1, size(position, 2)
          values(:, points(q)) = values(:, points(q)) + &
-            matmul(at_points(:, :recovery_count(kind)), recovery_weights(kind, position(:, q)))
+            matmul(at_points, recovery_weights(kind, position(:, q)))
       end do
    end subroutine spread_to_nodes
 

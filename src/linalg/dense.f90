@@ -1,25 +1,23 @@
 !> The few dense solves of the interface problem, by LAPACK.
 module dense
-   use blas_lapack, only: dgeev, dgelsy, dgetrf, dgetrs
+   use blas_lapack, only: dgeev, dgelsy, dgesvd, dgetrf, dgetrs
    use kinds, only: dp
    implicit none
    private
-   public :: lu_type, eigenvalues, least_squares
+   public :: lu_type, null_space, column_space, eigenvalues, least_squares
 
-   !> Pivot, relative to its column, below which it is rounding: the Schur complements that are
-   !> factored here carry some digits of rounding themselves.
-   real(dp), parameter :: lost = 1.0e-11_dp
+   !> Pivot, relative to its column, below which it is rounding.
+   real(dp), parameter :: lost = 1.0e-14_dp
+   real(dp), parameter :: rank_tolerance = 1.0e-9_dp !! of the largest singular value
 
    !> LU factors of a small general matrix.
    type :: lu_type
       real(dp), allocatable :: factors(:, :)   !! (n, n) as dgetrf leaves them
       integer, allocatable :: pivots(:)        !! (n) row exchanges
-      integer :: lost_pivot = 0                !! first pivot that is lost, 0 for none
    contains
       procedure :: factor
       procedure :: solve
-      procedure :: null_vector
-      procedure :: negative_determinant
+      procedure :: determinant_sign
    end type lu_type
 
 contains
@@ -36,11 +34,10 @@ contains
       if (allocated(self%pivots)) deallocate (self%pivots)
       allocate (self%pivots(n))
       call dgetrf(n, n, self%factors, max(n, 1), self%pivots, info)
-      self%lost_pivot = 0
-      do i = n, 1, -1
-         if (abs(self%factors(i, i)) <= lost*maxval(abs(matrix(:, i)))) self%lost_pivot = i
+      singular = info /= 0
+      do i = 1, n
+         singular = singular .or. abs(self%factors(i, i)) <= lost*maxval(abs(matrix(:, i)))
       end do
-      singular = info /= 0 .or. self%lost_pivot > 0
    end subroutine factor
 
    !> Solves with the factors.
@@ -53,32 +50,60 @@ contains
       call dgetrs('N', n, size(x, 2), self%factors, max(n, 1), self%pivots, x, max(n, 1), info)
    end subroutine solve
 
-   !> A vector that a singular matrix maps to zero, from the factors up to the first lost pivot.
-   pure function null_vector(self) result(z)
-      class(lu_type), intent(in) :: self         !! the factors of a singular matrix
-      real(dp) :: z(size(self%factors, 1))       !! (n) scaled by its component at the lost pivot
-      integer :: i, last
-
-      last = self%lost_pivot
-      z = 0.0_dp
-      z(last) = 1.0_dp
-      do i = last - 1, 1, -1
-         z(i) = -dot_product(self%factors(i, i + 1:last), z(i + 1:last))/self%factors(i, i)
-      end do
-   end function null_vector
-
-   !> Whether the determinant of the matrix is negative.
-   pure function negative_determinant(self) result(negative)
-      class(lu_type), intent(in) :: self   !! the factors
-      logical :: negative                  !! det < 0
+   !> Sign of the determinant: 1 or -1.
+   pure integer function determinant_sign(self)
+      class(lu_type), intent(in) :: self    !! the factors of a regular matrix
       integer :: i
 
-      negative = .false.
+      determinant_sign = 1
       do i = 1, size(self%pivots)
-         negative = negative .neqv. (self%factors(i, i) < 0.0_dp)
-         negative = negative .neqv. (self%pivots(i) /= i)
+         if ((self%factors(i, i) < 0.0_dp) .neqv. (self%pivots(i) /= i)) then
+            determinant_sign = -determinant_sign
+         end if
       end do
-   end function negative_determinant
+   end function determinant_sign
+
+   !> Orthonormal basis of the vectors that all rows map to zero.
+   pure function null_space(rows) result(basis)
+      real(dp), intent(in) :: rows(:, :)        !! (m, n)
+      real(dp), allocatable :: basis(:, :)      !! (n, n - rank)
+      real(dp) :: copy(max(size(rows, 1), 1), size(rows, 2)), none(1, 1), best(1)
+      real(dp) :: values(size(rows, 2)), right(size(rows, 2), size(rows, 2))
+      real(dp), allocatable :: work(:)
+      integer :: info, m, n
+
+      copy = 0.0_dp
+      copy(:size(rows, 1), :) = rows
+      m = size(copy, 1)
+      n = size(copy, 2)
+      call dgesvd('N', 'A', m, n, copy, m, values, none, 1, right, n, best, -1, info)
+      allocate (work(int(best(1))))
+      call dgesvd('N', 'A', m, n, copy, m, values, none, 1, right, n, work, size(work), info)
+      values(min(m, n) + 1:) = 0.0_dp
+      associate (rank => count(values > rank_tolerance*values(1)))
+         basis = transpose(right(rank + 1:, :))
+      end associate
+   end function null_space
+
+   !> Orthonormal basis of what some columns span, by Gram and Schmidt, each twice.
+   pure function column_space(columns) result(basis)
+      real(dp), intent(in) :: columns(:, :)     !! (m, n)
+      real(dp), allocatable :: basis(:, :)      !! (m, rank)
+      real(dp) :: found(size(columns, 1), size(columns, 2)), x(size(columns, 1))
+      integer :: j, pass, rank
+
+      rank = 0
+      do j = 1, size(columns, 2)
+         x = columns(:, j)
+         do pass = 1, 2
+            x = x - matmul(found(:, :rank), matmul(x, found(:, :rank)))
+         end do
+         if (norm2(x) <= rank_tolerance*maxval(norm2(columns, dim=1))) cycle
+         rank = rank + 1
+         found(:, rank) = x/norm2(x)
+      end do
+      basis = found(:, :rank)
+   end function column_space
 
    !> Eigenvalues of a general matrix.
    subroutine eigenvalues(matrix, real_part, imaginary_part, found)
@@ -115,7 +140,7 @@ contains
       solution(:size(rhs), 1) = rhs
       free = 0
       call dgelsy(size(matrix, 1), size(matrix, 2), 1, copy, size(matrix, 1), solution, &
-         size(solution), free, lost, rank, work, size(work), info)
+         size(solution), free, rank_tolerance, rank, work, size(work), info)
       x = solution(:size(x), 1)
    end function least_squares
 

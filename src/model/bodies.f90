@@ -1,11 +1,11 @@
 !> Bodies: elements that share nodes hang together.
 module bodies
-   use element_kinds, only: element_node_count
+   use element_kinds, only: axisymmetric, element_node_count
    use groups, only: find_root, join, separate_groups
    use mesh, only: mesh_type
    implicit none
    private
-   public :: find_bodies
+   public :: find_bodies, bodies_on_axis
 
 contains
 
@@ -41,5 +41,14 @@ contains
          mesh%node_body(q) = body(root)
       end do
    end subroutine find_bodies
+
+   !> Which bodies turn about the axis: they can only move along it.
+   pure function bodies_on_axis(mesh) result(on_axis)
+      type(mesh_type), intent(in) :: mesh      !! the mesh, its bodies known
+      logical :: on_axis(mesh%body_count)      !! (bodies)
+
+      on_axis = .false.
+      on_axis(mesh%element_body) = mesh%element_plane == axisymmetric
+   end function bodies_on_axis
 
 end module bodies

@@ -2,6 +2,7 @@
 module steps
    use controls, only: fixed_point_type, start_type, thermal_scheme_type, implicit_scheme
    use kinds, only: dp
+   use print_requests, only: print_request_type
    implicit none
    private
    public :: step_type, boundary_type
@@ -10,7 +11,7 @@ module steps
    public :: load_centrifugal, load_nodal_heat, load_face_heat, load_body_heat
    public :: load_film_coefficient, load_film_sink, load_temperature
    public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
-   public :: solves_heat, solves_mechanics
+   public :: solves_heat, solves_mechanics, least_increment
 
    integer, parameter :: analysis_static = 1    !! *STATIC: mechanics at given temperatures
    integer, parameter :: analysis_coupled = 2   !! *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
@@ -31,6 +32,9 @@ module steps
    integer, parameter :: load_film_sink = 11        !! element, face; T_h [temperature]
    integer, parameter :: load_temperature = 12      !! node, 1; *TEMPERATURE of a step without heat
    integer, parameter :: load_kind_count = 12       !! number of kinds
+
+   !> Least increment as a part of the period; shorter ones are lost in the rounding of the times.
+   real(dp), parameter :: least_increment = 1.0e-9_dp
 
    !> A load on one place, valid from this step on. The loads of a step on one place are added up.
    type :: load_type
@@ -59,7 +63,7 @@ module steps
       logical :: direct = .false.                    !! DIRECT
       real(dp) :: first_increment = 1.0_dp           !! size of the increments [time]
       real(dp) :: period = 1.0_dp                    !! length of the step [time]
-      real(dp) :: smallest_increment = 1.0e-5_dp     !! smallest increment [time]
+      real(dp) :: smallest_increment = 1.0e-5_dp     !! >= least_increment of the period [time]
       real(dp) :: largest_increment = 1.0_dp         !! largest increment [time]
       type(boundary_type), allocatable :: boundaries(:)      !! prescribed values
       type(load_type), allocatable :: loads(:)               !! loads that the step gives
@@ -71,6 +75,8 @@ module steps
       type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step
       integer :: field_frequency = 1                 !! fields at every n-th increment and the last
       integer :: contact_print_frequency = 0         !! *CONTACT PRINT likewise; 0 never
+      type(print_request_type), allocatable :: node_prints(:)     !! *NODE PRINT; or unallocated
+      type(print_request_type), allocatable :: element_prints(:)  !! *EL PRINT; or unallocated
    end type step_type
 
 contains

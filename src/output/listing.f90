@@ -1,21 +1,19 @@
 !> The print file `NAME.lst`: what was read, what is modelled and why, every increment, the zone
 !> diagrams, the verdicts.
 module listing
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_pairs, only: contact_pairs_type, never_approached
    use errors, only: error_type, set_error, status_internal
-   use kinds, only: dp
+   use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
+   use listing_prints, only: is_due, print_requested
    use listing_tables, only: print_contact_table, print_iterations, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
-   use records, only: contact_record_type, edges_kept, increment_record_type, &
-      iteration_record_type, status_open, status_stick
+   use records, only: contact_record_type, increment_record_type
    use run_summaries, only: or_blank, run_summary_type
-   use steps, only: solves_heat, solves_mechanics
    use text, only: append, string_type, to_text
    use verification, only: outcome_type
-   use zone_diagram, only: zone_counts, zone_diagram_type
+   use zone_diagram, only: zone_diagram_type
    implicit none
    private
    public :: listing_type
@@ -66,23 +64,21 @@ contains
       call print_title(self%unit, 'INCREMENTS')
    end subroutine open_listing
 
-   !> Adds the block of an accepted increment, with its *CONTACT PRINT table where that is due.
+   !> Adds the block of an accepted increment, with its PRINT tables where these are due.
    subroutine add(self, record, model, pairs)
       class(listing_type), intent(inout) :: self          !! the listing
       type(increment_record_type), intent(in) :: record   !! the increment
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       logical :: table_is_due
-      integer :: i, frequency
+      integer :: i
 
       if (record%step /= self%step) self%increment_in_step = 0
       self%step = record%step
       self%increment_in_step = self%increment_in_step + 1
       call print_increment(self%unit, record)
-      frequency = model%steps(record%step)%contact_print_frequency
-      table_is_due = .false.
-      if (frequency > 0) table_is_due = record%last_of_step .or. &
-         modulo(self%increment_in_step, frequency) == 0
+      table_is_due = is_due(model%steps(record%step)%contact_print_frequency, &
+         self%increment_in_step, record%last_of_step)
       do i = 1, size(pairs)
          call print_interface(self%unit, pairs(i)%name, record%contacts(i))
          call self%diagrams(i)%add(record, record%contacts(i)%status)
@@ -90,30 +86,34 @@ contains
       call print_balances(self%unit, record, model%steps(record%step)%analysis)
       call print_warnings(self, record)
       self%contacts = record%contacts
+      call print_requested(self%unit, record, model, self%increment_in_step)
       if (.not. table_is_due) return
       do i = 1, size(pairs)
          call print_contact_table(self%unit, pairs(i), record%contacts(i), model%mesh%node_number)
       end do
    end subroutine add
 
-   !> Names the increment that failed and prints its passes.
-   subroutine add_failure(self, reason, iterations, accepted)
-      class(listing_type), intent(inout) :: self                !! the listing
-      character(*), intent(in) :: reason                        !! what went wrong
-      type(iteration_record_type), intent(in) :: iterations(:)  !! passes of that increment
-      integer, intent(in) :: accepted                           !! increments that were accepted
+   !> Says why the run ended early; prints the attempts at an increment that failed, and the passes
+   !> of the last one.
+   subroutine add_failure(self, reason, record, accepted)
+      class(listing_type), intent(inout) :: self             !! the listing
+      character(*), intent(in) :: reason                     !! what went wrong
+      type(increment_record_type), intent(in) :: record      !! that increment; empty for none
+      integer, intent(in) :: accepted                        !! increments that were accepted
 
       self%failure = reason
       call print_title(self%unit, 'ENDED EARLY')
       call print_wrapped(self%unit, '   ', reason)
       if (accepted > 0) then
-         write (self%unit, '(3x, a, i0, a)') 'The results hold the ', accepted, &
-            ' increments before it.'
+         write (self%unit, '(3x, 3a)') 'The results hold the increments up to number ', &
+            to_text(accepted), '.'
       else
          call print_wrapped(self%unit, '   ', 'No increment was accepted: this run has no '// &
             'result file and no .sta; those of an earlier run, if there are any, were left.')
       end if
-      if (size(iterations) > 0) call print_iterations(self%unit, iterations)
+      if (allocated(record%failed)) call print_attempts(self%unit, record%failed)
+      if (allocated(record%iterations)) call print_iterations(self%unit, &
+         pack(record%iterations, record%iterations%cut_backs == record%cut_backs))
    end subroutine add_failure
 
    !> Ends the listing: verdicts, times, zone diagrams, all warnings again.
@@ -164,92 +164,6 @@ contains
       write (unit, '(2a)') 'deck      ', or_blank(run%deck_path)
       call print_wrapped(unit, 'heading   ', or_blank(model%heading))
    end subroutine print_heading
-
-   subroutine print_increment(unit, record)
-      integer, intent(in) :: unit
-      type(increment_record_type), intent(in) :: record
-      integer :: passes
-
-      write (unit, '(/, a, i0, a, i0, 4a)') 'INCREMENT ', record%increment, '   STEP ', &
-         record%step, '   TIME ', to_text(record%time), '   LOAD ', to_text(record%load)
-      if (.not. allocated(record%iterations)) return
-      passes = size(record%iterations)
-      if (passes == 0) return
-      write (unit, '(3x, 2(a, i0), 2(a, es9.2), a)') 'passes ', passes, '   cut-backs ', &
-         record%iterations(passes)%cut_backs, '   residual', record%iterations(passes)%residual, &
-         '  (floor', record%residual_floor, ')'
-      if (ieee_is_nan(record%coupling_gain)) return
-      write (unit, '(3x, 4a)') 'quasi-static coupling gain ', text_or_none(record%coupling_gain), &
-         '   largest real one ', text_or_none(record%coupling_gain_max)
-   end subroutine print_increment
-
-   subroutine print_interface(unit, name, contact)
-      integer, intent(in) :: unit
-      character(*), intent(in) :: name
-      type(contact_record_type), intent(in) :: contact
-      integer :: zones(3)
-
-      zones = zone_counts(contact%status)
-      write (unit, '(3x, a, 3(a, i0), 4a)') name, '   I ', zones(1), '   II ', zones(2), &
-         '   III ', zones(3), '   edge of contact s = ', text_or_none(contact%edge_contact), &
-         '   of stick s = ', text_or_none(contact%edge_stick)
-      write (unit, '(6x, 2(a, es14.6))', advance='no') 'normal force', contact%normal_force, &
-         '   shear force', contact%shear_force
-      if (allocated(contact%heat_flux)) then
-         write (unit, '(a, es14.6)', advance='no') '   heat rate', contact%heat_rate
-      end if
-      write (unit, '()')
-      call print_surplus(unit, 'contact', edge_count(contact%status /= status_open))
-      call print_surplus(unit, 'stick', edge_count(contact%status == status_stick))
-   end subroutine print_interface
-
-   !> Ends of zones between two pairs.
-   pure integer function edge_count(in_zone)
-      logical, intent(in) :: in_zone(:)
-
-      edge_count = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
-   end function edge_count
-
-   subroutine print_surplus(unit, zone, edges)
-      integer, intent(in) :: unit
-      character(*), intent(in) :: zone
-      integer, intent(in) :: edges
-
-      if (edges > edges_kept) write (unit, '(6x, 3a, i0, 3a, i0)') 'warning: the zones of ', &
-         zone, ' have ', edges, ' edges; edges_', zone, ' of the result file holds the first ', &
-         edges_kept
-   end subroutine print_surplus
-
-   function text_or_none(value) result(string)
-      real(dp), intent(in) :: value
-      character(:), allocatable :: string
-
-      string = 'none'
-      if (.not. ieee_is_nan(value)) string = to_text(value)
-   end function text_or_none
-
-   subroutine print_balances(unit, record, analysis)
-      integer, intent(in) :: unit
-      type(increment_record_type), intent(in) :: record
-      integer, intent(in) :: analysis
-
-      if (solves_heat(analysis)) then
-         write (unit, '(3x, 2(a, es14.6), 2(a, es9.2))') 'heat in', record%heat_in, '   out', &
-            record%heat_out, '   heat imbalance', record%heat_imbalance, '   at this instant', &
-            record%heat_imbalance_pointwise
-      end if
-      if (solves_mechanics(analysis)) then
-         write (unit, '(3x, 2(a, es9.2))') 'force imbalance', record%force_imbalance, &
-            '   contact conditions violated by', record%contact_violation
-      end if
-      associate (work => record%work)
-         if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &
-            'factored again ', work%columns_again, ' of ', work%columns_full, ' columns (', &
-            100.0_dp*work%columns_again/work%columns_full, ' %), ', work%flops_again, ' of ', &
-            work%flops_full, ' flops (', 100.0_dp*work%flops_again/max(1.0_dp, &
-            real(work%flops_full, dp)), ' %)'
-      end associate
-   end subroutine print_balances
 
    !> Prints the warnings of an increment and keeps them for the end.
    subroutine print_warnings(self, record)

@@ -32,6 +32,7 @@ module progress
    type :: deck_outcome_type
       character(:), allocatable :: path     !! deck as the command line names it
       integer :: status = status_ok         !! one of the status_* constants
+      logical :: left_out = .false.         !! whether a signal kept it from being started
       integer :: increments = 0             !! increments that were accepted
       integer :: verify_passed = 0          !! *VERIFY checks that passed
       integer :: verify_failed = 0          !! *VERIFY checks that failed
@@ -69,6 +70,7 @@ contains
       if (allocated(record%iterations)) then
          line = line//'  iterations '//to_text(size(record%iterations))
       end if
+      if (record%cut_backs > 0) line = line//'  cut-backs '//to_text(record%cut_backs)
       line = line//'  load '//to_text(record%load)
       if (sum(zones) > 0) line = line//'  I '//to_text(zones(1))//' II '//to_text(zones(2))// &
          ' III '//to_text(zones(3))

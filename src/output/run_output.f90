@@ -99,14 +99,14 @@ contains
       end do
    end subroutine print_warnings
 
-   !> Takes the increment at which the run ended without convergence.
-   subroutine fail(self, reason, iterations)
-      class(run_output_type), intent(inout) :: self             !! the output
-      character(*), intent(in) :: reason                        !! what went wrong, one sentence
-      type(iteration_record_type), intent(in) :: iterations(:)  !! its passes, in their order
+   !> Takes why the run ended early, and the increment at which it did not converge.
+   subroutine fail(self, reason, record)
+      class(run_output_type), intent(inout) :: self          !! the output
+      character(*), intent(in) :: reason                     !! what went wrong, one sentence
+      type(increment_record_type), intent(in) :: record      !! attempts and passes; empty for none
 
-      self%failed = iterations
-      call self%listing%add_failure(reason, iterations, self%results%accepted)
+      if (allocated(record%iterations)) self%failed = record%iterations
+      call self%listing%add_failure(reason, record, self%results%accepted)
    end subroutine fail
 
    !> Ends the output: publishes what is left, then closes the listing. `run` then holds the

@@ -58,19 +58,15 @@ contains
       class(status_file_type), intent(inout) :: self      !! the `.sta` file
       type(increment_record_type), intent(in) :: record   !! the increment
       character(line_length) :: line
-      integer :: passes, cut_backs
+      integer :: passes
       real(dp) :: residual
 
       passes = 0
-      cut_backs = 0
       residual = 0.0_dp
       if (allocated(record%iterations)) passes = size(record%iterations)
-      if (passes > 0) then
-         cut_backs = record%iterations(passes)%cut_backs
-         residual = record%iterations(passes)%residual
-      end if
+      if (passes > 0) residual = record%iterations(passes)%residual
       write (line, '(i0,t12,i4,2es16.8,i12,i11,es12.3,2es11.2)') record%increment, record%step, &
-         record%time, record%load, passes, cut_backs, residual, record%heat_imbalance, &
+         record%time, record%load, passes, record%cut_backs, residual, record%heat_imbalance, &
          record%force_imbalance
       call add_line(self, line)
    end subroutine add_increment

@@ -43,6 +43,7 @@ contains
             noise*maxval(abs(operators%thermal%matrix%value))*maxval(abs(next%temperature)), &
             tiny(1.0_dp))
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
+         record%fields%external_heat = record%fields%reaction_heat + heat
          residual = heat_residual(conducted, heat, operators%pairs, weight*next%omega*next%jump)
          record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, scale)
          associate (whole => scheme%a(1) + scheme%b(1))

@@ -1,68 +1,68 @@
-!> The instants at which increments end.
+!> The instants at which increments end. Numbers in, numbers out.
 module increment_instants
    use kinds, only: dp
-   use load_courses, only: step_clock_type
-   use model, only: model_type
-   use steps, only: step_type
    implicit none
    private
-   public :: next_instant, step_is_over
+   public :: next_end, cut_size, grown_size, is_smallest
 
-   real(dp), parameter :: remainder = 1.0e-6_dp !! part of an increment too small for one
+   real(dp), parameter :: remainder = 1.0e-6_dp   !! part of an increment too small for one
+   real(dp), parameter :: rounding = 1.0e-13_dp   !! of the period: what sums of increments lose
+   real(dp), parameter :: cut = 0.25_dp           !! part of a failed increment that is tried next
+   real(dp), parameter :: growth = 2.0_dp         !! of increments after one that did not fail
+   real(dp), parameter :: hardly_longer = 1.001_dp !! factor that makes no longer increment
 
 contains
 
-   !> Whether a step is solved to its end.
-   pure logical function step_is_over(step, step_time)
-      type(step_type), intent(in) :: step      !! the step
-      real(dp), intent(in) :: step_time        !! time since its start [time]
-
-      step_is_over = step_time >= step%period - remainder*step%first_increment
-   end function step_is_over
-
    !> The end of the next increment: the next multiple of the first increment, reckoned and not
-   !> added up, or without DIRECT an earlier instant on which the step must land.
-   pure function next_instant(model, step, step_start, step_time) result(clock)
-      type(model_type), intent(in) :: model    !! the model
-      type(step_type), intent(in) :: step      !! its present step
-      real(dp), intent(in) :: step_start       !! total time at the start of the step [time]
-      real(dp), intent(in) :: step_time        !! time since then, of the last increment [time]
-      type(step_clock_type) :: clock           !! the instant
-      real(dp) :: least, offset
-      integer :: i, k
+   !> added up, or an earlier instant on which the step must land; short of these where increments
+   !> were cut back. A remainder too small for an increment goes to the one before it.
+   pure function next_end(step_time, size_allowed, first, period, landings) result(ending)
+      real(dp), intent(in) :: step_time      !! end of the last increment [time]
+      real(dp), intent(in) :: size_allowed   !! largest size of the next one [time]
+      real(dp), intent(in) :: first          !! first increment [time]
+      real(dp), intent(in) :: period         !! length of the step [time]
+      real(dp), intent(in) :: landings(:)    !! (n) instants on which it must land [time]
+      real(dp) :: ending                     !! all from the start of the step [time]
+      real(dp) :: least, target
+      integer :: i
 
-      least = step_time + remainder*step%first_increment
-      clock%step_time = (floor(least/step%first_increment) + 1)*step%first_increment
-      if (.not. step%direct) then
-         do i = 1, size(model%verifications)
-            if (model%verifications(i)%at_last) cycle
-            clock%step_time = earlier(clock%step_time, least, &
-               model%verifications(i)%when - step_start)
+      associate (tolerance => max(remainder*size_allowed, rounding*period))
+         least = step_time + tolerance
+         target = (floor(least/first) + 1)*first
+         do i = 1, size(landings)
+            if (landings(i) > least .and. landings(i) < target) target = landings(i)
          end do
-         do i = 1, size(model%amplitudes)
-            associate (curve => model%amplitudes(i))
-               offset = merge(step_start, 0.0_dp, curve%total_time)
-               do k = 1, size(curve%times)
-                  clock%step_time = earlier(clock%step_time, least, curve%times(k) - offset)
-               end do
-            end associate
-         end do
-      end if
-      if (clock%step_time > step%period - remainder*step%first_increment) then
-         clock%step_time = step%period
-      end if
-      clock%period = step%period
-      clock%total_time = step_start + clock%step_time
-      clock%ramped = step%ramped
-   end function next_instant
+         if (target > period - tolerance) target = period
+         ending = step_time + size_allowed
+         if (target <= ending + tolerance) ending = target
+      end associate
+   end function next_end
 
-   !> The earlier of an instant and another one that lies behind the least.
-   pure function earlier(instant, least, other) result(first)
-      real(dp), intent(in) :: instant, least, other
-      real(dp) :: first
+   !> Size of the increment that is tried after one that failed.
+   elemental function cut_size(failed, smallest) result(next)
+      real(dp), intent(in) :: failed     !! size that failed [time]
+      real(dp), intent(in) :: smallest   !! smallest size [time]
+      real(dp) :: next                   !! shorter by a good deal, but not below it [time]
 
-      first = instant
-      if (other > least .and. other < instant) first = other
-   end function earlier
+      next = max(cut*failed, smallest)
+   end function cut_size
+
+   !> Size of the increment after one that converged at its first attempt.
+   elemental function grown_size(converged, first) result(next)
+      real(dp), intent(in) :: converged  !! largest size allowed to that one [time]
+      real(dp), intent(in) :: first      !! first increment, the longest of all [time]
+      real(dp) :: next                   !! largest size of the next one [time]
+
+      next = min(growth*converged, first)
+   end function grown_size
+
+   !> Whether an increment is so small that it is not cut back any more.
+   elemental function is_smallest(failed, smallest)
+      real(dp), intent(in) :: failed     !! size that failed [time]
+      real(dp), intent(in) :: smallest   !! smallest size [time]
+      logical :: is_smallest             !! whether it is the smallest
+
+      is_smallest = failed <= hardly_longer*smallest
+   end function is_smallest
 
 end module increment_instants

@@ -5,6 +5,7 @@ module increment_records
    use balances, only: contact_violation, force_residual, imbalance
    use contact_operator, only: kept_contact, thermal_forces
    use contact_system, only: contact_state_type, contact_system_type
+   use element_points, only: points_of_elements
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
    use heat_balance, only: balance_heat
    use interface_operators, only: interface_operators_type
@@ -59,6 +60,8 @@ contains
          record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
          record%fields%stress = next%stress
          record%fields%reaction = next%reaction
+         record%fields%external_force = next%reaction + reshape(next%force_load, &
+            shape(next%reaction))
       end if
       if (solves_heat(step%analysis)) then
          record%fields%heat_flux = recover_heat_flux(model%mesh, model%sections, &
@@ -70,6 +73,9 @@ contains
          record%heat_imbalance = record%heat_in
          record%heat_imbalance_pointwise = record%heat_in
          record%contacts%heat_rate = record%heat_in
+      end if
+      if (allocated(step%element_prints)) then
+         record%element_points = points_of_elements(model, step, next)
       end if
    end subroutine make_record
 
@@ -175,6 +181,7 @@ contains
       next%stress = recover_stress(model%mesh, model%sections, model%materials, &
          model%orientations, points, reshape(next%displacement, [2, size(next%temperature)]), &
          next%temperature - model%initial_temperature)
+      next%stress_temperature = next%temperature
       length = max(maxval(abs(next%displacement)), tiny(1.0_dp))
       if (size(operators%pairs%initial_gap) > 0) then
          length = max(length, noise*maxval(abs(operators%pairs%initial_gap)))

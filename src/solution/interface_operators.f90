@@ -1,14 +1,17 @@
 !> The bodies reduced once to their contact unknowns: everything that the fixed-point iteration
 !> needs, on the pairs alone.
 module interface_operators
+   use bodies, only: bodies_on_axis
    use conductance_laws, only: conductance_law_type
    use contact_pairs, only: contact_pairs_type, make_pairs
    use contact_system, only: contact_system_type
+   use dense, only: column_space
    use equation_numbering, only: make_map
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use model, only: model_type
+   use rigid_motions, only: unsupported_motions
    use ring_links, only: node_stiffness, ring_give
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
@@ -40,6 +43,7 @@ module interface_operators
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       type(contact_system_type) :: contact                    !! the partial solution of (2.4)
+      real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
       integer, allocatable :: jump_place(:) !! (m) place of the jump on the tail, 0 where held
       !> (mechanical tail, thermal tail) condensed mechanical load per jump; formed where coupled.
       real(dp), allocatable :: jump_load(:, :)
@@ -134,7 +138,11 @@ contains
       real(dp) :: frame(2, 2, size(self%pairs%slave)), scalar(1, 1, size(self%pairs%slave))
       logical :: on_tail(2, size(self%pairs%slave))
 
-      if (mechanics) call align_frames(self%pairs, held)
+      if (mechanics) then
+         call align_frames(self%pairs, held)
+         call unsupported_motions(model%mesh%coordinates, model%mesh%node_body, &
+            bodies_on_axis(model%mesh), held, self%rigid)
+      end if
       associate (pairs => self%pairs, used => model%mesh%node_body > 0)
          frame(:, 1, :) = pairs%normal
          frame(:, 2, :) = pairs%tangent
@@ -265,12 +273,41 @@ contains
          contact%tangent(:) = map%tail_index(map%relative(2, :))
       end associate
       contact%schur = self%mechanical%solver%schur_complement()
+      call set_motions(self, contact)
       allocate (contact%closing(size(self%pairs%slave)))
       contact%initial_gap = self%pairs%initial_gap
       contact%friction = self%pairs%friction
       call set_rings(self, contact)
       self%contact = contact
    end subroutine set_contact
+
+   !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
+   !> force; what S makes of them is rounding, and is taken from it.
+   subroutine set_motions(self, contact)
+      class(interface_operators_type), intent(in) :: self
+      type(contact_system_type), intent(inout) :: contact
+      real(dp), allocatable :: forces(:, :), on_tail(:, :), relative(:, :)
+      integer :: k, m, s
+
+      allocate (on_tail(size(contact%schur, 1), size(self%rigid, 2)), source=0.0_dp)
+      do k = 1, size(self%pairs%slave)
+         s = 2*self%pairs%slave(k)
+         m = 2*self%pairs%master(k)
+         relative = self%rigid(s - 1:s, :) - self%rigid(m - 1:m, :)
+         on_tail(contact%normal(k), :) = matmul(self%pairs%normal(:, k), relative)
+         if (contact%tangent(k) > 0) then
+            on_tail(contact%tangent(k), :) = matmul(self%pairs%tangent(:, k), relative)
+         end if
+      end do
+      contact%motion = column_space(on_tail)
+      if (size(contact%motion, 2) == 0) return
+      associate (z => contact%motion)
+         forces = matmul(contact%schur, z)
+         contact%schur = contact%schur - matmul(forces, transpose(z)) - &
+            matmul(z, transpose(forces)) + &
+            matmul(z, matmul(matmul(transpose(z), forces), transpose(z)))
+      end associate
+   end subroutine set_motions
 
    !> The links of the rings, and how much their stuck pairs give.
    subroutine set_rings(self, contact)

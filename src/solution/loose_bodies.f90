@@ -1,7 +1,7 @@
 !> Bodies that nothing holds and bodies whose temperature nothing determines, in words.
 module loose_bodies
+   use bodies, only: bodies_on_axis
    use conductance_laws, only: law_none
-   use element_kinds, only: axisymmetric
    use interface_operators, only: pair_row_type
    use kinds, only: dp
    use model, only: model_type
@@ -70,11 +70,8 @@ contains
       integer, intent(in) :: status(:)
       type(free_motion_type), allocatable, intent(out) :: motions(:)
       type(contact_tie_type) :: ties(2*size(status))
-      logical :: on_axis(model%mesh%body_count)
       integer :: k, n
 
-      on_axis = .false.
-      on_axis(model%mesh%element_body) = model%mesh%element_plane == axisymmetric
       n = 0
       do k = 1, size(status)
          if (status(k) == status_open) cycle
@@ -84,8 +81,8 @@ contains
          n = n + 1
          ties(n) = contact_tie_type(pairs%slave(k), pairs%master(k), pairs%tangent(:, k))
       end do
-      call find_free_motions(model%mesh%coordinates, model%mesh%node_body, on_axis, held, &
-         ties(:n), motions)
+      call find_free_motions(model%mesh%coordinates, model%mesh%node_body, &
+         bodies_on_axis(model%mesh), held, ties(:n), motions)
    end subroutine free_motions
 
    !> Bodies whose temperature nothing can ever determine: pairs count as conducting where one side

@@ -5,8 +5,10 @@ module records
    use text, only: string_type
    implicit none
    private
+   public :: element_points_record_type
    public :: increment_record_type, contact_record_type, iteration_record_type
-   public :: field_record_type, work_record_type
+   public :: field_record_type, work_record_type, attempt_record_type
+   public :: add_attempts, note_failure
    public :: status_open, status_slip, status_stick, edges_kept
 
    integer, parameter :: status_open = 0    !! gap, zone I
@@ -48,6 +50,18 @@ module records
       integer :: cut_backs = 0           !! cut-backs of the increment so far
    end type iteration_record_type
 
+   !> Integration points of the elements of a set (*EL PRINT), along x and y or the axes of the
+   !> section's orientation.
+   type :: element_points_record_type
+      integer, allocatable :: element(:)          !! (points) element index
+      integer, allocatable :: point(:)            !! (points) number of the point in its element
+      real(dp), allocatable :: position(:, :)     !! (2, points) x, y [length]
+      !> (4, points) 11, 22, 33, 12; unallocated before mechanics is solved [stress]
+      real(dp), allocatable :: stress(:, :)
+      !> (2, points) along 1, 2; unallocated without heat [power/length^2]
+      real(dp), allocatable :: heat_flux(:, :)
+   end type element_points_record_type
+
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and
    !> section.
    type :: field_record_type
@@ -58,8 +72,12 @@ module records
       !> (2, points) x, y; unallocated without heat [power/length^2]
       real(dp), allocatable :: heat_flux(:, :)
       real(dp), allocatable :: reaction(:, :)       !! (2, nodes) at supports, else 0 [force]
+      !> (2, nodes) reaction and applied forces, without those of the contacts [force]
+      real(dp), allocatable :: external_force(:, :)
       !> (nodes) heat that enters at prescribed temperatures; unallocated without heat [power]
       real(dp), allocatable :: reaction_heat(:)
+      !> (nodes) the same with loads and films, without what crosses the contacts [power]
+      real(dp), allocatable :: external_heat(:)
    end type field_record_type
 
    !> Work of the partial re-factorisation of (3.4) in one increment.
@@ -69,6 +87,13 @@ module records
       integer(long) :: flops_again = 0       !! operations of the columns factored again
       integer(long) :: flops_full = 0        !! operations of as many full factorisations
    end type work_record_type
+
+   !> An attempt at an increment that failed.
+   type :: attempt_record_type
+      real(dp) :: time = 0.0_dp              !! total time at which it would have ended [time]
+      real(dp) :: increment_size = 0.0_dp    !! its size [time]
+      character(:), allocatable :: reason    !! what failed
+   end type attempt_record_type
 
    !> One accepted increment.
    type :: increment_record_type
@@ -92,11 +117,57 @@ module records
       !> where they are kept.
       real(dp) :: contact_violation = 0.0_dp
       type(contact_record_type), allocatable :: contacts(:)     !! one an interface
-      type(iteration_record_type), allocatable :: iterations(:) !! unallocated without coupling
+      integer :: cut_backs = 0               !! attempts at it that failed before
+      type(attempt_record_type), allocatable :: failed(:)       !! these; unallocated for none
+      !> Passes of all attempts in their order; unallocated without coupling.
+      type(iteration_record_type), allocatable :: iterations(:)
       type(field_record_type) :: fields                         !! fields
+      !> One an *EL PRINT of the step; unallocated for none.
+      type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work                            !! re-factorisation
       type(string_type), allocatable :: notes(:)                !! unallocated for none
       type(string_type), allocatable :: warnings(:)             !! unallocated for none
    end type increment_record_type
+
+contains
+
+   !> Puts the attempts at an increment that failed, with their passes and their work, before those
+   !> of the last one.
+   pure subroutine add_attempts(before, record)
+      type(increment_record_type), intent(in) :: before      !! what came of the attempts before
+      type(increment_record_type), intent(inout) :: record   !! what came of the last one
+
+      if (allocated(record%iterations)) record%iterations%cut_backs = record%cut_backs
+      if (allocated(before%failed)) record%failed = before%failed
+      if (allocated(before%iterations)) then
+         if (allocated(record%iterations)) then
+            record%iterations = [before%iterations, record%iterations]
+         else
+            record%iterations = before%iterations
+         end if
+      end if
+      record%work = work_record_type(record%work%columns_again + before%work%columns_again, &
+         record%work%columns_full + before%work%columns_full, &
+         record%work%flops_again + before%work%flops_again, &
+         record%work%flops_full + before%work%flops_full)
+   end subroutine add_attempts
+
+   !> Notes that the last attempt at an increment failed.
+   pure subroutine note_failure(record, increment_size, reason)
+      type(increment_record_type), intent(inout) :: record   !! the increment
+      real(dp), intent(in) :: increment_size                 !! size of the attempt [time]
+      character(*), intent(in) :: reason                     !! what failed
+      type(attempt_record_type), allocatable :: more(:)
+      integer :: n
+
+      n = 0
+      if (allocated(record%failed)) n = size(record%failed)
+      allocate (more(n + 1))
+      if (n > 0) more(:n) = record%failed
+      more(n + 1)%time = record%time
+      more(n + 1)%increment_size = increment_size
+      more(n + 1)%reason = reason
+      call move_alloc(more, record%failed)
+   end subroutine note_failure
 
 end module records

@@ -7,14 +7,13 @@
 !> form, so that a motion names as few bodies as possible. Turns count by the displacement that they
 !> give at the farthest node of the body.
 module rigid_motions
-   use blas_lapack, only: dgesvd
+   use dense, only: null_space
    use kinds, only: dp
    use text, only: to_text
    implicit none
    private
-   public :: contact_tie_type, free_motion_type, find_free_motions
+   public :: contact_tie_type, free_motion_type, find_free_motions, unsupported_motions
 
-   real(dp), parameter :: rank_tolerance = 1.0e-9_dp !! of the largest singular value
    real(dp), parameter :: nothing = 1.0e-6_dp        !! component of a motion that counts as none
 
    !> What a contact holds: two nodes have one displacement along a direction.
@@ -49,11 +48,56 @@ contains
       type(contact_tie_type), intent(in) :: ties(:)   !! what the contacts hold
       type(free_motion_type), allocatable, intent(out) :: motions(:) !! none where all is held
       type(rigid_bodies_type) :: bodies
-      real(dp), allocatable :: rows(:, :), basis(:, :)
-      integer :: body, c, i, n, node
+      real(dp), allocatable :: basis(:, :)
+      integer :: i
 
       bodies = measure(coordinates, node_body, size(on_axis))
-      allocate (rows(count(held) + size(ties) + 2*count(on_axis), 3*size(on_axis)), source=0.0_dp)
+      basis = null_space(conditions(bodies, coordinates, node_body, on_axis, held, ties))
+      call bring_to_echelon(basis)
+      allocate (motions(size(basis, 2)))
+      do i = 1, size(motions)
+         motions(i) = motion_of(bodies, reshape(basis(:, i), [3, size(on_axis)]))
+      end do
+   end subroutine find_free_motions
+
+   !> Displacements of the nodes in the motions that the supports alone leave free.
+   subroutine unsupported_motions(coordinates, node_body, on_axis, held, fields)
+      real(dp), intent(in) :: coordinates(:, :)       !! (2, nodes) x and y [length]
+      integer, intent(in) :: node_body(:)             !! (nodes) body, or 0
+      logical, intent(in) :: on_axis(:)               !! (bodies) axisymmetric: along y only
+      logical, intent(in) :: held(:)                  !! (2 nodes) prescribed displacements
+      real(dp), allocatable, intent(out) :: fields(:, :)   !! (2 nodes, motions)
+      type(contact_tie_type) :: no_ties(0)
+      type(rigid_bodies_type) :: bodies
+      real(dp), allocatable :: basis(:, :)
+      integer :: c, node
+
+      bodies = measure(coordinates, node_body, size(on_axis))
+      basis = null_space(conditions(bodies, coordinates, node_body, on_axis, held, no_ties))
+      allocate (fields(size(held), size(basis, 2)), source=0.0_dp)
+      do node = 1, size(node_body)
+         if (node_body(node) == 0) cycle
+         associate (b => node_body(node))
+            do c = 1, 2
+               fields(2*(node - 1) + c, :) = matmul(at_point(bodies, b, coordinates(:, node), &
+                  axis(c)), basis(3*b - 2:3*b, :))
+            end do
+         end associate
+      end do
+   end subroutine unsupported_motions
+
+   !> Supports, axes and ties as conditions on the rigid motions, a row each.
+   pure function conditions(bodies, coordinates, node_body, on_axis, held, ties) result(rows)
+      type(rigid_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: coordinates(:, :)
+      integer, intent(in) :: node_body(:)
+      logical, intent(in) :: on_axis(:)
+      logical, intent(in) :: held(:)
+      type(contact_tie_type), intent(in) :: ties(:)
+      real(dp) :: rows(count(held) + size(ties) + 2*count(on_axis), 3*size(on_axis))
+      integer :: body, c, i, n, node
+
+      rows = 0.0_dp
       n = 0
       do body = 1, size(on_axis)
          if (.not. on_axis(body)) cycle
@@ -65,35 +109,48 @@ contains
          do c = 1, 2
             if (.not. held(2*(node - 1) + c)) cycle
             n = n + 1
-            call enter(node, merge([1.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], c == 1))
+            call enter(rows(n, :), node, axis(c))
          end do
       end do
       do i = 1, size(ties)
          n = n + 1
-         call enter(ties(i)%slave, ties(i)%direction)
-         call enter(ties(i)%master, -ties(i)%direction)
-      end do
-      basis = null_space(rows)
-      call bring_to_echelon(basis)
-      allocate (motions(size(basis, 2)))
-      do i = 1, size(motions)
-         motions(i) = motion_of(bodies, reshape(basis(:, i), [3, size(on_axis)]))
+         call enter(rows(n, :), ties(i)%slave, ties(i)%direction)
+         call enter(rows(n, :), ties(i)%master, -ties(i)%direction)
       end do
    contains
-      !> Adds the displacement of a node along a direction to the last row.
-      subroutine enter(at, direction)
-         integer, intent(in) :: at
+      !> Adds the displacement of a node along a direction to a row.
+      pure subroutine enter(row, node, direction)
+         real(dp), intent(inout) :: row(:)
+         integer, intent(in) :: node
          real(dp), intent(in) :: direction(2)
-         real(dp) :: arm(2)
 
-         if (node_body(at) == 0) return
-         associate (b => node_body(at))
-            arm = (coordinates(:, at) - bodies%middle(:, b))/bodies%extent(b)
-            rows(n, 3*b - 2:3*b) = rows(n, 3*b - 2:3*b) + &
-               [direction, direction(2)*arm(1) - direction(1)*arm(2)]
+         if (node_body(node) == 0) return
+         associate (b => node_body(node))
+            row(3*b - 2:3*b) = row(3*b - 2:3*b) + &
+               at_point(bodies, b, coordinates(:, node), direction)
          end associate
       end subroutine enter
-   end subroutine find_free_motions
+   end function conditions
+
+   !> Displacement along a direction by unit shifts and the unit turn of a body.
+   pure function at_point(bodies, body, place, direction) result(displacement)
+      type(rigid_bodies_type), intent(in) :: bodies
+      integer, intent(in) :: body
+      real(dp), intent(in) :: place(2), direction(2)
+      real(dp) :: displacement(3)
+      real(dp) :: arm(2)
+
+      arm = (place - bodies%middle(:, body))/bodies%extent(body)
+      displacement = [direction, direction(2)*arm(1) - direction(1)*arm(2)]
+   end function at_point
+
+   !> Unit vector along x or y.
+   pure function axis(c) result(direction)
+      integer, intent(in) :: c
+      real(dp) :: direction(2)
+
+      direction = merge([1.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], c == 1)
+   end function axis
 
    !> Middle and extent of all bodies.
    pure function measure(coordinates, node_body, count) result(bodies)
@@ -121,28 +178,6 @@ contains
          end associate
       end do
    end function measure
-
-   !> Orthonormal basis of the vectors that all rows map to zero.
-   function null_space(rows) result(basis)
-      real(dp), intent(in) :: rows(:, :)
-      real(dp), allocatable :: basis(:, :)
-      real(dp) :: copy(max(size(rows, 1), 1), size(rows, 2)), none(1, 1), best(1)
-      real(dp) :: values(size(rows, 2)), right(size(rows, 2), size(rows, 2))
-      real(dp), allocatable :: work(:)
-      integer :: info, m, n
-
-      copy = 0.0_dp
-      copy(:size(rows, 1), :) = rows
-      m = size(copy, 1)
-      n = size(copy, 2)
-      call dgesvd('N', 'A', m, n, copy, m, values, none, 1, right, n, best, -1, info)
-      allocate (work(int(best(1))))
-      call dgesvd('N', 'A', m, n, copy, m, values, none, 1, right, n, work, size(work), info)
-      values(min(m, n) + 1:) = 0.0_dp
-      associate (rank => count(values > rank_tolerance*values(1)))
-         basis = transpose(right(rank + 1:, :))
-      end associate
-   end function null_space
 
    !> Reduced echelon form of the columns of a basis: each has a leading component of its own, 1,
    !> that the others do not have.

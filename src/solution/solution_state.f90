@@ -22,6 +22,7 @@ module solution_state
       !> (4, points) of the last increment that solved mechanics; unallocated before it [stress]
       real(dp), allocatable :: stress(:, :)
       real(dp), allocatable :: reaction(:, :)       !! (2, nodes) likewise [force]
+      real(dp), allocatable :: stress_temperature(:)  !! (nodes) that stress is of [temperature]
       real(dp), allocatable :: heat_load(:)         !! (nodes) Q of (3.3) [power]
       type(sparse_matrix_type) :: film !! (nodes, nodes) F, films beside K [power/temperature]
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]

@@ -4,6 +4,7 @@ import sys
 from itertools import pairwise
 
 from blocks import write
+from changes import note_changes
 from deck_runs import DECKS, run
 
 sys.path.insert(0, str(DECKS.parent / "reference"))
@@ -153,8 +154,9 @@ def listed(deck):
 def follows(folder, make, one, other):
     """Assert that a deck's answer follows a value of its cards: make(value) returns cards and
     checks. Each of two decks passes its own checks and fails those of the other."""
-    cards, checks = make(one)
+    (cards, checks), (other_cards, other_checks) = make(one), make(other)
+    note_changes(cards, other_cards)
     judge(folder, cards, checks, name="one")
-    other_cards, other_checks = make(other)
     judge(folder, other_cards, other_checks, name="other")
     judge(folder, cards, other_checks, status=4, name="crossed")
+    judge(folder, other_cards, checks, status=4, name="crossed-back")

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from blocks import block, solid, write
 from deck_runs import run, solve
+from physics import nodes_of
 
 XS = [0.0, 0.3, 1.0]
 UPPER, LOWER = [0.0, 0.4, 0.5], [-1.0, -0.3, 0.0]
@@ -139,3 +140,71 @@ def test_clamped_block_carries_a_push_up_to_the_friction_of_both_faces(tmp_path)
     assert sum(forces) == pytest.approx(-0.9 * limit, rel=1e-9)
     text = refuse(clamped(tmp_path / "slip.inp", 1.1 * limit), 2)
     assert "body 1 (of MIDDLE, first node 1) slides along x" in text
+
+
+def strip(thickness, columns, gap, friction, young=2e5):
+    """Return a strip that is pressed on a base; only contact holds it along y."""
+    xs = [4.0 * k / columns for k in range(columns + 1)]
+    base = solid("LOWER", 2e5, 0.3)
+    return [*block("LOWER", xs, [0.0, 1.0, 2.0], 1),
+            *block("UPPER", xs, [2.0 + gap, 2.0 + gap + thickness], 5001),
+            *solid("UPPER", young, 0.3), *base, *interaction(friction), *FACES,
+            *step(FLOOR, [] if friction else ["UPPER.LEFT, 1"],
+                  ["*DLOAD"] + [f"{5001 + k}, P3, 10." for k in range(columns)],
+                  increment="0.5, 1.")]
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("gap", [0.0, 0.01])
+@pytest.mark.parametrize(("thickness", "columns"), [(0.03, 4), (0.01, 40), (0.002, 40)])
+def test_thin_strip_lies_where_it_is_pressed(tmp_path, thickness, columns, gap, friction):
+    """Soft in bending, so that its stiffness is near to that of a body that moves as a whole."""
+    deck = write(tmp_path / "strip.inp", strip(thickness, columns, gap, friction))
+    force, gaps = read(solve(deck), "FACE", "normal_force", "gap")
+    np.testing.assert_allclose(force, 40.0, rtol=1e-9)
+    assert gaps.max() < 1e-3
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("young", [1e9, 1e11, 1e13])
+def test_stiff_block_rests_on_a_soft_one(tmp_path, young, friction):
+    deck = write(tmp_path / "stiff.inp", strip(2.0, 4, 0.0, friction, young))
+    (force,) = read(solve(deck), "FACE", "normal_force")
+    np.testing.assert_allclose(force, 40.0, rtol=1e-6)
+
+
+def test_blocks_that_slip_apart_on_both_sides_stay_where_they_are(tmp_path):
+    """The middle opens, and all closed pairs slip: a shift would meet no resistance. None is made,
+    as if a node of the middle were held, where there is no reaction."""
+    xs = [0.0, 1.0, 2.0, 3.0, 4.0]
+    upper = block("UPPER", xs, [2.0, 3.0, 4.0], 1001)
+    middle = next(n for n, place in nodes_of(upper).items() if place == (2.0, 4.0))
+    found = []
+    for name, held in (("free", []), ("held", [f"{middle}, 1"])):
+        deck = write(tmp_path / f"{name}.inp",
+                     block("LOWER", xs, [0.0, 1.0, 2.0], 1), upper,
+                     solid("LOWER", 2e5, 0.3, 1e-5, 0.05), solid("UPPER", 2e5, 0.3, 1e-5, 0.05),
+                     interaction(0.3), ["*GAP LAW, TYPE=GAS", "1.E-4, 1.E-3",
+                                        "*GAP LAW, TYPE=POWER", "0.1, 0.01, 1."], FACES,
+                     ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.5, 1.",
+                      *FLOOR, "LOWER.BOTTOM, 11, 11, 0.", "UPPER.TOP, 11, 11, 300.", *held,
+                      "*DLOAD", *(f"{1005 + k}, P3, 10." for k in range(4)), "*END STEP"])
+        found.append(read(solve(deck), "FACE", "gap", "pressure", "slip", "status"))
+    gap, pressure, slip, status = found[0]
+    assert (status[[0, -1]] == 1).all()
+    assert (status[[3, 4, 5]] == 0).all()
+    np.testing.assert_allclose(slip, -slip[::-1], rtol=0.0, atol=1e-9 * np.abs(slip).max())
+    for one, other in zip((gap, pressure, slip), found[1], strict=False):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-9 * np.abs(other).max())
+
+
+def test_block_above_the_floor_stays_there_without_a_load(tmp_path):
+    deck = write(tmp_path / "hover.inp", RAISED, SOLIDS, interaction(MU), FACES,
+                 step(FLOOR, increment="0.5, 1."))
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    assert process.returncode == 0
+    assert process.stderr.count("the least motion is taken where nothing drives or holds one") == 1
+    assert "along y" in process.stderr
+    gap, status = read(deck.with_suffix(".vtkhdf"), "FACE", "gap", "status")
+    np.testing.assert_allclose(gap, 0.02, rtol=1e-12)
+    assert (status == 0).all()

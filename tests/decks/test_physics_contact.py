@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from physics import follows, judge, material, mesh, nodes_of
 
+import conduction
 import lame
 
 XS = [0.0, 0.4, 1.0]
@@ -37,6 +38,7 @@ def stack(clearance, down):
 
 @pytest.mark.parametrize(("one", "other"), [(0.004, 0.005), (0.02, 0.03), (-0.003, -0.002),
                                             (0.0, 0.001), (0.012, 0.008)])
+@pytest.mark.changes("CLEARANCE, VALUE")
 def test_clearance_takes_the_place_of_the_gap(tmp_path, one, other):
     """Closed, open, overlapping, touching, and one of each; the blocks approach by 0.01."""
     follows(tmp_path, lambda clearance: stack(clearance, 0.01), one, other)
@@ -85,6 +87,7 @@ def fitted(plane, kinds=("CAX8", "CAX8")):
 
 
 @pytest.mark.parametrize("plane", ["stress", "strain"])
+@pytest.mark.changes("CLEARANCE, VALUE")
 def test_press_fit_about_an_axis(tmp_path, plane):
     """Ends free: Lame in plane stress; ends held: in plane strain."""
     follows(tmp_path, fitted(plane), 0.01, 0.012)
@@ -110,6 +113,7 @@ def rings(kind, angles, closed):
 @pytest.mark.parametrize(("angles", "closed"), [(np.linspace(0.0, 90.0, 9), False),
                                                 (np.linspace(0.0, 360.0, 33), True)])
 @pytest.mark.parametrize("family", ["CPE8", "CPS8"])
+@pytest.mark.changes("CLEARANCE, VALUE")
 def test_hub_in_a_rim(tmp_path, family, angles, closed):
     """A quarter, and the whole with a contact surface that is closed; sides are parabolas."""
     cards, held = rings(family, list(angles), closed)
@@ -122,8 +126,8 @@ def test_hub_in_a_rim(tmp_path, family, angles, closed):
                 "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE", "HUB.TOP, RIM.BOTTOM",
                 f"*CLEARANCE, MASTER=RIM.BOTTOM, SLAVE=HUB.TOP, VALUE={-overlap!r}",
                 *static("*BOUNDARY", *held)]
-        return deck, [("pressure", "FACE", "LAST", pressure, 5e-3),
-                      ("normal_force", "FACE", "LAST", pressure * length, 1e-3),
+        return deck, [("pressure", "FACE", "LAST", pressure, 2.5e-3),
+                      ("normal_force", "FACE", "LAST", pressure * length, 1e-5),
                       ("status", "FACE", "LAST", 1.0, 0.0, "ABS")]
 
     follows(tmp_path, make, 0.01, 0.012)
@@ -210,8 +214,6 @@ CONDUCTING = {"UPPER": 3.0, "MIDDLE": 0.5, "LOWER": 2.0}
 
 def layered(conductances):
     """Return a stack of three blocks with two interfaces, hot at the top, and its heat."""
-    import conduction
-
     omega, other = conductances
     bodies = [*mesh("UPPER", XS, [0.5, 1.0]), *mesh("MIDDLE", XS, [0.0, 0.5], first=101),
               *mesh("LOWER", XS, [-1.0, 0.0], first=201)]
@@ -240,33 +242,95 @@ def layered(conductances):
 
 
 @pytest.mark.parametrize("other", [(0.8, 0.2), (0.7, 0.3)])
+@pytest.mark.changes("GAP LAW")
 def test_two_interfaces_have_conductances_of_their_own(tmp_path, other):
     follows(tmp_path, layered, (0.7, 0.2), other)
 
 
-def sheared(frictions):
-    """Return a stack of three blocks, the top pushed aside: the weaker interface slips.
+HEIGHTS, MODULI = {"UPPER": 0.5, "MIDDLE": 0.3, "LOWER": 0.2}, (1000.0, 700.0, 1500.0)
+PRESSED, BACK_AND_FORTH = 6.0, (0.004, 0.003)
 
-    Forces on the whole: the shear of both interfaces is that of the weaker one, mu p. Sides are
-    free, so that only the sums are known.
+
+def sheared(values):
+    """Return a stack of three blocks, pressed, hot at the top and pushed aside and back, and its
+    uniform states.
+
+    With nu = 0, expansion along y only and the complementary shear on the sides every block is in
+    uniform shear t. The top moves by t sum(h/G) until t is mu p on the weaker interface, then that
+    one slips by all the rest. On the way back t goes from mu p to -mu p first.
     """
-    first, second = frictions
-    bodies = [*mesh("UPPER", XS, [0.2, 0.3]), *mesh("MIDDLE", XS, [0.1, 0.2], first=101),
-              *mesh("LOWER", XS, [0.0, 0.1], first=201)]
-    for name in CONDUCTING:
-        bodies += material(name, (YOUNG, 0.0))
-    deck = [*bodies, "*SURFACE INTERACTION, NAME=FIRST", "*FRICTION", f"{first!r}",
-            "*SURFACE INTERACTION, NAME=SECOND", "*FRICTION", f"{second!r}",
-            "*CONTACT PAIR, INTERACTION=FIRST, NAME=ONE", "UPPER.BOTTOM, MIDDLE.TOP",
-            "*CONTACT PAIR, INTERACTION=SECOND, NAME=TWO", "MIDDLE.BOTTOM, LOWER.TOP",
-            *static("*BOUNDARY", "LOWER.BOTTOM, 1, 2", "UPPER.TOP, 2, 2, -0.003", "UPPER.TOP, 1",
-                    times="1., 1."),
-            *static("*BOUNDARY", "UPPER.TOP, 1, 1, 0.02", times="0.1, 1.")]
-    down = 0.003 * YOUNG / 0.3
-    shear = -min(frictions) * down   # on the slave, against its motion
-    return deck, [("normal_force", "ONE", "LAST", down, 2e-2), ("shear_force", "ONE", "LAST",
-                  shear, 2e-2), ("shear_force", "TWO", "LAST", shear, 2e-2)]
+    frictions, laws = values
+    bodies, base = [], 0.0
+    for k, (name, height) in reversed(list(enumerate(HEIGHTS.items()))):
+        bodies += mesh(name, XS, [base, base + 0.4 * height, base + height], first=1 + 100 * k)
+        bodies += material(name, (MODULI[k], 0.0), (0.0, 1e-4, 0.0), CONDUCTING[name],
+                           expansion_type="ORTHO")
+        base += height
+    compliances = [2 * h / e for h, e in zip(HEIGHTS.values(), MODULI, strict=True)]
+    tops = {name: sum(compliances[k:]) for k, name in enumerate(HEIGHTS)}
+    shear = min(frictions) * PRESSED
+    weak = frictions.index(min(frictions))
+    onward, backward = BACK_AND_FORTH
+    hot, cold = 90.0, 20.0
+    omegas = [c0 + c1 * PRESSED for c0, c1 in laws]
+    flux, faces = conduction.wall(list(HEIGHTS.values()), list(CONDUCTING.values()), hot, cold,
+                                  contacts=omegas)
+    deck = bodies
+    for k, name in enumerate(("FIRST", "SECOND")):
+        deck += [f"*SURFACE INTERACTION, NAME={name}", "*FRICTION", f"{frictions[k]!r}",
+                 "*GAP LAW, TYPE=POWER", f"{laws[k][0]!r}, {laws[k][1]!r}, 1."]
+    deck += ["*CONTACT PAIR, INTERACTION=FIRST, NAME=ONE", "UPPER.BOTTOM, MIDDLE.TOP",
+             "*CONTACT PAIR, INTERACTION=SECOND, NAME=TWO", "MIDDLE.BOTTOM, LOWER.TOP",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", *(f"{name}, 0." for name in HEIGHTS)]
+    rows = []
+    turn = tops["UPPER"] * shear
+    # Time, place of the top, shear, slip of the weaker interface.
+    path = [(1, 0.0, 0.0, 0.0), (2, turn / 2, shear / 2, 0.0), (3, turn, shear, 0.0),
+            (4, turn + onward, shear, onward), (5, onward - turn, -shear, onward),
+            (6, onward - turn - backward, -shear, onward - backward)]
+    for time, top, t, slip in path:
+        deck += ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.5, 1.", "*BOUNDARY",
+                 f"UPPER.TOP, 1, 1, {top!r}"]
+        if time == 1:
+            deck += ["LOWER.BOTTOM, 1, 2", f"UPPER.TOP, 11, 11, {hot}",
+                     f"LOWER.BOTTOM, 11, 11, {cold}", "*DLOAD",
+                     *(f"{e}, P3, {PRESSED!r}" for e in (3, 4))]
+        deck += ["*DSLOAD", *(f"{name}.{side}, TRVEC, {t!r}, 0., {sign}, 0." for name in HEIGHTS
+                              for side, sign in (("RIGHT", 1.0), ("LEFT", -1.0))), "*END STEP"]
+        if time in (3, 5):
+            continue   # at the limit itself either state may hold
+        slips = [slip if k == weak else 0.0 for k in (0, 1)]
+        for k, name in enumerate(("ONE", "TWO")):
+            slides = k == weak and abs(t) == shear
+            rows += [("shear", name, time, -t, 1e-8 * shear, "ABS"),
+                     ("pressure", name, time, PRESSED, 1e-9),
+                     ("slip", name, time, slips[k], 1e-8 * onward, "ABS"),
+                     ("status", name, time, 1.0 if slides else 2.0, 0.0, "ABS"),
+                     ("shear_force", name, time, -t, 1e-8 * shear, "ABS"),
+                     ("conductance", name, time, omegas[k], 1e-9),
+                     ("heat_flux", name, time, flux, 1e-9),
+                     ("slave_temperature", name, time, faces[2 * k + 1], 1e-9),
+                     ("master_temperature", name, time, faces[2 * k + 2], 1e-9)]
+        for k, name in enumerate(HEIGHTS):
+            moved = tops[name] * t + sum(slips[k:])
+            rows += [("S12", name, time, t, 1e-8 * shear, "ABS"),
+                     ("S22", name, time, -PRESSED, 1e-9),
+                     ("U1", f"{name}.TOP", time, moved, 1e-8 * onward, "ABS")]
+    return deck, rows
 
 
-def test_two_interfaces_have_frictions_of_their_own(tmp_path):
-    follows(tmp_path, sheared, (0.1, 0.3), (0.3, 0.15))
+LAWS = (0.7, 0.1), (0.2, 0.05)
+
+
+@pytest.mark.changes("FRICTION")
+@pytest.mark.parametrize(("one", "other"), [((0.1, 0.3), (0.3, 0.1)), ((0.25, 0.2), (0.25, 0.15))])
+def test_two_interfaces_have_frictions_of_their_own(tmp_path, one, other):
+    """Stick, slip, stick on the way back, slip back."""
+    follows(tmp_path, sheared, (one, LAWS), (other, LAWS))
+
+
+@pytest.mark.parametrize(("one", "other"), [
+    (((0.1, 0.3), LAWS), ((0.1, 0.3), LAWS[::-1])),
+    (((0.1, 0.3), LAWS), ((0.1, 0.3), ((0.7, 0.1), (0.2, 0.06))))])
+def test_two_interfaces_have_laws_of_the_pressure_of_their_own(tmp_path, one, other):
+    follows(tmp_path, sheared, one, other)

@@ -1,7 +1,7 @@
 """Loads and supports of every kind on bodies whose answer is known in closed form.
 
 Each load is tested twice: its value (two decks, each passes its own checks and fails the other's)
-and its course (amplitude, OP=NEW, OP=MOD).
+and its course (amplitudes). What a later step does to it stands in test_values_steps.py.
 """
 
 import numpy as np
@@ -49,6 +49,7 @@ def top_forces(total, degree=2):
             for n, share in side_shares(BLOCK, 1, HEIGHT).items()]
 
 
+@pytest.mark.changes("CLOAD")
 def test_forces_on_nodes(tmp_path):
     follows(tmp_path, lambda p: (block(*static("*CLOAD", *top_forces(-p))),
                                  stressed([0.0, -p, 0.0])), 5.0, 5.5)
@@ -63,6 +64,7 @@ def test_forces_on_one_node_add_up(tmp_path):
     (1, "BODY.TOP, 2", (0, 1)), (2, "BODY.LEFT, 1", (1, 0)), (3, "BODY.BOTTOM, 2", (0, 1)),
     (4, "BODY.RIGHT, 1", (1, 0))])
 @pytest.mark.parametrize("kind", ["CPE3", "CPE4", "CPE6", "CPE8", "CPE8R"])
+@pytest.mark.changes("DLOAD")
 def test_pressure_on_a_face_of_an_element(tmp_path, kind, face, held, stress):
     """One rectangle; triangles have the faces of their own, found by the surface."""
     cards = mesh("BODY", [0.0, WIDTH], [0.0, HEIGHT], kind)
@@ -85,6 +87,7 @@ def test_pressure_on_a_face_of_an_element(tmp_path, kind, face, held, stress):
     follows(tmp_path, make, 4.0, -3.0)
 
 
+@pytest.mark.changes("DSLOAD")
 def test_pressure_on_a_surface(tmp_path):
     follows(tmp_path, lambda p: (block(*static("*DSLOAD", f"BODY.TOP, P, {p!r}")),
                                  stressed([0.0, -p, 0.0])), 5.0, -4.0)
@@ -96,6 +99,7 @@ def test_pressures_on_two_surfaces(tmp_path):
 
 
 @pytest.mark.parametrize("direction", [(0.0, 1.0), (0.0, -2.0)])
+@pytest.mark.changes("DSLOAD")
 def test_traction_across_a_surface(tmp_path, direction):
     """The vector is a direction: its length does not count."""
     sign = np.sign(direction[1])
@@ -104,6 +108,7 @@ def test_traction_across_a_surface(tmp_path, direction):
         stressed([0.0, sign * t, 0.0])), 5.0, 6.0)
 
 
+@pytest.mark.changes("DSLOAD")
 def test_tractions_along_surfaces_shear_the_block(tmp_path):
     """Bottom held: u_x = gamma y."""
     def make(shear):
@@ -133,18 +138,21 @@ def heavy(weight, *cards, density=None):
     return deck, rows
 
 
+@pytest.mark.changes("DLOAD")
 def test_body_force_along_y(tmp_path):
     follows(tmp_path, lambda f: heavy(-f, "*DLOAD", f"BODY, BY, {f!r}"), -2.0, 1.5)
 
 
-@pytest.mark.parametrize(("density", "other"), [((3.0, 9.81), (3.3, 9.81)),
-                                                 ((3.0, 9.81), (3.0, 9.0))])
+@pytest.mark.parametrize(("density", "other"), [
+    pytest.param((3.0, 9.81), (3.3, 9.81), marks=pytest.mark.changes("DENSITY")),
+    pytest.param((3.0, 9.81), (3.0, 9.0), marks=pytest.mark.changes("DLOAD"))])
 def test_gravity_acts_by_density(tmp_path, density, other):
     """The direction is a direction: its length does not count."""
     follows(tmp_path, lambda values: heavy(values[0] * values[1], "*DLOAD",
             f"BODY, GRAV, {values[1]!r}, 0., -1., 0.", density=values[0]), density, other)
 
 
+@pytest.mark.changes("DLOAD")
 def test_body_force_along_x(tmp_path):
     """The column lies along x."""
     modulus = rotating.oedometer(YOUNG, POISSON)
@@ -167,6 +175,7 @@ INNER, OUTER, DENSITY = 1.0, 2.0, 0.7
 
 @pytest.mark.parametrize(("plane", "inner"), [("stress", INNER), ("strain", INNER),
                                                ("strain", 0.0)])
+@pytest.mark.changes("DLOAD")
 def test_centrifugal_force(tmp_path, plane, inner):
     """Of a long cylinder between smooth ends, of one with a bore, and of a thin disc."""
     radii = list(np.linspace(inner, OUTER, 17))
@@ -192,6 +201,7 @@ def test_centrifugal_force(tmp_path, plane, inner):
     follows(tmp_path, make, 3.0, 3.2)
 
 
+@pytest.mark.changes("BOUNDARY")
 def test_prescribed_displacement(tmp_path):
     def make(down):
         strain = -down / HEIGHT
@@ -230,6 +240,7 @@ def temperatures(function, when="LAST", tolerance=1e-10):
             for n, (x, _) in nodes_of(mesh("BODY", XS, [0.0, 0.5])).items()]
 
 
+@pytest.mark.changes("BOUNDARY")
 def test_prescribed_temperatures(tmp_path):
     follows(tmp_path, lambda hot: (
         bar(*heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", f"BODY.RIGHT, 11, 11, {hot!r}")),
@@ -237,6 +248,7 @@ def test_prescribed_temperatures(tmp_path):
          ("HFL1", "BODY", "LAST", -K * (hot - 20.0) / LENGTH, 1e-10)]), 90.0, 70.0)
 
 
+@pytest.mark.changes("CFLUX")
 def test_heat_into_nodes(tmp_path):
     shares = side_shares(mesh("BODY", XS, [0.0, 0.5]), 0, LENGTH)
 
@@ -250,6 +262,7 @@ def test_heat_into_nodes(tmp_path):
 
 
 @pytest.mark.parametrize("face", [1, 2, 3, 4])
+@pytest.mark.changes("DFLUX")
 def test_flux_into_a_face(tmp_path, face):
     """One element; the opposite face is held. Positive flux goes into the body."""
     cards = mesh("BODY", [0.0, LENGTH], [0.0, HEIGHT])
@@ -266,6 +279,7 @@ def test_flux_into_a_face(tmp_path, face):
 
 
 @pytest.mark.parametrize("kind", ["CPE6", "CPE8", "CPE8R"])
+@pytest.mark.changes("DFLUX")
 def test_heat_source(tmp_path, kind):
     """The temperature is a parabola, which quadratic elements have."""
     follows(tmp_path, lambda source: (
@@ -279,6 +293,7 @@ HOT, COLD = (400.0, 3.0), (30.0, 7.0)
 
 
 @pytest.mark.parametrize("other", [((380.0, 3.0), COLD), ((400.0, 3.5), COLD)])
+@pytest.mark.changes("FILM")
 def test_films_on_both_sides_of_a_wall(tmp_path, other):
     def make(films):
         (hot, film_hot), (cold, film_cold) = films
@@ -320,6 +335,7 @@ def test_film_of_a_step_that_jumps(tmp_path):
     judge(tmp_path, deck, filmed(300.0, 4.0, (0.25, 0.5, 1.0), films=(1, 1, 1)))
 
 
+@pytest.mark.changes("FILM")
 def test_film_outside_of_a_tube(tmp_path):
     """Weights of a film are 2 pi r: heat of a source leaves whole, T outside is known."""
     inner, outer, source, film, sink = 1.0, 2.0, 5.0, 0.3, 20.0
@@ -336,6 +352,7 @@ def test_film_outside_of_a_tube(tmp_path):
     follows(tmp_path, make, film, 0.4)
 
 
+@pytest.mark.changes("BOUNDARY")
 def test_temperature_through_a_tube(tmp_path):
     radii = list(np.linspace(1.0, 2.0, 9))
     cards = mesh("BODY", radii, [0.0, 0.1], "CAX8")
@@ -351,6 +368,7 @@ def test_temperature_through_a_tube(tmp_path):
     follows(tmp_path, make, 100.0, 90.0)
 
 
+@pytest.mark.changes("BOUNDARY")
 def test_thermal_stresses_of_a_tube(tmp_path):
     """Plane strain between smooth ends; S11 radial, S33 hoop, S22 along the axis."""
     inner, outer, expansion = 1.0, 2.0, 1e-4
@@ -387,6 +405,7 @@ def held_stress(rise):
     return -YOUNG * ALPHA * rise / (1 - 2 * POISSON)
 
 
+@pytest.mark.changes("TEMPERATURE")
 def test_given_temperature(tmp_path):
     follows(tmp_path, lambda hot: (
         held_hot(*static("*TEMPERATURE", f"BODY, {hot!r}"), start=20.0),
@@ -394,6 +413,7 @@ def test_given_temperature(tmp_path):
         + [("NT", "BODY", "LAST", hot, 1e-12)]), 120.0, 100.0)
 
 
+@pytest.mark.changes("INITIAL CONDITIONS")
 def test_initial_temperature_is_the_natural_state(tmp_path):
     follows(tmp_path, lambda start: (
         held_hot(*static("*TEMPERATURE", "BODY, 120."), start=start),
@@ -445,40 +465,3 @@ def test_course_of_a_load(tmp_path, load, first, options, factors):
     judge(tmp_path, [*deck[:at], *TENT, *deck[at:]],
           [(quantity, where, time, full * f, scale, "ABS")
            for time, f in zip((0.25, 0.5, 1.0), factors, strict=True)])
-
-
-@pytest.mark.parametrize("load", LOADS)
-def test_loads_stay_with_mod_and_go_with_new(tmp_path, load):
-    """The second step brings another pressure, flux or temperature elsewhere, or nothing."""
-    step, cards, model, (quantity, where, full) = course(load)
-    keyword = cards("")[0]
-    held = {"BOUNDARY": ["BODY.LEFT, 1", "BODY.BOTTOM, 2"],
-            "TEMPERATURES": ["BODY.LEFT, 11"], "TEMPERATURE": ["BODY, 0."]}.get(load)
-    other = {"CLOAD": top_forces(0.0), "DLOAD": ["3, P3, 0.", "4, P3, 0."],
-             "DSLOAD": ["BODY.TOP, P, 0."], "DFLUX": ["2, S2, 0."],
-             "CFLUX": [f"{n}, 11, 0." for n in side_shares(mesh("BODY", XS, [0.0, 0.5]), 0,
-                                                           LENGTH)]}.get(load, held)
-    first = step(*cards(""))
-    removed = 0.0
-    if load == "BOUNDARY":   # nothing else pulls
-        quantity, where, removed = "S22", "BODY", 0.0
-        full = None
-    for option, expected in ((", OP=MOD", full), (", OP=NEW", removed)):
-        rows = held if held and option == ", OP=MOD" and load != "TEMPERATURE" else other
-        if option == ", OP=MOD":
-            rows = held if load in ("BOUNDARY", "TEMPERATURES") else None
-        second = step(f"{keyword}{option}", *rows) if rows else step()
-        checks = [] if expected is None else [(quantity, where, 2.0, expected,
-                                               1e-9 * abs(full or 1.0), "ABS")]
-        if expected is None:
-            checks = [("U2", "BODY.TOP", 2.0, 0.01, 1e-12)]
-        judge(tmp_path, model(*first, *second), checks, name=f"deck{option[-3:]}")
-
-
-def test_a_removed_pressure_makes_room_for_another(tmp_path):
-    """OP=NEW with a pressure on another side: only that one is left."""
-    first, second = static("*DSLOAD", "BODY.TOP, P, 5."), "BODY.RIGHT, P, 2."
-    judge(tmp_path, block(*first, *static("*DSLOAD, OP=NEW", second)), stressed([-2.0, 0.0, 0.0]),
-          name="new")
-    judge(tmp_path, block(*first, *static("*DSLOAD, OP=MOD", second)), stressed([-2.0, -5.0, 0.0]),
-          name="mod")

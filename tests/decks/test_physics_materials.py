@@ -48,14 +48,16 @@ def test_uniform_strain_of_an_anisotropic_body(tmp_path, family, kind, degrees):
 
 
 @pytest.mark.parametrize("constant", ["E1", "E2", "nu12", "nu13", "nu23", "G12"])
+@pytest.mark.changes("ELASTIC")
 def test_every_constant_in_the_plane_counts(tmp_path, constant):
-    """E3 scales with nu13 and nu23; G13 and G23 have no part in a plane problem."""
+    """E3, G13, G23 and the other kinds of data stand in test_values_materials.py."""
     def make(factor):
         return elastic_deck("CPE", CONSTANTS | {constant: factor * CONSTANTS[constant]})
 
     follows(tmp_path, make, 1.0, 0.8)
 
 
+@pytest.mark.changes("ORIENTATION")
 def test_orientation_turns_the_stiffness(tmp_path):
     follows(tmp_path, lambda degrees: elastic_deck("CPE", CONSTANTS, degrees=degrees), 15.0, 20.0)
 
@@ -82,6 +84,7 @@ def test_stress_of_a_heated_orthotropic_body_that_is_held(tmp_path, family, degr
 
 
 @pytest.mark.parametrize("coefficient", EXPANSION)
+@pytest.mark.changes("EXPANSION")
 def test_every_expansion_counts(tmp_path, coefficient):
     follows(tmp_path, lambda factor: heated("CPE", EXPANSION | {
         coefficient: factor * EXPANSION[coefficient]}), 1.0, 1.1)

@@ -70,6 +70,7 @@ def test_error_of_the_start_at_constant_conductance(tmp_path, scheme, analysis):
     judge(tmp_path, *amplified(scheme, analysis))
 
 
+@pytest.mark.changes("THERMAL SCHEME, TYPE")
 def test_scheme_of_the_card_is_the_one_that_runs(tmp_path):
     follows(tmp_path, lambda scheme: amplified(scheme, "coupled"), "GALERKIN", "IMPLICIT")
 

@@ -44,12 +44,11 @@ def closed_rods(gap):
     return pressure, HOT / (RESISTANCE + 1 / (touch + CLOSED_C * pressure))
 
 
-@pytest.fixture
-def deck(tmp_path):
-    """Return the deck of the rods; *PARAMETER NEARER moves the hot wall towards the cold one."""
+def write_rods(path):
+    """Write the deck of the rods; *PARAMETER NEARER moves the hot wall towards the cold one."""
     xs = [0.0, 0.02, 0.05]
     return write(
-        tmp_path / "rods.inp",
+        path,
         block("HOT", xs, [MESHED_GAP, MESHED_GAP + 0.04, MESHED_GAP + LENGTH], 1),
         block("COLD", xs, [-LENGTH, -0.04, 0.0], 101),
         solid("HOT", YOUNG, 0.0, EXPANSION, CONDUCTIVITY),
@@ -81,6 +80,12 @@ def deck(tmp_path):
         *END STEP
         """,
     )
+
+
+@pytest.fixture
+def deck(tmp_path):
+    """Return the deck of the rods."""
+    return write_rods(tmp_path / "rods.inp")
 
 
 def last(result, name):

@@ -57,3 +57,39 @@ def amplification(scheme):
     weights of the start and of the end are (1 - theta) and theta."""
     theta = {"IMPLICIT": 1.0, "GALERKIN": 2 / 3, "CRANK-NICOLSON": 1 / 2, "EXPLICIT": 1.0}[scheme]
     return -(1 - theta) / theta
+
+
+def stepped(scheme, conductances, ends, omegas, loads):
+    """Temperatures of the two faces in contact of two rods, at every instant, by eq. (3.4).
+
+    `scheme` is a1, a2, a3, b1, b2, b3, c1, c2; `conductances` are k/L of the rods, `ends` the temperatures of their far
+    ends, `omegas` the conductance of the contact and `loads` the heat into the first face, one for every instant; the
+    first instant is in equilibrium without heat at zero. Within the rods K T = 0 then stays so, and they count by k/L.
+    """
+    a1, a2, a3, b1, b2, b3, c1, c2 = scheme
+    rods, contact = np.diag(conductances), np.array([[1.0, -1.0], [-1.0, 1.0]])
+    faces = [np.zeros(2)]
+    for i in range(len(omegas) - 1):
+        now, later = omegas[i], omegas[i + 1]
+        left = a1 * rods + (a2 * now + a3 * later) * contact
+        right = -(b1 * rods + (b2 * now + b3 * later) * contact) @ faces[-1]
+        right += rods @ (a1 * np.asarray(ends[i + 1], float) + b1 * np.asarray(ends[i], float))
+        right += np.array([c1 * loads[i] + c2 * loads[i + 1], 0.0])
+        faces.append(np.linalg.solve(left, right))
+    return faces
+
+
+def stepped_with_film(scheme, conductance, ends, films, sinks):
+    """Temperatures of the end of a rod under a film, at every instant, by eq. (3.4) with the film in the place of G and
+    its sink in that of Q; from an equilibrium at zero. With c1 = 0 loads count as they are at the end, films with them.
+    """
+    a1, a2, a3, b1, b2, b3, c1, c2 = scheme
+    if c1 == 0.0:
+        a2, a3, b2, b3 = 0.0, a2 + a3, 0.0, b2 + b3
+    found = [0.0]
+    for i in range(len(films) - 1):
+        now, later = films[i], films[i + 1]
+        right = -(b1 * conductance + b2 * now + b3 * later) * found[-1]
+        right += conductance * (a1 * ends[i + 1] + b1 * ends[i]) + c1 * now * sinks[i] + c2 * later * sinks[i + 1]
+        found.append(right / (a1 * conductance + a2 * now + a3 * later))
+    return found

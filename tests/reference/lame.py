@@ -64,6 +64,20 @@ def hot_tube(r, inner, outer, inside, outside, young, poisson, expansion, plane)
     return temperature(r), radial, hoop, displacement(r, radial, hoop, young, poisson, plane, free)
 
 
+def polar_orthotropic(r, inner, outer, inside, along, across, poisson):
+    """sigma_rr, sigma_tt and u in plane stress of a ring whose moduli differ along the radius and across it, under a
+    pressure inside; poisson is the contraction across under tension along (S. G. Lekhnitskii, Anisotropic Plates,
+    section 24): u = A r^k + B r^-k with k^2 = across/along."""
+    r = np.asarray(r, float)
+    k, back = np.sqrt(across / along), poisson * across / along
+    factor = along / (1 - poisson * back)
+    radial, hoop = (lambda s, m: factor * (m + back) * s**(m - 1)), (lambda s, m: factor * across / along
+                                                                      * (1 + m * poisson) * s**(m - 1))
+    a, b = np.linalg.solve([[radial(inner, k), radial(inner, -k)], [radial(outer, k), radial(outer, -k)]],
+                           [-inside, 0.0])
+    return (a * radial(r, k) + b * radial(r, -k), a * hoop(r, k) + b * hoop(r, -k), a * r**k + b * r**-k)
+
+
 def main():
     hub, rim = (2.1e5, 0.3), (7.0e4, 0.33)
     pressure = press_fit(20.0, 40.0, 60.0, hub, rim, 0.05, "stress")

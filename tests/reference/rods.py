@@ -90,34 +90,49 @@ def table(*rows):
     return law
 
 
-def image(rods, open_law, closed_law, omega):
-    """Return U(omega): the conductance of the state that a conductance leads to."""
-    s = rods.separation(rods.flux(omega))
-    return open_law(s) if s > 0.0 else closed_law(-s / rods.compliance)
+def image(rods, open_law, closed_law):
+    """Return U of eq. (2.3): conductance -> heat -> gap or pressure -> conductance by the laws."""
+    def of(omega):
+        s = rods.separation(rods.flux(omega))
+        return open_law(s) if s > 0.0 else closed_law(-s / rods.compliance)
+
+    return of
 
 
-def gain(rods, open_law, closed_law, omega):
+def passes(u, omega, tolerance, g=0.5, constant=3, method="ZAITSEV"):
+    """Return the residuals |U(omega) - omega|/omega of the passes until one is within a tolerance:
+    eq. (4.1), PICARD, or eq. (4.2), ZAITSEV, where no tangent reaches 1."""
+    residuals, stars, images = [], [], []
+    while not residuals or residuals[-1] > tolerance:
+        stars.append(omega)
+        images.append(u(omega))
+        residuals.append(abs(images[-1] - omega) / omega)
+        if method == "ZAITSEV" and len(stars) > max(constant, 1):
+            tangent = (images[-1] - images[-2]) / (stars[-1] - stars[-2])
+            if not tangent < 1.0:
+                raise ValueError("the paper gives no g")
+            g = min(1.0 / (1.0 - tangent), 1.0)
+        omega = images[-1] if method == "PICARD" else (1.0 - g) * omega + g * images[-1]
+    return residuals
+
+
+def gain(u, omega):
     """Return U' by a central difference."""
     step = 1e-5 * omega
-    ends = [image(rods, open_law, closed_law, omega + k * step) for k in (-1, 1)]
-    return (ends[1] - ends[0]) / (2 * step)
+    return (u(omega + step) - u(omega - step)) / (2 * step)
 
 
-def solutions(rods, open_law, closed_law, count=200000):
+def solutions(u, count=200000):
     """Return the conductances of all solutions: changes of sign of U(omega) - omega between count
     conductances over all magnitudes, each narrowed down by bisection."""
-
-    def excess(omega):
-        return image(rods, open_law, closed_law, omega) - omega
-
     found = []
     omegas = [10.0 ** (-4.0 + 20.0 * k / count) for k in range(count + 1)]
     for low, high in pairwise(omegas):
-        rises = excess(low) < 0.0
-        if rises == (excess(high) < 0.0):
+        rises = u(low) < low
+        if rises == (u(high) < high):
             continue
         while low < (middle := (low + high) / 2) < high:
-            low, high = (middle, high) if (excess(middle) < 0.0) == rises else (low, middle)
+            low, high = (middle, high) if (u(middle) < middle) == rises else (low, middle)
         found.append(middle)
     return found
 

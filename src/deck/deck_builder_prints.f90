@@ -1,0 +1,144 @@
+!> *NODE PRINT and *EL PRINT -> tables of the listing.
+module deck_builder_prints
+   use card_parameters, only: choose, need_parameter, parameter_place, take_parameter
+   use card_values, only: field_place, field_text, has_field
+   use cards, only: cards_type, data_card_type, keyword_card_type
+   use deck_context, only: deck_context_type, find_set, set_names
+   use deck_report, only: deck_report_type
+   use mesh, only: mesh_type, set_type
+   use print_requests, only: append_request, print_displacement, print_force, print_heat, &
+      print_heat_flux, print_position, print_request_type, print_stress, print_temperature
+   use text, only: nearest_known, string_type, to_upper
+   implicit none
+   private
+   public :: build_print, read_frequency
+
+   character(5), parameter :: node_keys(5) = [character(5) :: 'U', 'NT', 'TS', 'RF', 'RFL']
+   integer, parameter :: node_quantities(5) = [print_displacement, print_temperature, &
+      print_temperature, print_force, print_heat]   !! of node_keys
+   character(5), parameter :: element_keys(3) = [character(5) :: 'S', 'HFL', 'COORD']
+   integer, parameter :: element_quantities(3) = [print_stress, print_heat_flux, &
+      print_position]   !! of element_keys
+
+   ! Keys of CalculiX for what this program does not compute.
+   character(5), parameter :: foreign_node_keys(15) = [character(5) :: 'PN', 'PS', 'PT', 'PSF', &
+      'PTF', 'TSF', 'TTF', 'TT', 'V', 'VF', 'MF', 'MACH', 'CP', 'DEPF', 'TURB']
+   character(5), parameter :: foreign_element_keys(14) = [character(5) :: 'SVF', 'E', 'ME', &
+      'PEEQ', 'CEEQ', 'ENER', 'SDV', 'HFLF', 'ELSE', 'ELKE', 'EVOL', 'EMAS', 'EBHE', 'CENT']
+
+contains
+
+   !> Takes *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
+   !> former steps.
+   subroutine build_print(cards, card, is_first, context, mesh, report, requests)
+      type(cards_type), intent(in) :: cards               !! the cards
+      type(keyword_card_type), intent(in) :: card         !! the keyword card
+      logical, intent(in) :: is_first                     !! first of its keyword in its step
+      type(deck_context_type), intent(in) :: context      !! whether the sets are sound
+      type(mesh_type), intent(in) :: mesh                 !! has the sets
+      type(deck_report_type), intent(inout) :: report     !! receives errors
+      type(print_request_type), allocatable, intent(inout) :: requests(:) !! receives the table
+      type(print_request_type) :: request
+      character(:), allocatable :: choice
+      integer :: j
+
+      if (is_first .and. allocated(requests)) deallocate(requests)
+      choice = 'NO'
+      if (card%name == 'NODE PRINT') then
+         call take_set(card, 'NSET', 'node', mesh%node_sets, context, report, request%set)
+         call choose(card, 'TOTALS', 'YES/NO/ONLY', '', report, choice)
+         request%each_node = choice /= 'ONLY'
+         request%totals = choice /= 'NO'
+      else
+         call take_set(card, 'ELSET', 'element', mesh%element_sets, context, report, request%set)
+         call choose(card, 'GLOBAL', 'YES/NO', '', report, choice)
+         request%local_axes = choice == 'NO'
+      end if
+      call read_frequency(card, report, request%frequency)
+      allocate(request%quantities(0))
+      do j = card%first_data, card%last_data
+         call take_quantities(card, cards%data(j), report, request%quantities)
+      end do
+      if (request%set > 0 .and. size(request%quantities) > 0) call append_request(requests, request)
+   end subroutine build_print
+
+   !> Index of the set that a parameter names; 0 after an error.
+   subroutine take_set(card, parameter, noun, sets, context, report, set)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: parameter, noun
+      type(set_type), intent(in) :: sets(:)
+      type(deck_context_type), intent(in) :: context
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: set
+      character(:), allocatable :: name
+
+      call need_parameter(card, parameter, report, name)
+      set = find_set(sets, name)
+      if (set > 0 .or. len(name) == 0 .or. .not. context%sets_sound) return
+      call report%error(parameter_place(card, parameter), 'unknown '//noun//' set '//name// &
+         nearest_known(name, set_names(sets)))
+   end subroutine take_set
+
+   !> Keys of one data card.
+   subroutine take_quantities(card, data, report, quantities)
+      type(keyword_card_type), intent(in) :: card
+      type(data_card_type), intent(in) :: data
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable, intent(inout) :: quantities(:)
+      integer :: i
+
+      do i = 1, size(data%fields)
+         if (.not. has_field(data, i)) cycle
+         if (card%name == 'NODE PRINT') then
+            call take_quantity(card, data, i, node_keys, node_quantities, foreign_node_keys, &
+               report, quantities)
+         else
+            call take_quantity(card, data, i, element_keys, element_quantities, &
+               foreign_element_keys, report, quantities)
+         end if
+      end do
+   end subroutine take_quantities
+
+   !> One key: what is not computed is passed over with a warning, what nobody knows is an error.
+   subroutine take_quantity(card, data, position, keys, meanings, foreign_keys, report, quantities)
+      type(keyword_card_type), intent(in) :: card
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position
+      character(*), intent(in) :: keys(:), foreign_keys(:)
+      integer, intent(in) :: meanings(:)
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable, intent(inout) :: quantities(:)
+      type(string_type) :: known(size(keys))
+      character(:), allocatable :: key
+      integer :: i
+
+      key = to_upper(field_text(data, position))
+      do i = 1, size(keys)
+         known(i)%value = trim(keys(i))
+         if (keys(i) /= key) cycle
+         if (.not. any(quantities == meanings(i))) quantities = [quantities, meanings(i)]
+         return
+      end do
+      if (any(foreign_keys == key)) then
+         call report%warning(field_place(data, position), key//' of *'//card%name// &
+            ' is not computed: it is not printed')
+      else
+         call report%error(field_place(data, position), 'unknown quantity '//key//' of *'// &
+            card%name//nearest_known(key, known))
+      end if
+   end subroutine take_quantity
+
+   !> FREQUENCY=n, default 1.
+   subroutine read_frequency(card, report, frequency)
+      type(keyword_card_type), intent(in) :: card       !! keyword card
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      integer, intent(inout) :: frequency               !! n, at least 0
+
+      frequency = 1
+      call take_parameter(card, 'FREQUENCY', report, frequency)
+      if (frequency >= 0) return
+      call report%error(parameter_place(card, 'FREQUENCY'), 'FREQUENCY= must not be negative')
+      frequency = 1
+   end subroutine read_frequency
+
+end module deck_builder_prints

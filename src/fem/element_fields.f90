@@ -1,0 +1,114 @@
+!> Stress and heat flux at points of an element of a mesh.
+module element_fields
+   use element_conduction, only: heat_flux_at
+   use element_elasticity, only: stress_at
+   use element_kinds, only: element_node_count
+   use kinds, only: dp
+   use materials, only: material_type, section_type
+   use mesh, only: mesh_type
+   use orientations, only: material_axes, orientation_type, strain_rotation
+   use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
+   use shape_functions, only: element_shape
+   implicit none
+   private
+   public :: element_positions, element_axes, element_stress, element_heat_flux, along_axes
+
+contains
+
+   !> Where points of an element lie.
+   pure function element_positions(mesh, element, places) result(positions)
+      type(mesh_type), intent(in) :: mesh           !! the mesh
+      integer, intent(in) :: element                !! element index
+      real(dp), intent(in) :: places(:, :)          !! (2, points) xi, eta
+      real(dp) :: positions(2, size(places, 2))     !! x, y [length]
+      integer :: g
+
+      associate (kind => mesh%element_kind(element), &
+         nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+         do g = 1, size(places, 2)
+            positions(:, g) = matmul(mesh%coordinates(:, nodes), element_shape(kind, places(:, g)))
+         end do
+      end associate
+   end function element_positions
+
+   !> Axes 1 and 2 of the material at points of an element, as columns.
+   pure function element_axes(mesh, sections, orientations, element, places) result(axes)
+      type(mesh_type), intent(in) :: mesh                   !! the mesh
+      type(section_type), intent(in) :: sections(:)         !! sections
+      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
+      integer, intent(in) :: element                        !! element index
+      real(dp), intent(in) :: places(:, :)                  !! (2, points) xi, eta
+      real(dp) :: axes(2, 2, size(places, 2))               !! unit vectors
+      real(dp) :: positions(2, size(places, 2))
+      integer :: g
+
+      positions = element_positions(mesh, element, places)
+      do g = 1, size(places, 2)
+         axes(:, :, g) = material_axes(orientations, &
+            sections(mesh%element_section(element))%orientation, positions(:, g))
+      end do
+   end function element_axes
+
+   !> Stress at points of an element along x and y, eq. (1.5).
+   pure function element_stress(mesh, sections, materials, orientations, element, places, &
+      displacement, temperature) result(stress)
+      type(mesh_type), intent(in) :: mesh                   !! the mesh
+      type(section_type), intent(in) :: sections(:)         !! sections
+      type(material_type), intent(in) :: materials(:)       !! materials
+      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
+      integer, intent(in) :: element                        !! element index
+      real(dp), intent(in) :: places(:, :)                  !! (2, points) xi, eta
+      real(dp), intent(in) :: displacement(:, :)            !! (2, nodes) [length]
+      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
+      real(dp) :: stress(4, size(places, 2))                !! xx, yy, zz, xy [stress]
+      real(dp) :: axes(2, 2, size(places, 2))
+      integer :: g
+
+      axes = element_axes(mesh, sections, orientations, element, places)
+      associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
+         material => materials(sections(mesh%element_section(element))%material), &
+         nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+         do g = 1, size(places, 2)
+            stress(:, g) = stress_at(kind, plane, mesh%coordinates(:, nodes), places(:, g), &
+               elasticity_in(plane, material, axes(:, :, g)), &
+               thermal_modulus_in(plane, material, axes(:, :, g)), displacement(:, nodes), &
+               temperature(nodes))
+         end do
+      end associate
+   end function element_stress
+
+   !> Heat flux at points of an element along x and y, eq. (1.4).
+   pure function element_heat_flux(mesh, sections, materials, orientations, element, places, &
+      temperature) result(flux)
+      type(mesh_type), intent(in) :: mesh                   !! the mesh
+      type(section_type), intent(in) :: sections(:)         !! sections
+      type(material_type), intent(in) :: materials(:)       !! materials
+      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
+      integer, intent(in) :: element                        !! element index
+      real(dp), intent(in) :: places(:, :)                  !! (2, points) xi, eta
+      real(dp), intent(in) :: temperature(:)                !! (nodes) [temperature]
+      real(dp) :: flux(2, size(places, 2))                  !! x, y [power/length^2]
+      real(dp) :: axes(2, 2, size(places, 2))
+      integer :: g
+
+      axes = element_axes(mesh, sections, orientations, element, places)
+      associate (kind => mesh%element_kind(element), &
+         material => materials(sections(mesh%element_section(element))%material), &
+         nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+         do g = 1, size(places, 2)
+            flux(:, g) = heat_flux_at(kind, mesh%coordinates(:, nodes), places(:, g), &
+               conductivity_in(material, axes(:, :, g)), temperature(nodes))
+         end do
+      end associate
+   end function element_heat_flux
+
+   !> Stresses xx, yy, zz, xy as 11, 22, 33, 12 of axes.
+   pure function along_axes(axes, stress) result(turned)
+      real(dp), intent(in) :: axes(2, 2)   !! axes 1 and 2 as columns
+      real(dp), intent(in) :: stress(4)    !! along x and y [stress]
+      real(dp) :: turned(4)                !! along the axes [stress]
+
+      turned = matmul(transpose(strain_rotation(transpose(axes))), stress)
+   end function along_axes
+
+end module element_fields

@@ -1,0 +1,46 @@
+!> Tables of nodes and of integration points that the deck asks for (*NODE PRINT, *EL PRINT).
+module print_requests
+   implicit none
+   private
+   public :: print_request_type, append_request
+   public :: print_displacement, print_temperature, print_force, print_heat
+   public :: print_stress, print_heat_flux, print_position
+
+   ! Quantities of a table, by their key in the deck.
+   integer, parameter :: print_displacement = 1   !! U: displacements of nodes
+   integer, parameter :: print_temperature = 2    !! NT: temperatures of nodes
+   integer, parameter :: print_force = 3          !! RF: external forces on nodes
+   integer, parameter :: print_heat = 4           !! RFL: external heat into nodes
+   integer, parameter :: print_stress = 5         !! S: stresses at integration points
+   integer, parameter :: print_heat_flux = 6      !! HFL: heat fluxes at integration points
+   integer, parameter :: print_position = 7       !! COORD: stands in every table
+
+   !> One card: a table of the nodes, or of the integration points of the elements, of a set.
+   type :: print_request_type
+      integer :: set = 0                     !! index into the node or element sets of the mesh
+      integer :: frequency = 1               !! every n-th increment and the last; 0 never
+      integer, allocatable :: quantities(:)  !! constants above, each once, as on the card
+      logical :: each_node = .true.          !! print_force and print_heat of every node
+      logical :: totals = .false.            !! sums of them over the set
+      !> Stress and flux along the axes of the section's orientation, else along x and y.
+      logical :: local_axes = .false.
+   end type print_request_type
+
+contains
+
+   !> Appends a request to a list.
+   subroutine append_request(list, request)
+      type(print_request_type), allocatable, intent(inout) :: list(:)  !! the list, unallocated too
+      type(print_request_type), intent(in) :: request                  !! what is appended
+      type(print_request_type), allocatable :: longer(:)
+      integer :: n
+
+      n = 0
+      if (allocated(list)) n = size(list)
+      allocate(longer(n + 1))
+      if (n > 0) longer(:n) = list
+      longer(n + 1) = request
+      call move_alloc(longer, list)
+   end subroutine append_request
+
+end module print_requests

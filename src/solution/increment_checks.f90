@@ -1,0 +1,78 @@
+!> What a solved increment must satisfy before it is accepted.
+module increment_checks
+   use errors, only: error_type, set_error, status_internal, status_no_convergence
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use loads, only: loads_type
+   use loose_bodies, only: bodies_heated_by_no_pair, bodies_held_by_no_pair
+   use model, only: model_type
+   use records, only: increment_record_type
+   use solution_state, only: solution_state_type
+   use text, only: append, to_text
+   use thermal_matrix, only: contact_diagonal
+   implicit none
+   private
+   public :: check_heat, check_violation, warn_of_choices
+
+   real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
+
+contains
+
+   !> The recovered displacements keep the contact conditions.
+   !> Error: status_internal, they do not.
+   subroutine check_violation(record, error)
+      type(increment_record_type), intent(in) :: record     !! the increment
+      type(error_type), allocatable, intent(out) :: error   !! see above
+
+      if (record%contact_violation <= sound_violation) return
+      call set_error(error, status_internal, &
+         'the recovered displacements violate the contact conditions by '// &
+         to_text(record%contact_violation))
+   end subroutine check_violation
+
+   !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
+   !> place of whatever error followed from it.
+   !> Error: there are such bodies.
+   subroutine check_heat(model, operators, loads, step, next, error)
+      type(model_type), intent(in) :: model                       !! the model
+      type(interface_operators_type), intent(in) :: operators     !! the bodies
+      type(loads_type), intent(in) :: loads                       !! loads of the increment
+      integer, intent(in) :: step                                 !! the step
+      type(solution_state_type), intent(in) :: next               !! state at its end
+      type(error_type), allocatable, intent(inout) :: error       !! see above
+      character(:), allocatable :: words
+
+      associate (pairs => operators%pairs)
+         words = bodies_heated_by_no_pair(model, pairs, loads%temperature%active, step, &
+            contact_diagonal(model%steps(step)%scheme, pairs%weight, next%omega_start, &
+            next%omega) > 0.0_dp)
+      end associate
+      if (len(words) == 0) return
+      if (allocated(error)) deallocate (error)
+      call set_error(error, status_no_convergence, words)
+   end subroutine check_heat
+
+   !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
+   !> and nothing holds, contact states of which friction allows several.
+   subroutine warn_of_choices(model, operators, loads, next, record, undecided)
+      type(model_type), intent(in) :: model                     !! the model
+      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      type(loads_type), intent(in) :: loads                     !! supports of the increment
+      type(solution_state_type), intent(in) :: next             !! state at its end
+      type(increment_record_type), intent(inout) :: record      !! receives the warning
+      character(:), allocatable, intent(inout) :: undecided     !! what was last warned of
+      character(:), allocatable :: words
+
+      words = ''
+      if (operators%contact%several) words = 'with so much friction other contact states satisfy '// &
+         'all conditions, too'
+      if (size(operators%contact%loose, 2) > 0) words = &
+         'the least motion is taken where nothing drives or holds one'// &
+         bodies_held_by_no_pair(model, operators%pairs, loads%displacement%active, &
+         next%contact%status)
+      if (words /= undecided .and. len(words) > 0) call append(record%warnings, &
+         'increment '//to_text(record%increment)//': '//words)
+      undecided = words
+   end subroutine warn_of_choices
+
+end module increment_checks

@@ -1,0 +1,148 @@
+!> Where a run stands in its steps, and how long its increments are: fixed, cut back where one fails
+!> and grown again behind it.
+module increment_control
+   use increment_instants, only: cut_size, grown_size, is_smallest, next_end
+   use kinds, only: dp
+   use load_courses, only: step_clock_type
+   use model, only: model_type
+   use steps, only: step_type
+   use text, only: to_text
+   implicit none
+   private
+   public :: increment_control_type
+
+   !> Place in the steps, and size of the next increment.
+   type :: increment_control_type
+      integer :: step = 0                     !! present step
+      integer :: increments = 0               !! increments so far, over all steps
+      integer :: increments_of_step = 0       !! increments of the present step so far
+      integer :: cut_backs = 0                !! cut-backs of the next increment so far
+      real(dp) :: step_start = 0.0_dp         !! total time at the start of the step [time]
+      real(dp) :: step_time = 0.0_dp          !! time since then [time]
+      real(dp) :: largest = 0.0_dp            !! largest size of the next increment [time]
+      !> Instants on which increments of the step land, from its start [time]
+      real(dp), allocatable :: landings(:)
+   contains
+      procedure :: enter_step
+      procedure :: step_is_over
+      procedure :: next_instant
+      procedure :: accept
+      procedure :: can_cut_back
+      procedure :: cut_back
+      procedure :: why_not_again
+   end type increment_control_type
+
+contains
+
+   !> Enters the next step.
+   pure subroutine enter_step(self, model)
+      class(increment_control_type), intent(inout) :: self   !! place in the steps
+      type(model_type), intent(in) :: model                  !! the model
+
+      if (self%step > 0) self%step_start = self%step_start + model%steps(self%step)%period
+      self%step = self%step + 1
+      self%step_time = 0.0_dp
+      self%increments_of_step = 0
+      self%cut_backs = 0
+      self%largest = model%steps(self%step)%first_increment
+      self%landings = landing_times(model, model%steps(self%step), self%step_start)
+   end subroutine enter_step
+
+   !> Times of *VERIFY cards and corners of amplitudes; with DIRECT increments land on neither.
+   pure function landing_times(model, step, step_start) result(times)
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step
+      real(dp), intent(in) :: step_start
+      real(dp), allocatable :: times(:)
+      integer :: i
+
+      allocate (times(0))
+      if (step%direct) return
+      do i = 1, size(model%verifications)
+         if (.not. model%verifications(i)%at_last) then
+            times = [times, model%verifications(i)%when - step_start]
+         end if
+      end do
+      do i = 1, size(model%amplitudes)
+         associate (curve => model%amplitudes(i))
+            times = [times, curve%times - merge(step_start, 0.0_dp, curve%total_time)]
+         end associate
+      end do
+   end function landing_times
+
+   !> Whether the present step is solved to its end.
+   pure logical function step_is_over(self, model)
+      class(increment_control_type), intent(in) :: self   !! place in the steps
+      type(model_type), intent(in) :: model               !! the model
+
+      step_is_over = self%step_time >= model%steps(self%step)%period
+   end function step_is_over
+
+   !> The end of the next increment.
+   pure function next_instant(self, model) result(clock)
+      class(increment_control_type), intent(in) :: self   !! place in the steps
+      type(model_type), intent(in) :: model               !! the model
+      type(step_clock_type) :: clock                      !! the instant
+
+      associate (step => model%steps(self%step))
+         clock%step_time = next_end(self%step_time, self%largest, step%first_increment, &
+            step%period, self%landings)
+         clock%period = step%period
+         clock%total_time = self%step_start + clock%step_time
+         clock%ramped = step%ramped
+      end associate
+   end function next_instant
+
+   !> Goes on behind an increment that converged.
+   pure subroutine accept(self, model, clock)
+      class(increment_control_type), intent(inout) :: self   !! place in the steps
+      type(model_type), intent(in) :: model                  !! the model
+      type(step_clock_type), intent(in) :: clock             !! its end
+
+      self%step_time = clock%step_time
+      self%increments = self%increments + 1
+      self%increments_of_step = self%increments_of_step + 1
+      if (self%cut_backs == 0) then
+         self%largest = grown_size(self%largest, model%steps(self%step)%first_increment)
+      end if
+      self%cut_backs = 0
+   end subroutine accept
+
+   !> Whether an increment that failed may be tried again with a smaller size.
+   pure logical function can_cut_back(self, model, failed)
+      class(increment_control_type), intent(in) :: self   !! place in the steps
+      type(model_type), intent(in) :: model               !! the model
+      real(dp), intent(in) :: failed                      !! size that failed [time]
+
+      associate (step => model%steps(self%step))
+         can_cut_back = .not. (step%direct .or. is_smallest(failed, step%smallest_increment))
+      end associate
+   end function can_cut_back
+
+   !> Makes the next attempt shorter than one that failed.
+   pure subroutine cut_back(self, model, failed)
+      class(increment_control_type), intent(inout) :: self   !! place in the steps
+      type(model_type), intent(in) :: model                  !! the model
+      real(dp), intent(in) :: failed                         !! size that failed [time]
+
+      self%cut_backs = self%cut_backs + 1
+      self%largest = cut_size(failed, model%steps(self%step)%smallest_increment)
+   end subroutine cut_back
+
+   !> Says where the run ends, and why the increment is not tried again.
+   pure function why_not_again(self, model, failed) result(words)
+      class(increment_control_type), intent(in) :: self   !! place in the steps
+      type(model_type), intent(in) :: model               !! the model
+      real(dp), intent(in) :: failed                      !! size that failed [time]
+      character(:), allocatable :: words                  !! part of a sentence
+
+      words = 'step '//to_text(self%step)//', increment size '//to_text(failed)
+      if (model%steps(self%step)%direct) then
+         words = words//', which DIRECT keeps from being cut back'
+      else
+         words = words//', the smallest one'
+         if (self%cut_backs > 0) words = words//' (cut-backs: '//to_text(self%cut_backs)//')'
+      end if
+   end function why_not_again
+
+end module increment_control

@@ -1,0 +1,40 @@
+!> The state before the first increment: nothing moved, pairs at their initial gaps.
+module initial_state
+   use contact_operator, only: law_conductance
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use model, only: model_type
+   use records, only: status_open
+   use solution_state, only: solution_state_type
+   implicit none
+   private
+   public :: make_initial_state
+
+contains
+
+   !> State before the first increment.
+   pure function make_initial_state(model, operators) result(state)
+      type(model_type), intent(in) :: model                       !! the model
+      type(interface_operators_type), intent(in) :: operators     !! the bodies, paired
+      type(solution_state_type) :: state                          !! see above
+
+      associate (m => size(operators%pairs%slave), n => size(model%mesh%node_number), &
+         contact => state%contact)
+         allocate (contact%status(m), source=status_open)
+         allocate (contact%direction(m), source=0)
+         allocate (contact%reference(m), contact%tangential(m), contact%force(m), &
+            contact%shear_force(m), state%closing(m), source=0.0_dp)
+         contact%gap = operators%pairs%initial_gap
+         state%smallest_gap = contact%gap
+         allocate (state%resting(m), source=.false.)
+         state%omega = law_conductance(operators, contact)
+         state%omega_before = state%omega
+         state%omega_start = state%omega
+         allocate (state%displacement(2*n), state%heat_load(n), source=0.0_dp)
+         state%temperature = model%initial_temperature
+         state%jump = model%initial_temperature(operators%pairs%slave) - &
+            model%initial_temperature(operators%pairs%master)
+      end associate
+   end function make_initial_state
+
+end module initial_state

@@ -1,0 +1,164 @@
+!> The bodies as a step needs them: unknowns numbered for its supports, fields reduced to the pairs.
+!> What is numbered and reduced already is kept from step to step.
+module step_reduction
+   use clock, only: wall_seconds
+   use errors, only: error_type
+   use films, only: left_films
+   use interface_operators, only: interface_operators_type, pair_row_type
+   use kinds, only: dp, long
+   use loads, only: loads_type
+   use model, only: model_type
+   use run_measures, only: run_seconds_type, run_size_type
+   use solution_state, only: solution_state_type
+   use sparse_matrix, only: sparse_matrix_type
+   use steps, only: load_temperature, solves_heat, solves_mechanics, step_type
+   use text, only: to_text
+   implicit none
+   private
+   public :: step_reduction_type, measure_steps
+
+   !> What of the bodies is numbered and reduced.
+   type :: step_reduction_type
+      private
+      logical, public :: heat_is_reduced = .false.  !! whether heat is reduced as numbered
+      logical, allocatable :: held(:)               !! (2 nodes) supports that are numbered
+      logical, allocatable :: held_temperature(:)   !! (nodes) prescribed nodes that are numbered
+      logical :: mechanics_is_reduced = .false.     !! whether mechanics is reduced as numbered
+   contains
+      procedure :: number
+      procedure :: reduce
+   end type step_reduction_type
+
+contains
+
+   !> Numbers the unknowns of a step. A field is numbered again only where it is solved and its
+   !> supports differ from those that were numbered last; only then are its factors formed again.
+   !> Error: as interface_operators' number.
+   subroutine number(self, model, step, loads, operators, error)
+      class(step_reduction_type), intent(inout) :: self          !! what is numbered
+      type(model_type), intent(in) :: model                      !! the model
+      type(step_type), intent(in) :: step                        !! the step
+      type(loads_type), intent(in) :: loads                      !! supports of the step
+      type(interface_operators_type), intent(inout) :: operators !! the bodies
+      type(error_type), allocatable, intent(out) :: error        !! see above
+      logical :: heat, mechanics
+
+      associate (held => loads%displacement%active, held_temperature => loads%temperature%active)
+         mechanics = solves_mechanics(step%analysis)
+         if (mechanics .and. allocated(self%held)) mechanics = any(self%held .neqv. held)
+         heat = solves_heat(step%analysis)
+         if (heat .and. allocated(self%held_temperature)) then
+            heat = any(self%held_temperature .neqv. held_temperature)
+         end if
+         if (mechanics) self%held = held
+         if (heat) self%held_temperature = held_temperature
+         self%mechanics_is_reduced = self%mechanics_is_reduced .and. .not. mechanics
+         self%heat_is_reduced = self%heat_is_reduced .and. .not. heat
+         call operators%number(model, held, held_temperature, mechanics, heat, error)
+      end associate
+   end subroutine number
+
+   !> Numbers every step in turn, for the largest problems and for mistakes in its supports.
+   !> Error: as number.
+   subroutine measure_steps(model, pairs, loads, state, sizes, error)
+      type(model_type), intent(in) :: model                 !! the model
+      type(pair_row_type), intent(in) :: pairs              !! pairs of all interfaces
+      type(loads_type), intent(in) :: loads                 !! loads before the first step
+      type(solution_state_type), intent(in) :: state        !! state before it
+      type(run_size_type), intent(inout) :: sizes           !! receives the numbers of unknowns
+      type(error_type), allocatable, intent(out) :: error   !! see above
+      type(interface_operators_type) :: trial
+      type(loads_type) :: given
+      type(step_reduction_type) :: reduction
+      integer :: step, unknowns
+
+      ! Supports turn the frames of pairs; those of later steps must not show in the first.
+      trial%pairs = pairs
+      given = loads
+      do step = 1, size(model%steps)
+         call given%begin_step(model%steps(step), state%displacement, state%temperature)
+         call reduction%number(model, model%steps(step), given, trial, error)
+         if (allocated(error)) then
+            if (size(model%steps) > 1) error%message = 'step '//to_text(step)//': '//error%message
+            return
+         end if
+         unknowns = 0
+         associate (analysis => model%steps(step)%analysis, thermal => trial%thermal%map, &
+            mechanical => trial%mechanical%map)
+            if (solves_heat(analysis)) then
+               sizes%equations_thermal = max(sizes%equations_thermal, thermal%equations)
+               unknowns = thermal%tail
+            end if
+            if (solves_mechanics(analysis)) then
+               sizes%equations_mechanical = max(sizes%equations_mechanical, mechanical%equations)
+               unknowns = unknowns + mechanical%tail
+            end if
+            sizes%contact_unknowns = max(sizes%contact_unknowns, unknowns)
+         end associate
+      end do
+   end subroutine measure_steps
+
+   !> Assembles the bodies, where that is not done, and reduces the fields of a step to their
+   !> contact unknowns, where that is not done.
+   !> Errors: as interface_operators' reduce.
+   subroutine reduce(self, model, step, film_old, film_new, operators, seconds, sizes, error)
+      class(step_reduction_type), intent(inout) :: self          !! numbered for the step
+      type(model_type), intent(in) :: model                      !! the model
+      type(step_type), intent(in) :: step                        !! the step
+      type(sparse_matrix_type), intent(in) :: film_old           !! F_i [power/temperature]
+      type(sparse_matrix_type), intent(in) :: film_new           !! F_i+1 [power/temperature]
+      type(interface_operators_type), intent(inout) :: operators !! the bodies
+      type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
+      type(run_size_type), intent(inout) :: sizes                !! receives the bytes of factors
+      type(error_type), allocatable, intent(out) :: error        !! see above
+      logical :: heat, mechanics
+      real(dp) :: since
+
+      mechanics = solves_mechanics(step%analysis) .and. .not. self%mechanics_is_reduced
+      heat = solves_heat(step%analysis) .and. .not. self%heat_is_reduced
+      since = wall_seconds()
+      if (.not. (allocated(operators%mechanical%matrix%value) .or. &
+         allocated(operators%thermal%matrix%value))) then
+         call operators%assemble(model, any(solves_mechanics(model%steps%analysis)), &
+            any(solves_heat(model%steps%analysis)), temperatures_strain(model))
+      end if
+      seconds%assemble = seconds%assemble + (wall_seconds() - since)
+      since = wall_seconds()
+      if (heat) operators%thermal%added = left_films(step%scheme, film_old, film_new)
+      call operators%reduce(model, mechanics, heat, solves_heat(step%analysis) .and. &
+         solves_mechanics(step%analysis), error)
+      self%mechanics_is_reduced = self%mechanics_is_reduced .or. (mechanics .and. &
+         .not. allocated(error))
+      self%heat_is_reduced = self%heat_is_reduced .or. (heat .and. .not. allocated(error))
+      sizes%factor_bytes = max(sizes%factor_bytes, bytes_of_factors(operators))
+      seconds%reduce = seconds%reduce + (wall_seconds() - since)
+   end subroutine reduce
+
+   !> Whether temperatures that differ from the initial ones ever meet mechanics.
+   pure function temperatures_strain(model) result(strain)
+      type(model_type), intent(in) :: model
+      logical :: strain
+      integer :: i
+
+      strain = any(solves_heat(model%steps%analysis))
+      do i = 1, size(model%steps)
+         if (.not. allocated(model%steps(i)%loads)) cycle
+         strain = strain .or. any(model%steps(i)%loads%kind == load_temperature)
+      end do
+      strain = strain .and. any(solves_mechanics(model%steps%analysis))
+   end function temperatures_strain
+
+   pure function bytes_of_factors(operators) result(bytes)
+      type(interface_operators_type), intent(in) :: operators
+      integer(long) :: bytes
+
+      bytes = 0
+      if (allocated(operators%mechanical%solver)) then
+         bytes = bytes + operators%mechanical%solver%factor_bytes
+      end if
+      if (allocated(operators%thermal%solver)) then
+         bytes = bytes + operators%thermal%solver%factor_bytes
+      end if
+   end function bytes_of_factors
+
+end module step_reduction

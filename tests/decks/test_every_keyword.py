@@ -1,0 +1,106 @@
+"""Every keyword and parameter of docs/deck.md has a test that runs decks with two values of it, and
+a refused deck with a bad value of each."""
+
+import importlib
+import re
+
+from deck_runs import DECKS
+
+REFERENCE = DECKS.parents[1] / "docs" / "deck.md"
+FLAGS = {"GENERATE", "DIRECT"}
+
+# What has one value only, or none.
+ONE_VALUE = {
+    "END STEP": "no data, no parameter",
+    "SURFACE, TYPE": "ELEMENT is the only one that is built",
+    "INITIAL CONDITIONS, TYPE": "TEMPERATURE is the only one",
+    "STEP, NLGEOM": "NO is the only one",
+    "NSET, ELSET": "stands in the section of both",
+    "ELSET, NSET": "stands in the section of both",
+    "GAP CONDUCTANCE, DEPENDENCIES": "refused",
+    "CLEARANCE": "no data", "FIXED POINT": "no data", "INCLUDE": "no data",
+    "MATERIAL": "no data", "OPTIONS": "no data", "REFINE": "no data", "SOLVER": "no data",
+    "STEP": "no data", "SURFACE INTERACTION": "no data",
+}
+
+
+def sections():
+    """Return the keywords and the text of each section of the reference that describes cards."""
+    text = REFERENCE.read_text().split("\n## Read and not needed")[0]
+    text = text.replace("\\*", "*")
+    for part in re.split(r"^###? ", text[text.index("\n## Model"):], flags=re.M)[1:]:
+        title, _, body = part.partition("\n")
+        yield re.findall(r"\*([A-Z][A-Z -]+)", title), body
+
+
+def described():
+    """Return every keyword and every parameter, as `KEYWORD` and `KEYWORD, PARAMETER`."""
+    found = set()
+    for keywords, body in sections():
+        mentioned = re.findall(r"\*([A-Z][A-Z -]*[A-Z])\b", body)
+        found |= {keyword.strip() for keyword in [*keywords, *mentioned]}
+        owners = keywords or [k for k in mentioned if k.endswith(("FILE", "PRINT"))]
+        for line in body.splitlines():
+            # A row that begins with a keyword tells of its parameters; so do the rows behind it.
+            row = re.match(r"\| \*([A-Z -]+) \|", line)
+            owners = [row[1]] if row else owners
+            for span in re.findall(r"`([^`]+)`", line):
+                if span.startswith(("*", "--")):   # of another card, of the command line
+                    continue
+                names = re.findall(r"([A-Z][A-Z ]*?)=", span) + [f for f in FLAGS if f == span]
+                found |= {f"{owner.strip()}, {name}" for owner in owners for name in names}
+    return found
+
+
+def covered():
+    """Return what the tests of decks are marked with: `@pytest.mark.changes(...)`."""
+    found = set()
+    for path in DECKS.glob("test_*.py"):
+        for item in vars(importlib.import_module(path.stem)).values():
+            for mark in getattr(item, "pytestmark", []):
+                marks = [mark]
+                if mark.name == "parametrize":
+                    marks = [m for case in mark.args[1] for m in getattr(case, "marks", ())]
+                found.update(card for m in marks if m.name == "changes" for card in m.args)
+    return found
+
+
+def test_every_keyword_and_parameter_is_tested_in_two_values():
+    known = described()
+    assert {"FILM, FILM AMPLITUDE", "ELASTIC, TYPE", "NODE FILE, FREQUENCY", "STATIC, DIRECT",
+            "GAP LAW", "FIXED POINT, G", "VERIFY", "CONTACT PRINT, FREQUENCY"} <= known
+    missing = known - covered() - ONE_VALUE.keys()
+    assert not missing, f"no test runs decks with two values of: {sorted(missing)}"
+
+
+def test_what_is_said_to_have_one_value_is_described():
+    assert ONE_VALUE.keys() <= described()
+
+
+def test_tests_name_what_the_reference_describes():
+    unknown = covered() - described()
+    assert not unknown, f"docs/deck.md does not describe: {sorted(unknown)}"
+
+
+def refused():
+    """Return the keywords and parameters at whose cards, and fields, refused decks have errors."""
+    found = set()
+    for path in sorted((DECKS / "refused").glob("*.expected")):
+        for name, line, column in re.findall(r"^(\S+?):(\d+):(\d+): error", path.read_text(),
+                                             flags=re.M):
+            lines = (DECKS / "refused" / name).read_text(errors="replace").splitlines()[:int(line)]
+            cards = [card for card in lines if re.match(r"\*[^*]", card)]
+            if not cards:
+                continue
+            keyword = " ".join(cards[-1].split(",")[0][1:].upper().split())
+            found.add(keyword)
+            if cards[-1] is lines[-1]:
+                place = lines[-1][:int(column)].count(",")
+                parameter = lines[-1].split(",")[place].partition("=")[0].strip().upper()
+                found.add(f"{keyword}, {parameter}")
+    return found
+
+
+def test_every_keyword_and_parameter_has_a_refused_deck():
+    missing = described() - refused() - {"NSET, ELSET", "ELSET, NSET"}
+    assert not missing, f"no refused deck has an error at: {sorted(missing)}"

@@ -1,0 +1,105 @@
+"""SIGINT and SIGTERM end a run after the current increment; the files are whole and agree."""
+
+import signal
+import subprocess
+import time
+from functools import partial
+
+import h5py
+import numpy as np
+import pytest
+import test_rods as rods
+from deck_runs import PROGRAM, copy_deck, solve
+
+INCREMENTS, BEFORE = 20000, 100
+PATIENCE = 60.0  # seconds for what takes a small part of one
+
+
+def heat(folder, name, increments, share=1.0):
+    """Write the deck of the rods with a share of their load in so many increments; its path."""
+    path = rods.write_rods(folder / name)
+    changes = {"0.1, 1.": f"{share / increments!r}, {share!r}",
+               "*STEP\n": f"*STEP, INC={increments}\n",
+               f"11, 11, {rods.HOT}": f"11, 11, {share * rods.HOT!r}"}
+    return copy_deck(path, path, changes=changes)
+
+
+@pytest.fixture(scope="module")
+def deck(tmp_path_factory):
+    """Return a deck of many increments."""
+    return heat(tmp_path_factory.mktemp("long"), "long.inp", INCREMENTS)
+
+
+def lines_of(sta):
+    """Return the lines of a .sta file without its heading."""
+    return sta.read_text().splitlines()[1:] if sta.exists() else []
+
+
+def interrupt(decks, folder, number, prepare=None):
+    """Send a signal to a run when some increments are in place; return the finished process, its
+    output and its messages."""
+    process = subprocess.Popen(
+        [PROGRAM, "run", *map(str, decks), "--out", str(folder)], text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare,
+    )
+    until = time.monotonic() + PATIENCE
+    while len(lines_of(folder / "long.sta")) < BEFORE:
+        assert process.poll() is None and time.monotonic() < until
+        time.sleep(0.002)
+    process.send_signal(number)
+    said = process.communicate(timeout=PATIENCE)
+    return process, *said
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT"])
+def test_a_signal_ends_the_run_after_the_current_increment(deck, tmp_path, name):
+    process, _, messages = interrupt([deck], tmp_path, getattr(signal, name))
+    assert process.returncode == 5, messages
+    result = tmp_path / "long.vtkhdf"
+    with h5py.File(result) as file:
+        times = file["history/time"][()]
+        assert file["VTKHDF/Steps"].attrs["NSteps"] == len(times)
+        np.testing.assert_array_equal(file["VTKHDF/Steps/Values"][()], times)
+        assert all(len(contact["gap"]) == len(times) for contact in file["contact"].values())
+        gap = file["contact/FACE/gap"][-1]
+        passes = file["convergence/increment"][()]
+    count = len(times)
+    assert BEFORE <= count < INCREMENTS
+    np.testing.assert_allclose(times, np.arange(1, count + 1) / INCREMENTS, rtol=1e-12)
+    numbers = [int(line.split()[0]) for line in lines_of(tmp_path / "long.sta")]
+    assert numbers == list(range(1, count + 1))
+    rows = (tmp_path / "long.cvg").read_text().splitlines()[1:]
+    assert [int(row.split()[0]) for row in rows] == passes.tolist()
+    assert passes[-1] == count
+    reason = f"ended by {name} after increment {count} (time "
+    assert f"{deck}: error: {reason}" in messages
+    assert "not converged" not in messages
+    listing = (tmp_path / "long.lst").read_text()
+    assert reason in listing[listing.rindex("ENDED EARLY"):]
+    assert f"The results hold the increments up to number {count}." in listing
+    assert sorted(f.name for f in tmp_path.iterdir()) == [
+        "long.cvg", "long.lst", "long.sta", "long.vtkhdf"]
+    # The last increment is the answer of its load, whatever ran before it.
+    alone = solve(heat(tmp_path, "alone.inp", 1, float(times[-1])))
+    np.testing.assert_allclose(gap, rods.last(alone, "gap"), rtol=1e-9)
+
+
+def test_decks_behind_it_are_not_started_and_said_so(deck, tmp_path):
+    other = heat(tmp_path, "other.inp", 10)
+    process, output, messages = interrupt([deck, other], tmp_path, signal.SIGTERM)
+    assert process.returncode == 5
+    assert f"{other}: error: not started because of SIGTERM" in messages
+    assert not (tmp_path / "other.lst").exists()
+    table = output[output.rindex("outcome"):].splitlines()
+    assert [row.split()[:3] for row in table[1:3]] == [
+        [str(deck), "interrupted", str(len(lines_of(tmp_path / "long.sta")))],
+        [str(other), "interrupted", "0"],
+    ]
+
+
+def test_a_signal_that_the_caller_ignores_stays_ignored(tmp_path):
+    """As under nohup, or of a job in the background of a script."""
+    deck = heat(tmp_path, "long.inp", INCREMENTS // 10)
+    ignore = partial(signal.signal, signal.SIGINT, signal.SIG_IGN)
+    process, _, messages = interrupt([deck], tmp_path, signal.SIGINT, ignore)
+    assert process.returncode == 0, messages

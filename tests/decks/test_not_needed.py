@@ -1,0 +1,62 @@
+"""What docs/deck.md calls read and not needed: it changes nothing, and the listing says so."""
+
+import pytest
+from blocks import write
+from deck_runs import run
+from physics import judge, material, mesh, verify
+
+CARDS = mesh("UP", [0.0, 1.0], [0.0, 0.5]) + mesh("LOW", [0.0, 1.0], [-1.0, 0.0], first=101)
+PAIR = "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE"
+
+
+def deck():
+    """Return two blocks, nu = 0, pressed together by 5 and heated by 40 between smooth walls, and
+    what is then known."""
+    cards = list(CARDS)
+    for name in ("UP", "LOW"):
+        cards += material(name, (1000.0, 0.0), 1e-5)
+    cards += ["*SURFACE INTERACTION, NAME=FACES", "*FRICTION", "0.3", PAIR, "UP.BOTTOM, LOW.TOP",
+              "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "LOW.BOTTOM, 2", "UP, 1", "LOW, 1",
+              "*DSLOAD", "UP.TOP, P, 5.", "*TEMPERATURE", "UP, 40.", "LOW, 40.", "*END STEP"]
+    return cards, [("pressure", "FACE", "LAST", 5.0, 1e-9),
+                   ("S11", "UP", "LAST", -1000.0 * 1e-5 * 40.0, 1e-9),
+                   ("U2", "UP.TOP", "LAST", 1.5 * (1e-5 * 40.0 - 5.0 / 1000.0), 1e-9)]
+
+
+# A card or a part of one, what takes its place, and what the listing says of it.
+CHANGES = {
+    "SURFACE BEHAVIOR": ("*FRICTION", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1.E7, 3.\n"
+                         "*FRICTION", "*SURFACE BEHAVIOR"),
+    "hard": ("*FRICTION", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n*FRICTION",
+             "*SURFACE BEHAVIOR"),
+    "CONTROLS": ("*STEP", "*CONTROLS, RESET\n*STEP", "*CONTROLS"),
+    "SPECIFIC HEAT": ("*EXPANSION", "*SPECIFIC HEAT\n460.\n*EXPANSION", "*SPECIFIC HEAT"),
+    "type of a pair": (PAIR, PAIR + ", TYPE=SURFACE TO SURFACE", "TYPE"),
+    "small sliding": (PAIR, PAIR + ", SMALL SLIDING", "SMALL SLIDING"),
+    "ZERO": ("*EXPANSION", "*EXPANSION, ZERO=300.", "ZERO"),
+    "SOLVER": ("*STATIC", "*STATIC, SOLVER=SPOOLES", "SOLVER"),
+    "stick slope": ("0.3", "0.3, 1.E5", "stick slope"),
+    "temperature": ("1e-05", "1e-05, 20.", "temperature"),
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_what_is_not_needed_changes_nothing(tmp_path, name):
+    old, new, said = CHANGES[name]
+    cards, checks = deck()
+    assert old in cards
+    changed = "\n".join(new if card == old else card for card in cards).splitlines()
+    judge(tmp_path, changed, checks)
+    text = (tmp_path / "deck.lst").read_text()
+    notes = text[text.index("\nDEFAULTS AND CARDS NOT NEEDED"):text.index("\nINCREMENTS")]
+    assert said in notes, notes
+
+
+def test_a_third_coordinate_of_zero_is_passed_over(tmp_path):
+    cards, checks = deck()
+    nodes = [card + ", 0." if card.count(",") == 2 and card[0].isdigit() and "S" not in card
+             else card for card in cards]
+    assert nodes != cards
+    process = run("run", "--quiet", write(tmp_path / "deck.inp", nodes, verify(*checks)), "--out",
+                  tmp_path)
+    assert process.returncode == 0, process.stderr
