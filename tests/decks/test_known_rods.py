@@ -10,6 +10,7 @@ import shutil
 import h5py
 import numpy as np
 import pytest
+from changes import note_changes
 from deck_runs import INPUT, run
 from physics import DECKS  # noqa: F401  puts tests/reference on the path
 
@@ -142,6 +143,20 @@ def test_several_solutions_are_said_only_on_proof(rod):
     process, omega, *_ = rod("r3-open", {"FROM=OPEN": "FROM=BOTH"})
     assert "different solutions; this is one of several" in process.stderr
     np.testing.assert_allclose(omega, rods.solutions(rods.image(*RODS["r3-open"]))[0], rtol=1e-8)
+
+
+@pytest.mark.changes("START", "START, FROM")
+def test_the_start_decides_between_solutions(rod):
+    """Of R3, all else being equal: the ends of the conductance, and two values given."""
+    expected = rods.solutions(rods.image(*RODS["r3-open"]))
+    text = (FOLDER / "r3-open.inp").read_text()
+    starts = {"OPEN": 0, "CLOSED": 2, "GIVEN\nFACE, 320.": 1, "GIVEN\nFACE, 3000.": 2}
+    decks = [text.replace("FROM=OPEN", f"FROM={start}").splitlines() for start in starts]
+    note_changes(decks[0], decks[1])
+    note_changes(decks[2], decks[3])
+    for start, branch in starts.items():
+        _, omega, *_ = rod("r3-open", {"FROM=OPEN": f"FROM={start}"})
+        np.testing.assert_allclose(omega, expected[branch], rtol=1e-8)
 
 
 def test_both_ends_lead_to_one_solution(rod, tmp_path):

@@ -281,6 +281,7 @@ def sheared(values):
                  "*GAP LAW, TYPE=POWER", f"{laws[k][0]!r}, {laws[k][1]!r}, 1."]
     deck += ["*CONTACT PAIR, INTERACTION=FIRST, NAME=ONE", "UPPER.BOTTOM, MIDDLE.TOP",
              "*CONTACT PAIR, INTERACTION=SECOND, NAME=TWO", "MIDDLE.BOTTOM, LOWER.TOP",
+             "*FIXED POINT, TOL=1.E-12",   # what is judged below is the conductance, to 1e-9
              "*INITIAL CONDITIONS, TYPE=TEMPERATURE", *(f"{name}, 0." for name in HEIGHTS)]
     rows = []
     turn = tops["UPPER"] * shear
