@@ -127,10 +127,10 @@ contains
 
    !> Where a pair comes to that Newton's method would move by `change`, with the law itself in
    !> place of its slope. For the pair alone the equation is opening(z) - kappa share(z) = const,
-   !> share = omega/(omega + body): kappa is constant where its heat goes with share. From the linear
-   !> change of the left-hand side the move follows by bisection; with kappa >= 0, where heat opens the gap
-   !> that it crosses, the left-hand side grows with z on all of the graph. Elsewhere the move stops
-   !> at the first kink.
+   !> share = omega/(omega + body): kappa is constant where its heat goes with share. From the
+   !> linear change of the left-hand side the move follows by bisection; with kappa >= 0, where heat
+   !> opens the gap that it crosses, the left-hand side grows with z on all of the graph. Elsewhere
+   !> the move stops at the first kink.
    elemental function moved(self, from, change, body, own) result(place)
       class(conductance_graph_type), intent(in) :: self  !! the pair
       real(dp), intent(in) :: from                       !! place where the move starts [length]
