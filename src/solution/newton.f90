@@ -17,7 +17,7 @@
 !> this sense, and there the steps are Newton's again.
 module newton
    use conductance_graph, only: conductance_graph_type
-   use dense, only: lu_type
+   use dense, only: eigenvalues, lu_type
    use fixed_point, only: accelerator_type, pass_type
    use kinds, only: dp
    implicit none
@@ -219,6 +219,7 @@ contains
       self%part = 1.0_dp
       self%step = -self%rest
       if (.not. allocated(self%jacobian)) return
+      if (self%time_step < endless) self%time_step = min(self%time_step, stable_time_step(self))
       matrix = self%jacobian
       step(:, 1) = -self%rest
       do k = 1, size(step)
@@ -235,5 +236,20 @@ contains
       call lu%solve(step)
       self%step = step(:, 1)
    end subroutine make_step
+
+   !> Largest tau with which (1/tau + J) dz = -r leads where dz/dt = -r does: half of that at which
+   !> the matrix is singular. Where heat closes the gap it crosses, J has negative eigenvalues on
+   !> the way, and a longer step goes backwards.
+   function stable_time_step(self) result(tau)
+      type(newton_type), intent(in) :: self
+      real(dp) :: tau
+      real(dp), allocatable :: real_part(:), imaginary_part(:)
+      logical :: found
+
+      tau = huge(1.0_dp)
+      call eigenvalues(-self%jacobian, real_part, imaginary_part, found)
+      if (.not. found) return
+      tau = 0.5_dp/max(maxval(real_part, mask=abs(imaginary_part) <= real_part), tiny(1.0_dp))
+   end function stable_time_step
 
 end module newton

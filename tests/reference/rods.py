@@ -146,11 +146,16 @@ def solutions(rods, open_law, closed_law, count=200000):
 
 @dataclass(frozen=True)
 class Solution:
-    """A solution: conductance, slope of the law by s there, 0 at rest, and the gain U'."""
+    """A solution: conductance, derivatives of s by it and of the law by s, which is 0 at rest."""
 
     conductance: float
+    opening: float
     slope: float
-    gain: float
+
+    @property
+    def gain(self):
+        """Return U'."""
+        return self.slope * self.opening
 
 
 def exact_solutions(rods, a, b, touch, c):
@@ -181,7 +186,7 @@ def exact_solutions(rods, a, b, touch, c):
             y = 1 / (closing / space - resistance)
             if min(a / b, touch) < y < max(a / b, touch):
                 found.append((y, Decimal(0)))
-        return [Solution(float(y), float(slope), float(-slope * closing / (resistance * y + 1)**2))
+        return [Solution(float(y), float(-closing / (resistance * y + 1)**2), float(slope))
                 for y, slope in sorted(found)]
 
 
