@@ -250,8 +250,9 @@ contains
 
       inertia = 1.0_dp
       do k = 1, size(inertia)
-         if (self%graph(k)%rests(self%place(k)) .and. abs(self%jacobian(k, k)) > 0.0_dp) &
+         if (self%graph(k)%rests(self%place(k)) .and. abs(self%jacobian(k, k)) > 0.0_dp) then
             inertia(k) = abs(self%jacobian(k, k))
+         end if
       end do
    end function inertias
 

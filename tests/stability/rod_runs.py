@@ -108,9 +108,11 @@ def outcomes(folder, cases, method):
             found.append(Outcome())
             continue
         with h5py.File(result) as file:
-            omega = file["contact/FACE/conductance"][-1]
-            shares = file["contact/FACE/weight"][()] / file["contact/FACE/weight"][()].sum()
-            found.append(Outcome(int(file["history/iterations"][-1]), float(shares @ omega),
+            omega, flux = (file[f"contact/FACE/{n}"][-1] for n in ("conductance", "heat_flux"))
+            weight = file["contact/FACE/weight"][()]
+            # Heat by mean jump: pairs that rest may share out their heat in many ways.
+            omega = weight @ flux / (weight @ (flux / omega))
+            found.append(Outcome(int(file["history/iterations"][-1]), float(omega),
                                  float(file["history/coupling_gain"][-1])))
     return found
 
