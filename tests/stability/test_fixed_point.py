@@ -3,7 +3,6 @@
 import sys
 from collections import Counter
 
-import pytest
 import report
 from cylinder_runs import DECKS, OPEN_LAW, difference, resting, solve
 from report import Table, verdict
@@ -218,29 +217,16 @@ def test_fixed_point(tmp_path):
     report.check(sys.modules[__name__], tmp_path)
 
 
-# Heat closes the gap it crosses: on the way J has negative eigenvalues, at the solution, mild, it
-# has not. Length, conductivity, expansion, modulus, temperature, gap; a, b, c.
-RODS_ON_WHICH_NEWTON_CYCLED = [
-    ((0.1426932995503629, 0.05678957688670939), (1.0543627145695347, 223.4145064701015),
-     (4.3904163306229486e-05, 0.0), (4256828408.151583, 3767112319.318943),
-     (-783.5291524779992, 148.54668055669367), 1.960515316790889e-05,
-     0.0005948941903041914, 2.8008134282491983e-05, 0.00015069214558152761),
-    ((0.03773631053039852, 0.03482436306247892), (0.3358686079731233, 5.471694524551289),
-     (5.3581303555594785e-06, 5.5811713397102426e-06), (27115636668.522873, 464425016.97081655),
-     (-357.36027343789067, 473.1612590412783), 9.982003190586458e-07,
-     0.00023856663919605365, 9.737480536090267e-10, 0.37147087504469384),
-    ((0.21356270561589463, 0.11391939739199894), (1.3997593677585318, 0.5479822200554584),
-     (1.3504469027909535e-05, 7.297703850451123e-05), (88962741799.83125, 818466890.6006567),
-     (532.7031471862015, 428.0039184437535), 0.005077465085965143,
-     4.3250654712355e-05, 3.4409688341666636e-08, 0.01365396425215802),
-]
-
-
-@pytest.mark.parametrize("data", RODS_ON_WHICH_NEWTON_CYCLED)
-def test_newton_goes_where_the_flow_does(tmp_path, data):
-    *both, a, b, c = data
-    case = Case(Rods(*both), a, b, a / b, c)
+def test_newton_goes_where_the_flow_does(tmp_path):
+    """Heat closes the gap that it crosses: on the way J has negative eigenvalues, though not at the
+    solution. Steps of Newton's method alone end at the kink of the laws for ever."""
+    both = Rods((0.1426932995503629, 0.05678957688670939), (1.0543627145695347, 223.4145064701015),
+                (4.3904163306229486e-05, 0.0), (4256828408.151583, 3767112319.318943),
+                (-783.5291524779992, 148.54668055669367), 1.960515316790889e-05)
+    a, b = 0.0005948941903041914, 2.8008134282491983e-05
+    case = Case(both, a, b, a / b, 0.00015069214558152761)
     (solution,) = case.solutions()
+    assert abs(solution.gain) < 0.01
     (outcome,) = outcomes(tmp_path / "rods", [case], "NEWTON")
     assert outcome.conductance is not None
     assert landed(case, outcome)[1] <= case.allowed(solution)
