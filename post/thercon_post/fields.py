@@ -97,9 +97,19 @@ def read_fields(result, step, quantities):
                 f"(there are: {', '.join(there) or 'none'})"
             )
     chosen = quantities or [q for q in DEFAULT_QUANTITIES if q in there]
+    if not quantities and len(chosen) > 1 and tells_nothing(result, there, step):
+        chosen.remove("temperature")
     if not chosen:
         raise UserError(f"{result.path}: no temperature or stress field at this load")
     return {quantity: there[quantity] for quantity in chosen}
+
+
+def tells_nothing(result, there, step):
+    """Whether there is a temperature that is the same everywhere, in a deck without heat."""
+    if "temperature" not in there or result.point_data("heat_flux", step) is not None:
+        return False
+    values = there["temperature"]
+    return np.nanmax(values) - np.nanmin(values) <= ROUNDING * np.nanmax(np.abs(values))
 
 
 def magnitude(result, quantity, step):

@@ -65,10 +65,10 @@ def load_handles(picture):
 
 
 def load_texts(picture):
-    """Return the loads of a picture with their unit."""
+    """Return the loads of a picture in few words."""
     result = picture.result
-    unit = result.units.load_unit(result.load_label)
-    return [f"{load:g} {unit}".strip() for load in result.history["load"][picture.rows]]
+    loads = result.history["load"][picture.rows]
+    return [result.units.short_load(result.load_label, load) for load in loads]
 
 
 def edge_handles(picture):

@@ -27,6 +27,12 @@ class Units:
         """Return one load in words, such as "temperature of TOP 540 C"."""
         return f"{label} {value:g} {self.load_unit(label)}".strip()
 
+    def short_load(self, label, value):
+        """Return one load in few words: with its unit, or its name where it is the time."""
+        if load_quantity(label) is None:
+            return self.load_value(label, value)
+        return f"{value:g} {self.load_unit(label)}".strip()
+
     def load_unit(self, label):
         """Return the unit of the load axis, or an empty text."""
         return self.names.get(load_quantity(label), "")

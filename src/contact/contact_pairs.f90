@@ -32,6 +32,8 @@ module contact_pairs
       real(dp), allocatable :: normal(:, :)    !! (2, m) common unit normal, outward from the slave
       real(dp), allocatable :: tangent(:, :)   !! (2, m) unit tangent towards growing s
       real(dp), allocatable :: initial_gap(:)  !! (m) h [length]
+      real(dp), allocatable :: edge(:)         !! (m) longest side of the slave there [length]
+      integer :: side_nodes = 2                !! nodes of a side, 2 or 3
    end type contact_pairs_type
 
 contains
@@ -73,15 +75,14 @@ contains
       call check_sides(mesh, pairs%name, slave, master, [turned_slave, turned_master], first, &
          last, error)
       if (allocated(error)) return
+      pairs%side_nodes = slave%side_nodes
+      pairs%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       call cut_ends(first, last, pairs)
       call check_weights(mesh, pairs%name, pairs%slave_node, pairs%weight, about_axis, error)
       if (allocated(error)) return
-      associate (edge => edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, &
-         slave%closed))
-         call check_opposite(mesh, pairs%name, pairs%slave_node, pairs%master_node, &
-            pairs%tangent, max(edge(first:last), abs(pairs%initial_gap)), error)
-         if (allocated(error)) return
-      end associate
+      call check_opposite(mesh, pairs%name, pairs%slave_node, pairs%master_node, &
+         pairs%tangent, max(pairs%edge, abs(pairs%initial_gap)), error)
+      if (allocated(error)) return
       if (definition%has_clearance) pairs%initial_gap = definition%clearance
    end subroutine make_pairs
 
@@ -198,6 +199,7 @@ contains
       pairs%normal = pairs%normal(:, first:last)
       pairs%tangent = pairs%tangent(:, first:last)
       pairs%initial_gap = pairs%initial_gap(first:last)
+      pairs%edge = pairs%edge(first:last)
    end subroutine cut_ends
 
 end module contact_pairs

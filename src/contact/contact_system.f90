@@ -216,37 +216,36 @@ contains
       end if
       self%factored = condition_code(state)
       call list_free(self, state)
+      call find_loose(self)
       call self%factor_rows(singular)
       if (.not. singular) return
       call self%forget_factors()
       call set_error(error, status_no_convergence, 'the contact system is singular')
    end subroutine factor_set
 
-   !> Factors the rows that are listed, bordered by the motions that they leave free.
+   !> Factors the rows that are listed, bordered by the loose motions.
    pure subroutine factor_rows(self, singular)
       class(contact_system_type), intent(inout) :: self   !! the reduced system
-      logical, intent(out) :: singular                    !! as of lu_type
-      real(dp), allocatable :: rows(:, :)
-      integer :: f, i, l
+      logical, intent(out) :: singular                    !! the rows depend on each other
+      real(dp) :: rows(size(self%free) + size(self%loose, 2), size(self%free) + &
+         size(self%loose, 2))
+      integer :: i
 
-      call find_loose(self)
-      f = size(self%free)
-      l = size(self%loose, 2)
-      allocate (rows(f + l, f + l), source=0.0_dp)
-      associate (of_tail => self%friction_rows(self%schur(:, self%free)))
+      rows = 0.0_dp
+      associate (f => size(self%free), of_tail => self%friction_rows(self%schur(:, self%free)))
          rows(:f, :f) = of_tail(self%free, :)
+         do i = 1, f
+            rows(i, i) = rows(i, i) + self%spring(self%free(i))
+         end do
+         self%border = max(maxval(abs(rows)), tiny(1.0_dp))
+         rows(:f, f + 1:) = self%border*self%loose
+         rows(f + 1:, :f) = self%border*transpose(self%loose)
       end associate
-      do i = 1, f
-         rows(i, i) = rows(i, i) + self%spring(self%free(i))
-      end do
-      self%border = max(maxval(abs(rows)), tiny(1.0_dp))
-      rows(:f, f + 1:) = self%border*self%loose
-      rows(f + 1:, :f) = self%border*transpose(self%loose)
       call self%lu%factor(rows, singular)
    end subroutine factor_rows
 
    !> The unsupported motions that no place of the active set holds.
-   pure subroutine find_loose(self)
+   subroutine find_loose(self)
       class(contact_system_type), intent(inout) :: self
       logical :: held(size(self%schur, 1))
       integer :: i
@@ -380,7 +379,7 @@ contains
       turns_back = .false.
       if (any(self%closing%acts)) return
       ! Every link and every loose motion borders a positive matrix, which turns its sign.
-      turns_back = (self%lu%determinant_sign() < 0) .neqv. &
+      turns_back = self%lu%negative_determinant() .neqv. &
          (mod(size(self%link) + size(self%loose, 2), 2) == 1)
    end function turns_back
 

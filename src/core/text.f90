@@ -7,9 +7,10 @@ module text
    public :: string_type
    public :: to_text, to_upper, without_blanks, read_integer, read_real, append
    public :: integer_fault, real_fault
-   public :: nearest_name, nearest_known, edit_distance
+   public :: nearest_name, nearest_known, edit_distance, likely_slip
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
+   integer, parameter :: likely_slip = 2          !! letters that differ in a misspelt name
 
    !> A string in a list.
    type :: string_type
@@ -62,6 +63,7 @@ contains
          if (buffer(last:last) == '.') last = last - 1
       end if
       string = buffer(:last)//trim(buffer(exponent:))
+      if (string == '-0') string = '0'
    end function real_to_text
 
    !> A string with its letters a-z in upper case.
@@ -221,8 +223,8 @@ contains
       call move_alloc(longer, list)
    end subroutine append
 
-   !> Index of the name in a list that is nearest to a given one, whatever their cases; 0 for an
-   !> empty list.
+   !> Index of the name in a list that is nearest to a given one, whatever their cases; empty names
+   !> do not count. 0 where there is none.
    pure function nearest_name(name, names) result(nearest)
       character(*), intent(in) :: name            !! what was written
       type(string_type), intent(in) :: names(:)   !! what is known
@@ -232,6 +234,7 @@ contains
       nearest = 0
       smallest = huge(smallest)
       do i = 1, size(names)
+         if (len(names(i)%value) == 0) cycle
          distance = edit_distance(to_upper(name), to_upper(names(i)%value))
          if (distance >= smallest) cycle
          smallest = distance
@@ -245,8 +248,11 @@ contains
       type(string_type), intent(in) :: names(:)    !! what is known
       character(:), allocatable :: hint            !! such as "; the nearest known is TOP"
 
+      integer :: nearest
+
       hint = ''
-      if (size(names) > 0) hint = '; the nearest known is '//names(nearest_name(name, names))%value
+      nearest = nearest_name(name, names)
+      if (nearest > 0) hint = '; the nearest known is '//names(nearest)%value
    end function nearest_known
 
    !> Number of letters to insert, delete, replace or swap with their neighbour that make one word

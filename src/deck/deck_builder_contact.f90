@@ -6,14 +6,14 @@ module deck_builder_contact
    use cards, only: cards_type, data_card_type, keyword_card_type
    use contact_definitions, only: contact_definition_type
    use deck_builder_interactions, only: find_interaction
-   use deck_context, only: deck_context_type
+   use deck_context, only: deck_context_type, report_unknown
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: card_count
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use text, only: nearest_known, string_type, to_upper
+   use text, only: string_type, to_upper
    implicit none
    private
    public :: build_contacts
@@ -108,8 +108,8 @@ contains
          do i = 1, size(names)
             names(i)%value = model%interactions(i)%name
          end do
-         call report%error(parameter_place(card, 'INTERACTION'), 'unknown surface interaction '// &
-            name//nearest_known(name, names))
+         call report_unknown('surface interaction', name, names, &
+            parameter_place(card, 'INTERACTION'), report)
       end if
       contact%name = parameter_text(card, 'NAME')
       if (card%last_data < card%first_data) return
@@ -156,8 +156,7 @@ contains
          names(i)%value = mesh%surfaces(i)%name
          if (names(i)%value == name) find_surface = i
       end do
-      if (find_surface == 0) call report%error(place, 'unknown surface '//name// &
-         nearest_known(name, names))
+      if (find_surface == 0) call report_unknown('surface', name, names, place, report)
    end function find_surface
 
    !> A name stands for a group of the result file: it is used once, and holds no slash.

@@ -13,6 +13,10 @@ module deck_builder_gap_laws
    private
    public :: build_gap_law, build_gap_conductance, join_gap_conductance
 
+   !> Largest n of C0 + C1 p^n: laws that are measured have 1/2 to 2, and p^10 stays within the
+   !> range of numbers for every pressure that a material bears.
+   real(dp), parameter :: largest_exponent = 10.0_dp
+
 contains
 
    !> Takes one *GAP LAW.
@@ -132,6 +136,10 @@ contains
       end if
       if (valid(3) .and. law%power_n <= 0.0_dp) then
          call report%error(field_place(data, 3), 'n must be positive')
+         law%power_n = 1.0_dp
+      else if (valid(3) .and. law%power_n > largest_exponent) then
+         call report%error(field_place(data, 3), 'n must not exceed '//to_text(largest_exponent)// &
+            '; for rough faces it is about 0.95')
          law%power_n = 1.0_dp
       end if
    end subroutine build_power_law

@@ -17,6 +17,8 @@ module deck_builder_interactions
    public :: build_interactions, find_interaction
 
    real(dp), parameter :: continuous = 1.0e-6_dp   !! a smaller jump is none, relative
+   !> Beyond it, from some 1e7 on, a pressure is lost in the last places of mu times it.
+   real(dp), parameter :: largest_friction = 1.0e6_dp
 
 contains
 
@@ -134,6 +136,9 @@ contains
       call check_extra(data, 2, 'coefficient of friction, stick slope', report)
       if (friction < 0.0_dp) then
          call report%error(field_place(data, 1), 'the coefficient of friction must not be negative')
+      else if (friction > largest_friction) then
+         call report%error(field_place(data, 1), 'the coefficient of friction must not exceed '// &
+            to_text(largest_friction)//'; bodies that never slip are one: let them share nodes')
       end if
       if (size(data%fields) > 1) then
          call context%note('*FRICTION: the stick slope is read and not needed')

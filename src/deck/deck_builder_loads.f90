@@ -1,12 +1,13 @@
 !> *BOUNDARY, *CLOAD, *DLOAD, ... -> requests, applied when all is read.
 module deck_builder_loads
+   use amplitudes, only: amplitude_type
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text
    use card_values, only: check_extra, field_place, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_builder_courses, only: find_amplitude
    use deck_builder_element_loads, only: build_element_load
    use deck_builder_surface_loads, only: build_surface_load
-   use deck_context, only: deck_context_type, read_target
+   use deck_context, only: deck_context_type, read_target, report_unknown
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use load_requests, only: request_type
@@ -14,7 +15,7 @@ module deck_builder_loads
    use steps, only: dof_temperature, load_body_force, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
       load_pressure, load_temperature, load_traction, step_type
-   use text, only: nearest_known, string_type, to_text, to_upper
+   use text, only: string_type, to_text, to_upper
    implicit none
    private
    public :: build_load_card
@@ -39,6 +40,7 @@ contains
       call read_operation(card, step, model, context, report)
       call read_amplitude(card, 'AMPLITUDE', model, report, request%amplitude)
       call read_amplitude(card, 'FILM AMPLITUDE', model, report, film_amplitude)
+      if (film_amplitude > 0) call check_film(card, model%amplitudes(film_amplitude), report)
       do j = card%first_data, card%last_data
          request%place = field_place(cards%data(j), 1)
          if (card%name == 'BOUNDARY') then
@@ -132,9 +134,20 @@ contains
       do i = 1, size(names)
          names(i)%value = model%amplitudes(i)%name
       end do
-      call report%error(parameter_place(card, parameter), 'unknown amplitude '//name// &
-         nearest_known(name, names))
+      call report_unknown('amplitude', name, names, parameter_place(card, parameter), report)
    end subroutine read_amplitude
+
+   !> A film coefficient is never negative, at whatever time.
+   subroutine check_film(card, amplitude, report)
+      type(keyword_card_type), intent(in) :: card
+      type(amplitude_type), intent(in) :: amplitude
+      type(deck_report_type), intent(inout) :: report
+
+      if (all(amplitude%values >= 0.0_dp)) return
+      call report%error(parameter_place(card, 'FILM AMPLITUDE'), 'amplitude '//amplitude%name// &
+         ' becomes negative ('//to_text(minval(amplitude%values))//'), which a film '// &
+         'coefficient cannot be; give factors from 0 on')
+   end subroutine check_film
 
    !> Node or set, first and last degree of freedom, value; 0 on the degrees 3 to 6, which a plane
    !> has not, is passed over.

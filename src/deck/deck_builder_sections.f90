@@ -5,7 +5,7 @@ module deck_builder_sections
    use cards, only: cards_type, keyword_card_type
    use deck_builder_materials, only: find_material
    use deck_builder_orientations, only: find_orientation
-   use deck_context, only: deck_context_type, find_set, set_names
+   use deck_context, only: deck_context_type, find_set, report_unknown, set_names
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, is_misspelt
    use kinds, only: dp
@@ -59,8 +59,7 @@ contains
          do i = 1, size(names)
             names(i)%value = model%materials(i)%name
          end do
-         call report%error(parameter_place(card, 'MATERIAL'), 'unknown material '//name// &
-            nearest_known(name, names))
+         call report_unknown('material', name, names, parameter_place(card, 'MATERIAL'), report)
       end if
       call take_orientation(card, model, report, section)
       if (card%last_data < card%first_data) then
@@ -94,8 +93,8 @@ contains
       do i = 1, size(names)
          names(i)%value = model%orientations(i)%name
       end do
-      call report%error(parameter_place(card, 'ORIENTATION'), 'unknown orientation '//name// &
-         nearest_known(name, names))
+      call report_unknown('orientation', name, names, parameter_place(card, 'ORIENTATION'), &
+         report)
    end subroutine take_orientation
 
    subroutine give_section(card, section, mesh, report)

@@ -4,14 +4,14 @@ module deck_builder_surface_loads
    use card_values, only: check_extra, field_place, need_field
    use cards, only: data_card_type
    use deck_builder_element_loads, only: report_label
-   use deck_context, only: deck_context_type
+   use deck_context, only: deck_context_type, report_unknown
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use load_requests, only: request_type
    use mesh, only: surface_type
    use model, only: model_type
    use steps, only: load_pressure, load_traction
-   use text, only: nearest_known, string_type, to_upper
+   use text, only: string_type, to_upper
    implicit none
    private
    public :: build_surface_load
@@ -68,7 +68,7 @@ contains
       end do
       if (surface > 0) return
       valid = .false.
-      call report%error(field_place(data, 1), 'unknown surface '//name//nearest_known(name, names))
+      call report_unknown('surface', name, names, field_place(data, 1), report)
    end subroutine read_surface
 
    !> Magnitude and direction of a traction vector.

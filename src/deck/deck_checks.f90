@@ -30,6 +30,7 @@ contains
       type(deck_context_type), intent(in) :: context       !! places for messages
       type(model_type), intent(in) :: model                !! the model
       type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: uses(4, size(model%mesh%element_number))
 
       call check_size(context, model%mesh, report)
       call check_sections(context, model, report)
@@ -37,8 +38,8 @@ contains
       call check_planes(context, model%mesh, report)
       call check_orientations(context, model, report)
       call check_jacobians(context, model%mesh, report)
-      call check_sides(context, model%mesh, report)
-      call check_loads(context, model, report)
+      call check_sides(context, model%mesh, uses, report)
+      call check_loads(context, model, uses, report)
    end subroutine check_model
 
    !> The refined mesh, its matrices and the new numbers of its nodes fit into default integers.

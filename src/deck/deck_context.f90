@@ -9,10 +9,10 @@ module deck_context
    use load_requests, only: request_list_type
    use mesh, only: set_type
    use sorting, only: number_index_type
-   use text, only: nearest_known, read_integer, string_type, to_upper
+   use text, only: edit_distance, likely_slip, nearest_known, read_integer, string_type, to_upper
    implicit none
    private
-   public :: deck_context_type, find_set, set_names, read_target
+   public :: deck_context_type, find_set, set_names, read_target, report_unknown
    public :: plane_by_element
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
@@ -77,6 +77,28 @@ contains
          names(i)%value = sets(i)%name
       end do
    end function set_names
+
+   !> Reports a name that nothing has. Where a card gives no name, which is reported there, it may
+   !> be the one that is missing, unless it looks like a slip of the pen.
+   subroutine report_unknown(noun, name, names, place, report)
+      character(*), intent(in) :: noun                  !! what is named, such as material
+      character(*), intent(in) :: name                  !! the name that is not known
+      type(string_type), intent(in) :: names(:)         !! the names that are known
+      type(place_type), intent(in) :: place             !! where it stands
+      type(deck_report_type), intent(inout) :: report   !! receives the error
+      logical :: nameless, slip
+      integer :: i
+
+      nameless = .false.
+      slip = .false.
+      do i = 1, size(names)
+         nameless = nameless .or. len(names(i)%value) == 0
+         slip = slip .or. (len(names(i)%value) > 0 .and. &
+            edit_distance(name, names(i)%value) <= likely_slip)
+      end do
+      if (nameless .and. .not. slip) return
+      call report%error(place, 'unknown '//noun//' '//name//nearest_known(name, names))
+   end subroutine report_unknown
 
    !> Reads the field of a card that names one node or element by its number, or a set by its name.
    subroutine read_target(data, position, noun, numbers, sets, report, item, set, valid)

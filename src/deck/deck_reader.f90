@@ -22,6 +22,7 @@ contains
       type(cards_type), intent(out) :: cards            !! its cards
       type(deck_report_type), intent(out) :: report     !! what is wrong with it
       type(card_lines_type) :: open_lines
+      type(string_type), allocatable :: none(:)
       character(:), allocatable :: fault
       integer :: i
 
@@ -30,7 +31,8 @@ contains
       open_lines%width = max(default_width, width)
       allocate(report%source%paths(0))
       call open_lines%parameters%take_settings(settings, report)
-      call read_file(path, path, 1, open_lines, cards, report, fault)
+      allocate (none(0))
+      call read_file(path, path, none, open_lines, cards, report, fault)
       call open_lines%finish(cards, report)
       call trim_cards(cards)
       if (len(fault) > 0) then
@@ -51,15 +53,15 @@ contains
    end subroutine read_deck
 
    !> Reads one file, and the files that it includes where it includes them.
-   recursive subroutine read_file(path, found, depth, open_lines, cards, report, fault)
+   recursive subroutine read_file(path, found, above, open_lines, cards, report, fault)
       character(*), intent(in) :: path                       !! file as given, for messages
       character(*), intent(in) :: found                      !! file as seen from the current folder
-      integer, intent(in) :: depth                           !! files open, this one counted
+      type(string_type), intent(in) :: above(:)              !! files that include it
       type(card_lines_type), intent(inout) :: open_lines     !! what is open
       type(cards_type), intent(inout) :: cards               !! receives the cards
       type(deck_report_type), intent(inout) :: report        !! receives errors
       character(:), allocatable, intent(out) :: fault        !! why it is not read; else empty
-      type(string_type), allocatable :: lines(:)
+      type(string_type), allocatable :: lines(:), open_files(:)
       character(:), allocatable :: included, include_fault
       type(place_type) :: place
       integer :: i, file
@@ -68,23 +70,54 @@ contains
       if (len(fault) > 0) return
       call append(report%source%paths, path)
       file = size(report%source%paths)
+      open_files = above
+      call append(open_files, plain(found))
       do i = 1, size(lines)
          call report%source%add_image(file, i, lines(i)%value)
          call open_lines%take_line(lines(i)%value, report%source%count, cards, report)
          if (.not. allocated(open_lines%include)) cycle
          call move_alloc(open_lines%include, included)
          place = open_lines%include_place
-         if (depth == deepest_include) then
+         if (is_open(beside(found, included), open_files)) then
+            call report%error(place, included//' is open already: it would include itself')
+            cycle
+         else if (size(open_files) == deepest_include) then
             call report%error(place, 'more than '//to_text(deepest_include)// &
                ' files include each other')
             cycle
          end if
-         call read_file(included, beside(found, included), depth + 1, open_lines, cards, report, &
+         call read_file(included, beside(found, included), open_files, open_lines, cards, report, &
             include_fault)
          if (len(include_fault) > 0) call report%error(place, included//' cannot be read: '// &
             include_fault)
       end do
    end subroutine read_file
+
+   pure logical function is_open(path, open_files)
+      character(*), intent(in) :: path
+      type(string_type), intent(in) :: open_files(:)
+      integer :: i
+
+      is_open = .false.
+      do i = 1, size(open_files)
+         is_open = is_open .or. open_files(i)%value == plain(path)
+      end do
+   end function is_open
+
+   !> A path without the steps ./ that lead nowhere.
+   pure function plain(path) result(short)
+      character(*), intent(in) :: path
+      character(:), allocatable :: short
+      integer :: dot
+
+      short = '/'//path
+      dot = index(short, '/./')
+      do while (dot > 0)
+         short = short(:dot)//short(dot + 3:)
+         dot = index(short, '/./')
+      end do
+      short = short(2:)
+   end function plain
 
    !> An included file is looked for beside the file that includes it, then in the current folder.
    function beside(path, included) result(found)

@@ -1,11 +1,12 @@
 !> Whether the cards of a deck stand where they may stand, and whether those that every deck needs
 !> are there.
 module deck_structure
+   use card_parameters, only: parameter_text
    use card_values, only: field_place
    use cards, only: cards_type, keyword_card_type
    use deck_report, only: deck_report_type
    use keywords, only: built, in_model, in_step, known_keyword_type, known_keywords, not_needed
-   use text, only: to_text
+   use text, only: to_text, to_upper
    implicit none
    private
    public :: check_structure, card_count, is_misspelt
@@ -108,13 +109,20 @@ contains
 
       known = known_keywords(card%known)
       n = card%last_data - card%first_data + 1
-      if (known%status == built .and. n < known%least_data) then
+      if (known%status == built .and. n < known%least_data .and. .not. only_ends(card)) then
          call report%error(card%place, '*'//card%name//' needs a data card')
       else if (n > known%most_data) then
          call report%error(field_place(cards%data(card%first_data + known%most_data), 1), &
             'extra data card; *'//card%name//' has '//most_cards(known%most_data))
       end if
    end subroutine check_data_count
+
+   !> Whether a card needs no data because OP=NEW says all that it has to say.
+   pure logical function only_ends(card)
+      type(keyword_card_type), intent(in) :: card
+
+      only_ends = to_upper(parameter_text(card, 'OP')) == 'NEW'
+   end function only_ends
 
    pure function most_cards(most) result(words)
       integer, intent(in) :: most

@@ -6,12 +6,10 @@ module keyword_cards
    use deck_source, only: place_type
    use keywords, only: find_keyword, find_parameter, keyword_names, known_keywords, &
       known_parameter_type, later, not_needed, parameter_names, refusal, refused
-   use text, only: edit_distance, nearest_known, nearest_name, string_type, to_upper
+   use text, only: edit_distance, likely_slip, nearest_known, nearest_name, string_type, to_upper
    implicit none
    private
    public :: make_keyword_card
-
-   integer, parameter :: likely_slip = 2   !! letters that differ in a misspelt keyword
 
 contains
 

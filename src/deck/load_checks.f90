@@ -1,6 +1,7 @@
 !> What only shows of loads once all cards are read: whether they act on something, and in a step
 !> that has use for them.
 module load_checks
+   use boundary_checks, only: check_boundaries
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_kinds, only: axisymmetric
@@ -8,7 +9,8 @@ module load_checks
    use model, only: model_type
    use steps, only: analysis_static, dof_temperature, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
-      load_temperature
+      load_pressure, load_temperature, solves_heat, solves_mechanics
+   use text, only: to_text
    implicit none
    private
    public :: check_loads, first_heat
@@ -16,9 +18,10 @@ module load_checks
 contains
 
    !> Checks the requests before the model is refined.
-   subroutine check_loads(context, model, report)
+   subroutine check_loads(context, model, uses, report)
       type(deck_context_type), intent(in) :: context       !! requests
       type(model_type), intent(in) :: model                !! the model
+      integer, intent(in) :: uses(:, :)  !! (4, elements) elements that meet at each side
       type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
       logical :: used(0:size(model%mesh%node_number))
       integer :: i, card
@@ -43,18 +46,15 @@ contains
                if (model%steps(request%step)%analysis /= analysis_static) call report%error( &
                   request%place, 'the step solves for temperatures; *BOUNDARY with degree of '// &
                   'freedom 11 prescribes them')
+            case (load_pressure, load_face_heat, load_film_coefficient)
+               call check_faces(request, model, uses, report)
             case default
                continue
             end select
-            if (is_heat(request%kind)) call check_effect(request, model, 'a heat load', report)
+            call check_effect(request, model, report)
          end associate
       end do
-      do i = 1, context%boundaries%count
-         associate (request => context%boundaries%items(i))
-            if (request%component == dof_temperature) call check_effect(request, model, &
-               'a temperature', report)
-         end associate
-      end do
+      call check_boundaries(context, model, used, report)
    end subroutine check_loads
 
    !> Index of the first step in which heat is loaded or a temperature prescribed; that behind the
@@ -144,15 +144,40 @@ contains
       if (request%set > 0) elements = model%mesh%element_sets(request%set)%members
    end function elements_of
 
-   !> Warns of what comes after the last step that solves heat.
-   subroutine check_effect(request, model, what, report)
+   !> Warns of what comes after the last step that solves for what it loads.
+   subroutine check_effect(request, model, report)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
-      character(*), intent(in) :: what
       type(deck_report_type), intent(inout) :: report
 
-      if (any(model%steps(max(1, request%step):)%analysis /= analysis_static)) return
-      call report%warning(request%place, what//' without effect: no step from here on solves heat')
+      associate (analyses => model%steps(request%step:)%analysis)
+         if (is_heat(request%kind)) then
+            if (.not. any(solves_heat(analyses))) call report%warning(request%place, &
+               'a heat load without effect: no step from here on solves heat')
+         else if (request%kind /= load_temperature) then
+            if (.not. any(solves_mechanics(analyses))) call report%warning(request%place, &
+               'a load without effect: no step from here on solves mechanics')
+         end if
+      end associate
    end subroutine check_effect
+
+   !> Warns of loads on sides between two elements.
+   subroutine check_faces(request, model, uses, report)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: uses(:, :)
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: elements(:)
+      character(:), allocatable :: others
+
+      elements = elements_of(request, model)
+      elements = pack(elements, uses(request%component, elements) > 1)
+      if (size(elements) == 0) return
+      others = ''
+      if (size(elements) > 1) others = '; elements with such a side: '//to_text(size(elements))
+      call report%warning(request%place, 'side '//to_text(request%component)//' of element '// &
+         to_text(model%mesh%element_number(elements(1)))//' lies inside a body; the load acts '// &
+         'there all the same'//others)
+   end subroutine check_faces
 
 end module load_checks

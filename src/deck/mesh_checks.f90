@@ -98,13 +98,14 @@ contains
 
    !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is
    !> free.
-   subroutine check_sides(context, mesh, report)
+   subroutine check_sides(context, mesh, uses, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
       type(mesh_type), intent(in) :: mesh                  !! the mesh
+      integer, intent(out) :: uses(:, :)  !! (4, elements) elements that meet at each side
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(side_type) :: sides(4*size(mesh%element_number))
       integer, allocatable :: order(:)
-      integer :: uses(4, size(mesh%element_number)), first, last, n
+      integer :: first, last, n
 
       call list_sides(context, mesh, sides, n)
       order = sort_order(sides(:n)%high)

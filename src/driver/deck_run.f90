@@ -11,6 +11,7 @@ module deck_run
    use increments, only: simulation_type
    use interruption, only: caught_signal
    use kinds, only: dp
+   use load_courses, only: step_clock_type
    use model, only: model_type
    use progress, only: deck_outcome_type
    use records, only: increment_record_type
@@ -47,6 +48,7 @@ contains
       call prepare_deck(path, command, cards, model, simulation, outcome%status)
       if (outcome%status == 0) then
          call simulation%reduce(model, error)
+         if (allocated(error)) call say_when(model, simulation, error)
          if (allocated(error)) call report_failure(path, error, outcome)
       end if
       if (outcome%status == 0) then
@@ -98,13 +100,33 @@ contains
             call output%accept(record, model, pairs, error)
             if (allocated(error)) return
          end do
-         if (allocated(error)) call output%fail(error%message, record)
+         if (allocated(error)) then
+            if (error%status == status_deck) then
+               ! What only an increment shows is no mistake of the deck's cards; one that has no
+               ! number yet failed as it was set up.
+               if (record%increment == 0) call say_when(model, simulation, error)
+               error%status = status_no_convergence
+            end if
+            call output%fail(error%message, record)
+         end if
          call output%finish(model, pairs, output_error)
          if (allocated(output_error) .and. .not. allocated(error)) then
             call move_alloc(output_error, error)
          end if
       end associate
    end subroutine solve_deck
+
+   !> Puts the increment that was tried before what went wrong.
+   subroutine say_when(model, simulation, error)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(error_type), intent(inout) :: error
+      type(step_clock_type) :: clock
+
+      clock = simulation%control%next_instant(model)
+      error%message = 'increment '//to_text(simulation%control%increments + 1)//' (time '// &
+         to_text(clock%total_time)//'): '//error%message
+   end subroutine say_when
 
    !> A signal ends the run between two increments.
    !> Error: status_interrupted.

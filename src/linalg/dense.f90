@@ -17,7 +17,7 @@ module dense
    contains
       procedure :: factor
       procedure :: solve
-      procedure :: determinant_sign
+      procedure :: negative_determinant
    end type lu_type
 
 contains
@@ -49,19 +49,6 @@ contains
       n = size(x, 1)
       call dgetrs('N', n, size(x, 2), self%factors, max(n, 1), self%pivots, x, max(n, 1), info)
    end subroutine solve
-
-   !> Sign of the determinant: 1 or -1.
-   pure integer function determinant_sign(self)
-      class(lu_type), intent(in) :: self    !! the factors of a regular matrix
-      integer :: i
-
-      determinant_sign = 1
-      do i = 1, size(self%pivots)
-         if ((self%factors(i, i) < 0.0_dp) .neqv. (self%pivots(i) /= i)) then
-            determinant_sign = -determinant_sign
-         end if
-      end do
-   end function determinant_sign
 
    !> Orthonormal basis of the vectors that all rows map to zero.
    pure function null_space(rows) result(basis)
@@ -105,6 +92,19 @@ contains
       basis = found(:, :rank)
    end function column_space
 
+   !> Whether the determinant of the matrix is negative.
+   pure function negative_determinant(self) result(negative)
+      class(lu_type), intent(in) :: self   !! the factors
+      logical :: negative                  !! det < 0
+      integer :: i
+
+      negative = .false.
+      do i = 1, size(self%pivots)
+         negative = negative .neqv. (self%factors(i, i) < 0.0_dp)
+         negative = negative .neqv. (self%pivots(i) /= i)
+      end do
+   end function negative_determinant
+
    !> Eigenvalues of a general matrix.
    subroutine eigenvalues(matrix, real_part, imaginary_part, found)
       real(dp), intent(in) :: matrix(:, :)                      !! (n, n), n > 0
@@ -140,7 +140,7 @@ contains
       solution(:size(rhs), 1) = rhs
       free = 0
       call dgelsy(size(matrix, 1), size(matrix, 2), 1, copy, size(matrix, 1), solution, &
-         size(solution), free, rank_tolerance, rank, work, size(work), info)
+         size(solution), free, lost, rank, work, size(work), info)
       x = solution(:size(x), 1)
    end function least_squares
 

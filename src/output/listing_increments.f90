@@ -2,7 +2,7 @@
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use kinds, only: dp
-   use listing_text, only: print_wrapped
+   use listing_text, only: column, print_wrapped
    use records, only: attempt_record_type, contact_record_type, edges_kept, &
       increment_record_type, status_open, status_stick
    use steps, only: solves_heat, solves_mechanics
@@ -26,11 +26,11 @@ contains
       if (.not. allocated(record%iterations)) return
       passes = size(record%iterations)
       if (passes == 0) return
-      write (unit, '(3x, 2(a, i0), 2(a, es9.2), a)') 'passes ', passes, '   cut-backs ', &
-         record%cut_backs, '   residual', record%iterations(passes)%residual, &
-         '  (floor', record%residual_floor, ')'
-      if (ieee_is_nan(record%coupling_gain)) return
-      write (unit, '(3x, 4a)') 'quasi-static coupling gain ', text_or_none(record%coupling_gain), &
+      write (unit, '(3x, 2(a, i0), 5a)') 'passes ', passes, '   cut-backs ', record%cut_backs, &
+         '   residual', column(record%iterations(passes)%residual, 9, 2), '  (floor', &
+         column(record%residual_floor, 9, 2), ')'
+      if (.not. ieee_is_nan(record%coupling_gain)) write (unit, '(3x, 4a)') &
+         'quasi-static coupling gain ', text_or_none(record%coupling_gain), &
          '   largest real one ', text_or_none(record%coupling_gain_max)
    end subroutine print_increment
 
@@ -58,10 +58,10 @@ contains
       write (unit, '(3x, a, 3(a, i0), 4a)') name, '   I ', zones(1), '   II ', zones(2), &
          '   III ', zones(3), '   edge of contact s = ', text_or_none(contact%edge_contact), &
          '   of stick s = ', text_or_none(contact%edge_stick)
-      write (unit, '(6x, 2(a, es14.6))', advance='no') 'normal force', contact%normal_force, &
-         '   shear force', contact%shear_force
+      write (unit, '(6x, 4a)', advance='no') 'normal force', &
+         column(contact%normal_force, 14, 6), '   shear force', column(contact%shear_force, 14, 6)
       if (allocated(contact%heat_flux)) then
-         write (unit, '(a, es14.6)', advance='no') '   heat rate', contact%heat_rate
+         write (unit, '(2a)', advance='no') '   heat rate', column(contact%heat_rate, 14, 6)
       end if
       write (unit, '()')
       call print_surplus(unit, 'contact', edge_count(contact%status /= status_open))
@@ -100,13 +100,14 @@ contains
       integer, intent(in) :: analysis                     !! one of the analysis_* constants
 
       if (solves_heat(analysis)) then
-         write (unit, '(3x, 2(a, es14.6), 2(a, es9.2))') 'heat in', record%heat_in, '   out', &
-            record%heat_out, '   heat imbalance', record%heat_imbalance, '   at this instant', &
-            record%heat_imbalance_pointwise
+         write (unit, '(3x, 8a)') 'heat in', column(record%heat_in, 14, 6), '   out', &
+            column(record%heat_out, 14, 6), '   heat imbalance', &
+            column(record%heat_imbalance, 9, 2), '   at this instant', &
+            column(record%heat_imbalance_pointwise, 9, 2)
       end if
       if (solves_mechanics(analysis)) then
-         write (unit, '(3x, 2(a, es9.2))') 'force imbalance', record%force_imbalance, &
-            '   contact conditions violated by', record%contact_violation
+         write (unit, '(3x, 4a)') 'force imbalance', column(record%force_imbalance, 9, 2), &
+            '   contact conditions violated by', column(record%contact_violation, 9, 2)
       end if
       associate (work => record%work)
          if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &

@@ -1,6 +1,7 @@
 !> Tables of the listing that *NODE PRINT and *EL PRINT ask for.
 module listing_prints
    use kinds, only: dp
+   use listing_text, only: in_columns
    use model, only: model_type
    use print_requests, only: print_displacement, print_force, print_heat, print_heat_flux, &
       print_position, print_request_type, print_stress, print_temperature
@@ -9,9 +10,6 @@ module listing_prints
    implicit none
    private
    public :: is_due, print_requested
-
-   character(*), parameter :: place_form = '(2es12.4)'
-   character(*), parameter :: value_form = '(*(es14.6))'
 
 contains
 
@@ -85,14 +83,14 @@ contains
             call print_head(unit, '    node', names)
             do k = 1, size(nodes)
                write (unit, '(i8)', advance='no') model%mesh%node_number(nodes(k))
-               write (unit, place_form, advance='no') model%mesh%coordinates(:, nodes(k))
-               write (unit, value_form) columns(k, :size(names))
+               write (unit, '(2a)') in_columns(model%mesh%coordinates(:, nodes(k)), 12, 4), &
+                  in_columns(columns(k, :size(names)), 14, 6)
             end do
          end if
          if (size(sum_names) > 0) then
             write (unit, '(/, 2a)') '   TOTALS OF ', set%name
             write (unit, '(*(a14))') (sum_names(i)%value, i=1, size(sum_names))
-            write (unit, value_form) sum(sums(:, :size(sum_names)), dim=1)
+            write (unit, '(a)') in_columns(sum(sums(:, :size(sum_names)), dim=1), 14, 6)
          end if
       end associate
    end subroutine print_nodes
@@ -197,8 +195,8 @@ contains
       do k = 1, size(points%element)
          write (unit, '(i8, i6)', advance='no') model%mesh%element_number(points%element(k)), &
             points%point(k)
-         write (unit, place_form, advance='no') points%position(:, k)
-         write (unit, value_form, advance='no') columns(:n, k)
+         write (unit, '(2a)', advance='no') in_columns(points%position(:, k), 12, 4), &
+            in_columns(columns(:n, k), 14, 6)
          write (unit, '(a)') axes_name(request, model, points%element(k))
       end do
    end subroutine print_points

@@ -1,7 +1,7 @@
 !> Tables of the listing: *CONTACT PRINT, the iteration history, the *VERIFY verdicts.
 module listing_tables
    use contact_pairs, only: contact_pairs_type
-   use kinds, only: dp
+   use listing_text, only: column
    use model, only: verify_type
    use records, only: contact_record_type, iteration_record_type
    use run_summaries, only: or_blank
@@ -31,13 +31,16 @@ contains
       if (has_heat) write (unit, '(2a11, a10, a11)', advance='no') 'T1', 'T2', 'omega', 'q'
       write (unit, '()')
       do k = 1, size(pairs%slave_node)
-         write (unit, '(i4, 2i8, 2es11.3, a5, 2es10.3, 2es11.3)', advance='no') k, &
+         write (unit, '(i4, 2i8, 2a, a5, 4a)', advance='no') k, &
             node_number(pairs%slave_node(k)), node_number(pairs%master_node(k)), &
-            pairs%position(:, k), adjustr('  '//zone_numeral(contact%status(k))), contact%gap(k), &
-            contact%pressure(k), contact%shear(k), contact%slip(k)
-         if (has_heat) write (unit, '(2es11.3, es10.3, es11.3)', advance='no') &
-            contact%slave_temperature(k), contact%master_temperature(k), contact%conductance(k), &
-            contact%heat_flux(k)
+            column(pairs%position(1, k), 11, 3), column(pairs%position(2, k), 11, 3), &
+            adjustr('  '//zone_numeral(contact%status(k))), column(contact%gap(k), 10, 3), &
+            column(contact%pressure(k), 10, 3), column(contact%shear(k), 11, 3), &
+            column(contact%slip(k), 11, 3)
+         if (has_heat) write (unit, '(4a)', advance='no') &
+            column(contact%slave_temperature(k), 11, 3), &
+            column(contact%master_temperature(k), 11, 3), column(contact%conductance(k), 10, 3), &
+            column(contact%heat_flux(k), 11, 3)
          write (unit, '()')
       end do
    end subroutine print_contact_table
@@ -53,8 +56,8 @@ contains
          'g min', 'g max', 'g kept', 'pairs changed', 'cut-backs'
       do i = 1, size(iterations)
          associate (pass => iterations(i))
-            write (unit, '(i12, i11, es12.3, 2f11.6, i8, i15, i11)') pass%increment, &
-               pass%iteration, pass%residual, pass%g_min, pass%g_max, pass%g_kept, &
+            write (unit, '(i12, i11, a, 2f11.6, i8, i15, i11)') pass%increment, &
+               pass%iteration, column(pass%residual, 12, 3), pass%g_min, pass%g_max, pass%g_kept, &
                pass%pairs_changed, pass%cut_backs
          end associate
       end do
@@ -68,7 +71,7 @@ contains
       integer :: i
 
       write (unit, '(/, a)') 'VERIFICATION'
-      write (unit, '(a6, 2x, a10, 1x, a24, 1x, a16, a11, 2a14, 2a10, a9)') 'card', &
+      write (unit, '(a6, 2x, a10, 1x, a24, 1x, a16, a11, 2a15, 2a10, a9)') 'card', &
          'kind      ', 'quantity                ', 'where           ', 'time', 'expected', &
          'found', 'deviation', 'allowed', 'verdict'
       do i = 1, size(checks)
@@ -86,7 +89,7 @@ contains
       character(24) :: quantity
       character(16) :: where
       character(11) :: time
-      character(14) :: found
+      character(15) :: found
       character(10) :: deviation
 
       kind = or_blank(check%kind)
@@ -97,12 +100,12 @@ contains
       found = '-'
       deviation = '-'
       if (outcome%reason == '') then
-         write (found, '(es14.7)') outcome%found
-         write (deviation, '(es10.2)') outcome%deviation
+         found = column(outcome%found, 15, 7)
+         deviation = column(outcome%deviation, 10, 2)
       end if
-      write (unit, '(i6, 2x, a, 1x, a, 1x, a, a, es14.7, 2a, es10.2, a4, a5)') check%line, kind, &
-         quantity, where, adjustr(time), check%value, adjustr(found), adjustr(deviation), &
-         check%tolerance, merge(' REL', ' ABS', check%relative), &
+      write (unit, '(i6, 2x, a, 1x, a, 1x, 6a, a4, a5)') check%line, kind, quantity, where, &
+         adjustr(time), column(check%value, 15, 7), adjustr(found), adjustr(deviation), &
+         column(check%tolerance, 10, 2), merge(' REL', ' ABS', check%relative), &
          merge(' PASS', ' FAIL', outcome%passed)
       if (or_blank(check%source) /= '') write (unit, '(8x, 2a)') 'source: ', check%source
       if (outcome%reason /= '') write (unit, '(8x, 2a)') 'failed: ', outcome%reason

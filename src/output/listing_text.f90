@@ -1,9 +1,12 @@
-!> Text of the listing: titles, wrapped lines, the echo of the deck.
+!> Text of the listing: titles, wrapped lines, numbers in columns, the echo of the deck.
 module listing_text
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use kinds, only: dp
    use text, only: string_type
    implicit none
    private
    public :: page_width, print_title, print_wrapped, print_list, print_deck
+   public :: column, in_columns
 
    integer, parameter :: page_width = 132   !! columns of the line printer
 
@@ -16,6 +19,46 @@ contains
 
       write (unit, '(/, a, /, a)') title, repeat('-', len(title))
    end subroutine print_title
+
+   !> A number in a column, with a blank before it: decimals are left out where it would not fit
+   !> otherwise, exponents of three digits keep their E, and zero has no sign.
+   pure function column(value, width, decimals) result(string)
+      real(dp), intent(in) :: value      !! the number
+      integer, intent(in) :: width       !! columns, at least 9
+      integer, intent(in) :: decimals    !! digits behind the point where they fit
+      character(width) :: string         !! such as '  1.350E+00'
+      character(40) :: buffer, form
+      integer :: digits, places
+
+      if (.not. ieee_is_finite(value)) then
+         write (buffer, '(es40.2)') value
+         string = buffer(41 - width:)
+         return
+      end if
+      digits = 2
+      if (abs(value) >= 1.0e99_dp .or. (abs(value) > 0.0_dp .and. abs(value) < 1.0e-99_dp)) then
+         digits = 3
+      end if
+      do places = decimals, 0, -1
+         write (form, '(a, i0, a, i0, a)') '(es40.', places, 'e', digits, ')'
+         write (buffer, form) merge(0.0_dp, value, abs(value) <= 0.0_dp)
+         if (len_trim(adjustl(buffer)) < width) exit
+      end do
+      string = buffer(41 - width:)
+   end function column
+
+   !> Numbers in columns side by side.
+   pure function in_columns(values, width, decimals) result(string)
+      real(dp), intent(in) :: values(:)          !! (n) the numbers
+      integer, intent(in) :: width               !! columns of each, at least 9
+      integer, intent(in) :: decimals            !! digits behind the point where they fit
+      character(width*size(values)) :: string    !! as from column
+      integer :: i
+
+      do i = 1, size(values)
+         string(width*(i - 1) + 1:width*i) = column(values(i), width, decimals)
+      end do
+   end function in_columns
 
    !> Prints text under a mark, broken at blanks.
    subroutine print_wrapped(unit, mark, string)

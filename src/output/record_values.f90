@@ -202,13 +202,20 @@ contains
       end if
    end function row
 
-   !> Von Mises' equivalent stress.
+   !> Von Mises' equivalent stress; scaled, so that no square of a stress overflows.
    pure function von_mises(stress) result(equivalent)
       real(dp), intent(in) :: stress(:, :)            !! (4, points) xx, yy, zz, xy [stress]
       real(dp) :: equivalent(size(stress, 2))         !! (points) [stress]
 
-      equivalent = sqrt(0.5_dp*((stress(1, :) - stress(2, :))**2 + (stress(2, :) &
-         - stress(3, :))**2 + (stress(3, :) - stress(1, :))**2) + 3.0_dp*stress(4, :)**2)
+      real(dp) :: s(4), scale
+      integer :: i
+
+      do i = 1, size(stress, 2)
+         scale = maxval(abs(stress(:, i)))
+         s = stress(:, i)/max(scale, tiny(scale))
+         equivalent(i) = scale*sqrt(0.5_dp*((s(1) - s(2))**2 + (s(2) - s(3))**2 + &
+            (s(3) - s(1))**2) + 3.0_dp*s(4)**2)
+      end do
    end function von_mises
 
 end module record_values

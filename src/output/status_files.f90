@@ -3,6 +3,7 @@
 module status_files
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
+   use listing_text, only: column
    use records, only: increment_record_type, iteration_record_type
    implicit none
    private
@@ -65,9 +66,10 @@ contains
       residual = 0.0_dp
       if (allocated(record%iterations)) passes = size(record%iterations)
       if (passes > 0) residual = record%iterations(passes)%residual
-      write (line, '(i0,t12,i4,2es16.8,i12,i11,es12.3,2es11.2)') record%increment, record%step, &
-         record%time, record%load, passes, record%cut_backs, residual, record%heat_imbalance, &
-         record%force_imbalance
+      write (line, '(i0, t12, i4, 2a, i12, i11, 3a)') record%increment, record%step, &
+         column(record%time, 16, 8), column(record%load, 16, 8), passes, record%cut_backs, &
+         column(residual, 12, 3), column(record%heat_imbalance, 11, 2), &
+         column(record%force_imbalance, 11, 2)
       call add_line(self, line)
    end subroutine add_increment
 
@@ -80,9 +82,9 @@ contains
 
       do i = 1, size(iterations)
          associate (pass => iterations(i))
-            write (line, '(i0,t12,i9,3es12.3,i8,i15,i11)') pass%increment, pass%iteration, &
-               pass%residual, pass%g_min, pass%g_max, pass%g_kept, pass%pairs_changed, &
-               pass%cut_backs
+            write (line, '(i0, t12, i9, 3a, i8, i15, i11)') pass%increment, pass%iteration, &
+               column(pass%residual, 12, 3), column(pass%g_min, 12, 3), &
+               column(pass%g_max, 12, 3), pass%g_kept, pass%pairs_changed, pass%cut_backs
          end associate
          call add_line(self, line)
       end do

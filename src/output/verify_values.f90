@@ -20,6 +20,10 @@ module verify_values
       'edge_contact', 'edge_stick', 'edges_contact', 'edges_stick', 'x', 'y', 's', 'weight', &
       'slave_node', 'master_node']
 
+   !> Those of them that are numbers of a pair and have no values between two.
+   character(name_length), parameter :: numbers_of_pairs(3) = [character(name_length) :: &
+      'status', 'slave_node', 'master_node']
+
 contains
 
    !> The values that a check is about: one, or those of a set, of which the worst counts.
@@ -88,7 +92,8 @@ contains
       do i = 1, size(pairs)
          if (to_upper(pairs(i)%name) /= to_upper(trim(where(:at - 1)))) cycle
          values = values_of(name, mesh, pairs(i), record%contacts(i))
-         if (at < len(where)) call interpolate(pairs(i), where(at + 1:), values, reason)
+         if (at < len(where)) call take_place(pairs(i), where(at + 1:), &
+            any(name == numbers_of_pairs), values, reason)
          return
       end do
       reason = 'there is no contact pair "'//where(:at - 1)//'"'
@@ -126,9 +131,12 @@ contains
          s <= pairs%arc_length(size(pairs%arc_length))*(1.0_dp + rounding)
    end function is_on_interface
 
-   subroutine interpolate(pairs, place, values, reason)
+   !> The value at an arc length: between two pairs, or that of the nearest pair (of two as near the
+   !> first).
+   subroutine take_place(pairs, place, nearest, values, reason)
       type(contact_pairs_type), intent(in) :: pairs
       character(*), intent(in) :: place
+      logical, intent(in) :: nearest
       real(dp), allocatable, intent(inout) :: values(:)
       character(:), allocatable, intent(inout) :: reason
       real(dp) :: s, share
@@ -143,10 +151,14 @@ contains
          reason = 'no such arc length, "'//place//'"'
          return
       end if
+      if (nearest) then
+         values = [values(minloc(abs(pairs%arc_length - s), dim=1))]
+         return
+      end if
       k = max(1, min(last - 1, count(pairs%arc_length <= s)))
       share = (s - pairs%arc_length(k))/(pairs%arc_length(k + 1) - pairs%arc_length(k))
       values = [(1.0_dp - share)*values(k) + share*values(k + 1)]
-   end subroutine interpolate
+   end subroutine take_place
 
    subroutine select_points(where, mesh, point_node, values, reason)
       character(*), intent(in) :: where

@@ -69,18 +69,21 @@ contains
 
    !> Largest imbalance, relative: of any single unsupported row, and per body and direction of the
    !> supports' reactions against all that is applied to the body, by loads and through its
-   !> contacts.
-   pure function imbalance(internal, residual, supported, node_body, scale) result(relative)
+   !> contacts. Along the radius of an axisymmetric body there is no such sum: the hoop stress takes
+   !> part of it.
+   pure function imbalance(internal, residual, supported, node_body, summed, scale) &
+      result(relative)
       real(dp), intent(in) :: internal(:)      !! (components*nodes) of the bodies alone, K T or K u
       real(dp), intent(in) :: residual(:)      !! (components*nodes) as from the functions above
       logical, intent(in) :: supported(:)      !! (components*nodes) prescribed rows
       integer, intent(in) :: node_body(:)      !! (nodes) body of each node, 0 for none
+      logical, intent(in) :: summed(:)         !! (components) directions with a sum per body
       real(dp), intent(in) :: scale            !! largest rate or force of the increment
       real(dp) :: relative                     !! relative imbalance
-      real(dp) :: total(0:maxval(node_body), size(residual)/size(node_body)), applied, reaction
+      real(dp) :: total(0:maxval(node_body), size(summed)), applied, reaction
       integer :: c, components, i, node
 
-      components = size(total, 2)
+      components = size(summed)
       total = 0.0_dp
       relative = 0.0_dp
       do node = 1, size(node_body)
@@ -92,7 +95,9 @@ contains
             if (.not. supported(i)) relative = max(relative, abs(residual(i)))
          end do
       end do
-      relative = max(relative, maxval(abs(total)))
+      do c = 1, components
+         if (summed(c)) relative = max(relative, maxval(abs(total(:, c))))
+      end do
       if (scale > 0.0_dp) relative = relative/scale
    end function imbalance
 

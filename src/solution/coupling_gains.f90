@@ -46,7 +46,7 @@ contains
             slope(k, :)
       end do
       call lu%factor(matrix, singular)
-      if (.not. singular) gain%is_one_of_several = lu%determinant_sign() < 0
+      if (.not. singular) gain%is_one_of_several = lu%negative_determinant()
       found = .true.
       if (size(free) == 0) return
       call eigenvalues(u_slope(free, free), real_part, imaginary_part, found)

@@ -45,7 +45,8 @@ contains
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + heat
          residual = heat_residual(conducted, heat, operators%pairs, weight*next%omega*next%jump)
-         record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, scale)
+         record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, [.true.], &
+            scale)
          associate (whole => scheme%a(1) + scheme%b(1))
             conducted = (scheme%a(1)*conducted + scheme%b(1)* &
                operators%thermal%matrix%multiply(previous%temperature))/whole
@@ -55,7 +56,8 @@ contains
                next%film, previous%temperature, next%temperature)/whole
          end associate
          residual = heat_residual(conducted, heat, operators%pairs, pair_heat)
-         record%heat_imbalance = imbalance(conducted, residual, held, body, scale)
+         record%heat_imbalance = imbalance(conducted, residual, held, body, [.true.], &
+            scale)
       end associate
    end subroutine balance_heat
 

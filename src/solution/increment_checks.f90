@@ -64,8 +64,8 @@ contains
       character(:), allocatable :: words
 
       words = ''
-      if (operators%contact%several) words = 'with so much friction other contact states '// &
-         'satisfy all conditions, too'
+      if (operators%contact%several) words = &
+         'with so much friction other contact states satisfy all conditions, too'
       if (size(operators%contact%loose, 2) > 0) words = &
          'the least motion is taken where nothing drives or holds one'// &
          bodies_held_by_no_pair(model, operators%pairs, loads%displacement%active, &

@@ -5,6 +5,7 @@ module increment_records
    use balances, only: contact_violation, force_residual, imbalance
    use contact_operator, only: kept_contact, thermal_forces
    use contact_system, only: contact_state_type, contact_system_type
+   use element_kinds, only: axisymmetric
    use element_points, only: points_of_elements
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
    use heat_balance, only: balance_heat
@@ -16,6 +17,7 @@ module increment_records
    use scheme_properties, only: is_explicit
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
+   use text, only: append, to_text
    use zone_edges, only: contact_edges, stick_edges
    implicit none
    private
@@ -63,6 +65,7 @@ contains
          record%fields%external_force = next%reaction + reshape(next%force_load, &
             shape(next%reaction))
       end if
+      call warn_of_floor(step, record)
       if (solves_heat(step%analysis)) then
          record%fields%heat_flux = recover_heat_flux(model%mesh, model%sections, &
             model%materials, model%orientations, points, next%temperature)
@@ -78,6 +81,20 @@ contains
          record%element_points = points_of_elements(model, step, next)
       end if
    end subroutine make_record
+
+   !> Warns where the last places of the displacements change omega by more than the tolerance: the
+   !> fixed point was then met no better than this.
+   pure subroutine warn_of_floor(step, record)
+      type(step_type), intent(in) :: step
+      type(increment_record_type), intent(inout) :: record
+
+      if (.not. allocated(record%iterations)) return
+      if (record%residual_floor <= step%fixed_point%tolerance) return
+      call append(record%warnings, 'increment '//to_text(record%increment)// &
+         ': the conductance of the contacts is known to '//to_text(record%residual_floor)// &
+         ' only, not to TOL='//to_text(step%fixed_point%tolerance)//': it takes its gaps from '// &
+         'displacements that are far larger, whose last places change it')
+   end subroutine warn_of_floor
 
    !> Slip counts from the instant of closing. Tangential positions that the contact system does not
    !> carry, of frictionless pairs, are taken from the recovered displacements, and such a pair
@@ -177,6 +194,7 @@ contains
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
       real(dp) :: length, scale
+      logical :: along_x
 
       next%stress = recover_stress(model%mesh, model%sections, model%materials, &
          model%orientations, points, reshape(next%displacement, [2, size(next%temperature)]), &
@@ -193,7 +211,9 @@ contains
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*maxval(abs(operators%mechanical%matrix%value))* &
             length, tiny(1.0_dp))
-         record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, scale)
+         along_x = all(model%mesh%element_plane /= axisymmetric)
+         record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
+            [along_x, .true.], scale)
          record%contact_violation = contact_violation(next%displacement, &
             internal - next%force_load, held, operators%pairs, next%contact, &
             operators%contact%tangent > 0, length, scale)

@@ -2,6 +2,7 @@
 !> needs, on the pairs alone.
 module interface_operators
    use bodies, only: bodies_on_axis
+   use body_names, only: cold_bodies
    use conductance_laws, only: conductance_law_type
    use contact_pairs, only: contact_pairs_type, make_pairs
    use contact_system, only: contact_system_type
@@ -18,7 +19,7 @@ module interface_operators
    use thermal_matrix, only: assemble_conduction
    implicit none
    private
-   public :: interface_operators_type, pair_row_type, pair_surfaces
+   public :: interface_operators_type, pair_row_type, pair_surfaces, over_constrained
 
    real(dp), parameter :: nearly_aligned = 0.99_dp !! cosine of a normal that counts as along an
    !! axis
@@ -190,7 +191,7 @@ contains
 
       call self%thermal%reduce(model%solver, error)
       if (allocated(error)) then
-         error%message = error%message//' (heat: no temperature holds it)'
+         call name_cold_bodies(self, model, error)
          return
       end if
       associate (map => self%thermal%map)
@@ -199,6 +200,24 @@ contains
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       if (self%is_coupled) call form_jump_load(self)
    end subroutine reduce_heat
+
+   !> Names the bodies that leave the heat problem singular: no prescribed temperature and no film
+   !> stands on them or on a body that pairs join to them.
+   subroutine name_cold_bodies(self, model, error)
+      type(interface_operators_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(error_type), intent(inout) :: error
+      logical :: warm(size(model%mesh%node_body))
+      character(:), allocatable :: words
+
+      warm = self%thermal%map%base(:size(warm)) > 0
+      if (allocated(self%thermal%added%value)) then
+         warm(pack(self%thermal%added%column, self%thermal%added%value > 0.0_dp)) = .true.
+      end if
+      words = cold_bodies(model, warm, self%pairs%slave, self%pairs%master)
+      if (len(words) > 0) error%message = words//': no *BOUNDARY on dof 11 and no *FILM with a '// &
+         'coefficient above 0 at this time fixes it'
+   end subroutine name_cold_bodies
 
    !> Takes the films of an increment; where they differ from those of the factors, the heat problem
    !> is reduced again.
@@ -261,6 +280,23 @@ contains
          pairs%tangent(3 - along, k) = sign(1.0_dp, pairs%tangent(3 - along, k))
       end do
    end subroutine align_frames
+
+   !> Pairs whose normal motion is prescribed on both nodes, or their motion along a direction that
+   !> is neither their normal nor their tangent, once frames are aligned.
+   pure function over_constrained(pairs, held) result(too_much)
+      type(pair_row_type), intent(in) :: pairs     !! the pairs
+      logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
+      logical :: too_much(size(pairs%slave))       !! (m)
+      logical :: both(2)
+      integer :: k
+
+      do k = 1, size(pairs%slave)
+         both = held(2*pairs%slave(k) - 1:2*pairs%slave(k)) .and. &
+            held(2*pairs%master(k) - 1:2*pairs%master(k))
+         too_much(k) = any(both) .and. (all(both) .or. &
+            abs(pairs%normal(merge(2, 1, both(1)), k)) < nearly_aligned)
+      end do
+   end function over_constrained
 
    !> The contact system from the mechanical Schur complement.
    subroutine set_contact(self)

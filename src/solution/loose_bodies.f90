@@ -1,6 +1,7 @@
 !> Bodies that nothing holds and bodies whose temperature nothing determines, in words.
 module loose_bodies
    use bodies, only: bodies_on_axis
+   use body_names, only: body_name, reached_bodies
    use conductance_laws, only: law_none
    use interface_operators, only: pair_row_type
    use kinds, only: dp
@@ -46,21 +47,38 @@ contains
       character(:), allocatable :: words            !! such as '; body 2 (...) slides along x'
       type(free_motion_type), allocatable :: motions(:), welded(:)
       integer, allocatable :: stuck(:)
-      character(:), allocatable :: verb
-      integer :: i
 
       call free_motions(model, pairs, held, status, motions)
       stuck = merge(status_stick, status, status == status_slip .and. pairs%friction > 0.0_dp)
       call free_motions(model, pairs, held, stuck, welded)
-      words = ''
-      do i = 1, size(motions)
-         verb = 'moves'
-         if (size(welded) == 0) verb = 'slides'
-         if (motions(i)%turns) verb = 'turns'
-         words = words//'; '//body_name(model, motions(i)%body)//' '//verb//' '//motions(i)%way// &
-            motions(i)%company
-      end do
+      words = in_words(model, motions, trim(merge('moves ', 'slides', size(welded) > 0)))
    end function bodies_held_by_no_pair
+
+   !> Motions, each body named once.
+   function in_words(model, motions, moves) result(words)
+      type(model_type), intent(in) :: model
+      type(free_motion_type), intent(in) :: motions(:)
+      character(*), intent(in) :: moves
+      character(:), allocatable :: words
+      integer :: i, last
+
+      words = ''
+      last = 0
+      do i = 1, size(motions)
+         if (motions(i)%body == last) then
+            words = words//', '
+         else
+            words = words//'; '//body_name(model, motions(i)%body)//' '
+         end if
+         last = motions(i)%body
+         if (motions(i)%turns) then
+            words = words//'turns'
+         else
+            words = words//moves
+         end if
+         words = words//' '//motions(i)%way//motions(i)%company
+      end do
+   end function in_words
 
    !> The free motions with the pairs in these states.
    subroutine free_motions(model, pairs, held, status, motions)
@@ -137,27 +155,17 @@ contains
       integer, intent(in) :: step                       !! the step, for its films
       logical, intent(in) :: conducts(:)                !! (m) pairs that carry heat
       logical :: undetermined(model%mesh%body_count)    !! (bodies)
+      logical :: determined(model%mesh%body_count)
       integer :: k
-      logical :: spreads
 
-      undetermined = .not. bodies_with_film(model, step)
+      determined = bodies_with_film(model, step)
       do k = 1, size(held)
          if (held(k) .and. model%mesh%node_body(k) > 0) then
-            undetermined(model%mesh%node_body(k)) = .false.
+            determined(model%mesh%node_body(k)) = .true.
          end if
       end do
-      spreads = .true.
-      do while (spreads)
-         spreads = .false.
-         do k = 1, size(conducts)
-            if (.not. conducts(k)) cycle
-            associate (bodies => model%mesh%node_body([pairs%slave(k), pairs%master(k)]))
-               if (undetermined(bodies(1)) .eqv. undetermined(bodies(2))) cycle
-               undetermined(bodies) = .false.
-               spreads = .true.
-            end associate
-         end do
-      end do
+      undetermined = .not. reached_bodies(model%mesh%node_body, determined, pairs%slave, &
+         pairs%master, conducts)
    end function undetermined_bodies
 
    !> Bodies with a film in a step: its own ones and those of the steps before that it keeps.
@@ -179,28 +187,5 @@ contains
          end associate
       end do
    end function bodies_with_film
-
-   !> How a body is named to the user: its number, its material, its first node in the deck.
-   function body_name(model, body) result(name)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: body
-      character(:), allocatable :: name
-      character(:), allocatable :: materials
-      integer :: m
-
-      associate (mesh => model%mesh)
-         materials = ''
-         do m = 1, size(model%materials)
-            if (.not. any(mesh%element_body == body .and. &
-               model%sections(mesh%element_section)%material == m)) cycle
-            if (.not. allocated(model%materials(m)%name)) cycle
-            materials = materials//' and '//model%materials(m)%name
-         end do
-         name = 'body '//to_text(body)//' ('
-         if (len(materials) > 0) name = name//'of '//materials(6:)//', '
-         name = name//'first node '//to_text(minval(mesh%node_number, mask= &
-            mesh%node_body == body))//')'
-      end associate
-   end function body_name
 
 end module loose_bodies

@@ -88,7 +88,8 @@ def test_a_push_beyond_friction_slides_the_block(tmp_path, share):
 def test_a_block_that_is_pulled_off_is_named(tmp_path):
     pull = ["*DLOAD", f"3, P3, {-PRESSURE}", f"4, P3, {-PRESSURE}"]
     deck = write(tmp_path / "pull.inp", MESH, SOLIDS, interaction(MU), FACES, step(FLOOR, pull))
-    assert "body 1 (of UPPER, first node 1) moves along" in refuse(deck, 2)
+    text = refuse(deck, 2)
+    assert "body 1 (of UPPER, first node 1) moves along x, moves along y, turns about (0." in text
 
 
 @pytest.mark.parametrize("friction", [0.0, MU])
@@ -208,3 +209,22 @@ def test_block_above_the_floor_stays_there_without_a_load(tmp_path):
     gap, status = read(deck.with_suffix(".vtkhdf"), "FACE", "gap", "status")
     np.testing.assert_allclose(gap, 0.02, rtol=1e-12)
     assert (status == 0).all()
+
+
+def films(path, *points):
+    """Heat a block by a film alone, whose coefficient follows an amplitude."""
+    amplitude = ["*AMPLITUDE, NAME=COURSE", ", ".join(map(str, points))]
+    return write(path, block("A", XS, UPPER), solid("A", 1e4, 0.3), amplitude,
+                 ["*STEP", "*HEAT TRANSFER, STEADY STATE", "0.5, 1.",
+                  "*FILM, FILM AMPLITUDE=COURSE", "A, F3, 50., 0.01", "*END STEP"])
+
+
+def test_a_film_of_nothing_leaves_a_temperature_undetermined(tmp_path):
+    """At once: an error of the deck; later: the increments before are kept."""
+    said = "the temperature of body 1 (of A, first node 1) is undetermined: no *BOUNDARY"
+    deck = films(tmp_path / "never.inp", 0.0, 0.0, 1.0, 0.0)
+    assert f"increment 1 (time 0.5): {said}" in refuse(deck, 1)
+    deck = films(tmp_path / "ends.inp", 0.0, 1.0, 0.5, 1.0, 1.0, 0.0)
+    assert f"increment 2 (time 1): {said}" in refuse(deck, 2)
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        assert list(file["history/time"]) == [0.5]

@@ -73,14 +73,14 @@ def test_decks_hold_their_own_checks(name, tmp_path):
 
 @pytest.mark.parametrize("name", RODS)
 def test_conductance_and_gain_are_those_of_the_closed_form(rod, name):
-    expected = rods.solutions(rods.image(*RODS[name]))
+    expected = rods.solutions(*RODS[name])
     assert len(expected) == (3 if name.startswith("r3") else 1)
     omega = expected[BRANCH.get(name, 0)]
     _, found, gain, _ = rod(name)
     np.testing.assert_allclose(found, omega, rtol=1e-8)
     # All pairs together move as the rod does; what they do against each other is less. The closed
     # form's own difference is good to 1e-8.
-    assert gain[0] == pytest.approx(rods.gain(rods.image(*RODS[name]), omega), rel=1e-5)
+    assert gain[0] == pytest.approx(rods.gain(*RODS[name], omega), rel=1e-5)
 
 
 # Where a method must converge, with most passes that it may take; None: it must not. Relaxed is
@@ -112,7 +112,7 @@ def test_methods_on_the_rods(rod, method, name):
         assert "not converge in 400 iterations" in process.stderr
     else:
         assert process.returncode == 0, process.stderr
-        np.testing.assert_allclose(omega, rods.solutions(rods.image(*RODS[name]))[BRANCH.get(name, 0)], 1e-8)
+        np.testing.assert_allclose(omega, rods.solutions(*RODS[name])[BRANCH.get(name, 0)], 1e-8)
         assert passes <= most
 
 
@@ -129,7 +129,7 @@ def test_newton_does_not_mind_how_steep_the_law_is(rod, name, kept, exponent):
     process, omega, _, passes = rod(name, {"TOL=1.E-11": "TOL=1.E-8"}, *sets)
     assert passes is not None, process.stderr
     assert passes <= 12
-    (expected,) = rods.solutions(rods.image(*known(both.gap, *both.expansion, a, b)))
+    (expected,) = rods.solutions(*known(both.gap, *both.expansion, a, b))
     # A unit in the last place of the displacements, 5e-4, is 1e-19: against B it is what remains.
     np.testing.assert_allclose(omega, expected, rtol=max(1e-8, 4e-18 / b))
 
@@ -142,21 +142,23 @@ def test_several_solutions_are_said_only_on_proof(rod):
         assert "solutions" not in rod(name)[0].stderr
     process, omega, *_ = rod("r3-open", {"FROM=OPEN": "FROM=BOTH"})
     assert "different solutions; this is one of several" in process.stderr
-    np.testing.assert_allclose(omega, rods.solutions(rods.image(*RODS["r3-open"]))[0], rtol=1e-8)
+    np.testing.assert_allclose(omega, rods.solutions(*RODS["r3-open"])[0], rtol=1e-8)
 
 
-@pytest.mark.changes("START", "START, FROM")
-def test_the_start_decides_between_solutions(rod):
-    """Of R3, all else being equal: the ends of the conductance, and two values given."""
-    expected = rods.solutions(rods.image(*RODS["r3-open"]))
-    text = (FOLDER / "r3-open.inp").read_text()
-    starts = {"OPEN": 0, "CLOSED": 2, "GIVEN\nFACE, 320.": 1, "GIVEN\nFACE, 3000.": 2}
-    decks = [text.replace("FROM=OPEN", f"FROM={start}").splitlines() for start in starts]
-    note_changes(decks[0], decks[1])
-    note_changes(decks[2], decks[3])
-    for start, branch in starts.items():
-        _, omega, *_ = rod("r3-open", {"FROM=OPEN": f"FROM={start}"})
-        np.testing.assert_allclose(omega, expected[branch], rtol=1e-8)
+@pytest.mark.parametrize(("cards", "other"), [
+    pytest.param(("FROM=GIVEN", 50.0, 0), ("FROM=GIVEN", 700.0, 2),
+                 marks=pytest.mark.changes("START")),
+    pytest.param(("FROM=OPEN", None, 0), ("FROM=CLOSED", None, 2),
+                 marks=pytest.mark.changes("START, FROM"))])
+def test_start_decides_which_solution_is_found(rod, tmp_path, cards, other):
+    """The card, its datum and the solution, by ascending conductance."""
+    decks = []
+    for parameter, omega, branch in (cards, other):
+        start = f"*START, {parameter}" + ("" if omega is None else f"\nFACE, {omega!r}")
+        _, found, *_ = rod("r3-middle", {"*START, FROM=GIVEN\nFACE, 320.": start})
+        np.testing.assert_allclose(found, rods.solutions(*RODS["r3-middle"])[branch], rtol=1e-8)
+        decks.append((tmp_path / "rods" / "r3-middle.inp").read_text().splitlines())
+    note_changes(*decks)
 
 
 def test_both_ends_lead_to_one_solution(rod, tmp_path):

@@ -6,6 +6,8 @@ and its course (amplitudes). What a later step does to it stands in test_values_
 
 import numpy as np
 import pytest
+from blocks import write
+from deck_runs import run
 from physics import follows, judge, material, mesh, nodes_of, side_shares
 
 import conduction
@@ -465,3 +467,28 @@ def test_course_of_a_load(tmp_path, load, first, options, factors):
     judge(tmp_path, [*deck[:at], *TENT, *deck[at:]],
           [(quantity, where, time, full * f, scale, "ABS")
            for time, f in zip((0.25, 0.5, 1.0), factors, strict=True)])
+
+
+@pytest.mark.parametrize("load", [load for load in LOADS if load not in ("BOUNDARY", "TEMPERATURES")])
+def test_new_alone_ends_all_loads_of_its_kind(tmp_path, load):
+    """OP=NEW needs no data: nothing is left, as in CalculiX. Supports stay."""
+    step, cards, model, (quantity, where, full) = course(load)
+    judge(tmp_path, model(*step(*cards("")), *step(f"{cards('')[0]}, OP=NEW")),
+          [(quantity, where, 1.0, full, 1e-9 * abs(full), "ABS"),
+           (quantity, where, 2.0, 0.0, 1e-9 * abs(full), "ABS")])
+
+
+def test_new_alone_ends_supports_and_films(tmp_path):
+    """The supports that a second body has no more are named; another film's heat stays out."""
+    deck = write(tmp_path / "freed.inp", block(*static("*DSLOAD", "BODY.TOP, P, 5."),
+                                               *static("*BOUNDARY, OP=NEW")))
+    process = run("check", deck)
+    assert process.returncode == 1
+    assert "step 2: body 1 (of BODY, first node 1) can move along x" in process.stderr
+    heat = ["*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1."]
+    judge(tmp_path, [*BLOCK, *material("BODY", conductivity=0.5),
+                     *heat, "*BOUNDARY", "BODY.LEFT, 11, 11, 40.",
+                     "*FILM", "2, F2, 100., 3.", "4, F2, 100., 3.", "*END STEP",
+                     *heat, "*FILM, OP=NEW", "*END STEP"],
+          [("NT", "BODY.RIGHT", 1.0, 40 + 60 * (WIDTH / 0.5) / (WIDTH / 0.5 + 1 / 3.0), 1e-10),
+           ("NT", "BODY.RIGHT", 2.0, 40.0, 1e-10)])

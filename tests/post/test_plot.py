@@ -332,6 +332,21 @@ def test_decks_without_heat_or_friction_are_drawn(draw, tmp_path, choices):
     assert ("mu_p" in columns) == ("friction" not in choices)
 
 
+def test_a_temperature_without_heat_is_drawn_where_it_tells_something(draw, tmp_path):
+    """As it is left by a deck of mechanics, the initial one, or as *TEMPERATURE gives it."""
+    path = tmp_path / "case.vtkhdf"
+    for varies in (False, True):
+        write_result(path, loads=(300.0, 600.0))
+        with h5py.File(path, "r+") as file:
+            assert "heat_flux" not in file["VTKHDF/PointData"]
+            if not varies:
+                file["VTKHDF/PointData/temperature"][...] = 20.0
+        draw("fields", path)
+        assert ("temperature" in table(tmp_path, "case.fields.csv")) == varies
+        draw("fields", path, "--quantity", "temperature")
+        assert "temperature" in table(tmp_path, "case.fields-temperature.csv")
+
+
 def test_every_contact_has_a_picture_of_its_own(draw, fail, tmp_path):
     path = tmp_path / "case.vtkhdf"
     write_result(path, loads=(300.0, 600.0), contacts=("LEFT", "RIGHT"))
@@ -379,6 +394,9 @@ def test_load_labels_tell_temperatures_displacements_and_time():
     assert units.load_label("temperature of HOT") == "Temperature of HOT (K)"
     assert units.load_label("displacement 2 of TOP") == "Displacement 2 of TOP (mm)"
     assert units.load_label("time") == "Time"
+    assert units.short_load("temperature of HOT", 540.0) == "540 K"
+    assert units.short_load("time", 2.0) == "time 2"
+    assert Units({}).short_load("temperature of HOT", 540.0) == "540"
 
 
 def test_a_digitised_figure_is_laid_over(draw, result, tmp_path):

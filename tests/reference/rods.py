@@ -116,23 +116,29 @@ def passes(u, omega, tolerance, g=0.5, constant=3, method="ZAITSEV"):
     return residuals
 
 
-def gain(u, omega):
+def gain(rods, open_law, closed_law, omega):
     """Return U' by a central difference."""
     step = 1e-5 * omega
-    return (u(omega + step) - u(omega - step)) / (2 * step)
+    ends = [image(rods, open_law, closed_law)(omega + k * step) for k in (-1, 1)]
+    return (ends[1] - ends[0]) / (2 * step)
 
 
-def solutions(u, count=200000):
+def solutions(rods, open_law, closed_law, count=200000):
     """Return the conductances of all solutions: changes of sign of U(omega) - omega between count
     conductances over all magnitudes, each narrowed down by bisection."""
+    of = image(rods, open_law, closed_law)
+
+    def excess(omega):
+        return of(omega) - omega
+
     found = []
     omegas = [10.0 ** (-4.0 + 20.0 * k / count) for k in range(count + 1)]
     for low, high in pairwise(omegas):
-        rises = u(low) < low
-        if rises == (u(high) < high):
+        rises = excess(low) < 0.0
+        if rises == (excess(high) < 0.0):
             continue
         while low < (middle := (low + high) / 2) < high:
-            low, high = (middle, high) if (u(middle) < middle) == rises else (low, middle)
+            low, high = (middle, high) if (excess(middle) < 0.0) == rises else (low, middle)
         found.append(middle)
     return found
 

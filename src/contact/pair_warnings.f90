@@ -1,0 +1,80 @@
+!> Pairs that can be solved, but perhaps not as meant: nodes beside each other, bodies inside each
+!> other.
+module pair_warnings
+   use contact_pairs, only: contact_pairs_type
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use text, only: to_text
+   implicit none
+   private
+   public :: offset_warning, overlap_warning
+
+   !> Part of the node spacing from which on an offset is warned of. It misplaces the force of the
+   !> pair, as lumping does: where the pressure varies by half of its mean from node to node, the
+   !> resultant over a tributary length lies 1/24 of the spacing beside the node. Smaller offsets
+   !> are no coarser than the mesh itself, and far larger ones than those of rounded coordinates.
+   real(dp), parameter :: small_offset = 0.05_dp
+   real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
+
+contains
+
+   !> Names the pair whose nodes lie farthest beside each other, as a part of the node spacing.
+   !> Offsets up to half the gap are those of curved faces that part far from the contact.
+   pure function offset_warning(mesh, pairs) result(warning)
+      type(mesh_type), intent(in) :: mesh                !! the mesh
+      type(contact_pairs_type), intent(in) :: pairs      !! pairs of one interface
+      character(:), allocatable :: warning               !! empty where all lie opposite
+      real(dp) :: offset(size(pairs%edge)), part(size(pairs%edge)), apart(2)
+      integer :: k
+
+      do k = 1, size(offset)
+         apart = mesh%coordinates(:, pairs%master_node(k)) - &
+            mesh%coordinates(:, pairs%slave_node(k))
+         offset(k) = abs(dot_product(pairs%tangent(:, k), apart))
+         part(k) = offset(k)/(pairs%edge(k)/(pairs%side_nodes - 1))
+         if (offset(k) <= 0.5_dp*abs(dot_product(pairs%normal(:, k), apart))) part(k) = 0.0_dp
+      end do
+      warning = ''
+      if (count(part > small_offset) == 0) return
+      k = findloc(part >= (1.0_dp - rounding)*maxval(part), .true., dim=1)
+      warning = 'contact pair '//pairs%name//': '//nodes_of(mesh, pairs, k)//' lie '// &
+         to_text(offset(k))//' beside each other, '//percent(part(k))//' of the node spacing '// &
+         '(pairs with more than '//percent(small_offset)//': '// &
+         to_text(count(part > small_offset))//'); their contact forces are not in one line, '// &
+         'and a moment of force times offset is lost; put the nodes opposite each other'
+   end function offset_warning
+
+   !> Names the pair whose faces overlap most, where that is an element edge or more.
+   pure function overlap_warning(mesh, pairs) result(warning)
+      type(mesh_type), intent(in) :: mesh                !! the mesh
+      type(contact_pairs_type), intent(in) :: pairs      !! pairs of one interface
+      character(:), allocatable :: warning               !! empty where none do
+      integer :: k
+
+      warning = ''
+      if (.not. any(-pairs%initial_gap >= pairs%edge*(1.0_dp - rounding))) return
+      k = minloc(pairs%initial_gap/pairs%edge, dim=1)
+      warning = 'contact pair '//pairs%name//': the faces overlap by '// &
+         to_text(-pairs%initial_gap(k))//' at '//nodes_of(mesh, pairs, k)// &
+         ', where the element edge is '//to_text(pairs%edge(k))//'; see whether the bodies '// &
+         'are where they should be, or say by *CLEARANCE what is meant'
+   end function overlap_warning
+
+   pure function nodes_of(mesh, pairs, k) result(words)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_pairs_type), intent(in) :: pairs
+      integer, intent(in) :: k
+      character(:), allocatable :: words
+
+      words = 'slave node '//to_text(mesh%node_number(pairs%slave_node(k)))// &
+         ' and master node '//to_text(mesh%node_number(pairs%master_node(k)))
+   end function nodes_of
+
+   pure function percent(part) result(words)
+      real(dp), intent(in) :: part
+      character(:), allocatable :: words
+
+      words = to_text(nint(100.0_dp*part))//' %'
+   end function percent
+
+end module pair_warnings

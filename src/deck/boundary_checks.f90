@@ -1,0 +1,133 @@
+!> What only shows of *BOUNDARY once all cards are read: whether it acts on something, in a step
+!> that has use for it, and says one thing only.
+module boundary_checks
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use kinds, only: dp
+   use load_requests, only: request_type
+   use model, only: model_type
+   use steps, only: dof_temperature, solves_heat, solves_mechanics
+   use text, only: to_text
+   implicit none
+   private
+   public :: check_boundaries
+
+contains
+
+   !> Checks the requests before the model is refined.
+   subroutine check_boundaries(context, model, used, report)
+      type(deck_context_type), intent(in) :: context       !! requests
+      type(model_type), intent(in) :: model                !! the model
+      logical, intent(in) :: used(0:)                      !! (0:nodes) whether elements have them
+      type(deck_report_type), intent(inout) :: report      !! receives warnings
+      integer :: i, card
+
+      card = 0
+      do i = 1, context%boundaries%count
+         associate (request => context%boundaries%items(i))
+            call check_effect(request, model, report)
+            if (request%card /= card) call check_nodes(request, model, used, report)
+            card = request%card
+         end associate
+      end do
+      do i = 0, size(model%steps)
+         call check_conflicts(context, i, model, report)
+      end do
+   end subroutine check_boundaries
+
+   !> Warns of values that come after the last step that solves for what they prescribe. Supports of
+   !> 0 do no harm.
+   subroutine check_effect(request, model, report)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+
+      associate (analyses => model%steps(max(1, request%step):)%analysis)
+         if (request%component == dof_temperature) then
+            if (.not. any(solves_heat(analyses))) call report%warning(request%place, &
+               'a temperature without effect: no step from here on solves heat')
+         else if (abs(request%value) > 0.0_dp) then
+            if (.not. any(solves_mechanics(analyses))) call report%warning(request%place, &
+               'a displacement without effect: no step from here on solves mechanics')
+         end if
+      end associate
+   end subroutine check_effect
+
+   !> Warns of nodes that no element has, as CalculiX does.
+   subroutine check_nodes(request, model, used, report)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: used(0:)
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: nodes(:)
+
+      nodes = nodes_of(request, model)
+      nodes = pack(nodes, .not. used(nodes))
+      if (size(nodes) == 0) return
+      call report%warning(request%place, 'node '//to_text(model%mesh%node_number(nodes(1)))// &
+         ' belongs to no element: what is prescribed there has no effect'// &
+         others(size(nodes), '; nodes without one: '))
+   end subroutine check_nodes
+
+   !> Warns where a data card replaces what another one of the same step prescribes. What stands
+   !> before the first step may be replaced in it.
+   subroutine check_conflicts(context, step, model, report)
+      type(deck_context_type), intent(in) :: context
+      integer, intent(in) :: step                          ! 0 for what stands before the first
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      integer :: given(3, size(model%mesh%node_number)), i, j, dof, n, node
+      integer, allocatable :: nodes(:)
+
+      given = 0
+      do i = 1, context%boundaries%count
+         associate (request => context%boundaries%items(i))
+            if (request%step /= step) cycle
+            dof = min(request%component, 3)
+            nodes = nodes_of(request, model)
+            n = 0
+            do j = 1, size(nodes)
+               if (given(dof, nodes(j)) > 0) then
+                  if (differs(request, context%boundaries%items(given(dof, nodes(j))))) then
+                     n = n + 1
+                     if (n == 1) node = nodes(j)
+                  end if
+               end if
+               given(dof, nodes(j)) = i
+            end do
+            if (n > 0) call report%warning(request%place, 'node '// &
+               to_text(model%mesh%node_number(node))//': another card of this step gives '// &
+               'degree of freedom '//to_text(request%component)// &
+               ' another value; the last one holds'//others(n, '; nodes with two: '))
+         end associate
+      end do
+   end subroutine check_conflicts
+
+   !> Whether two cards prescribe different courses.
+   pure logical function differs(one, other)
+      type(request_type), intent(in) :: one, other
+
+      differs = abs(one%value - other%value) > 0.0_dp .or. &
+         (one%amplitude /= other%amplitude .and. abs(one%value) > 0.0_dp)
+   end function differs
+
+   pure function nodes_of(request, model) result(nodes)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      integer, allocatable :: nodes(:)
+
+      nodes = [request%item]
+      if (request%set > 0) nodes = model%mesh%node_sets(request%set)%members
+   end function nodes_of
+
+   !> Tells a number that is more than the one that is named.
+   pure function others(n, words) result(ending)
+      integer, intent(in) :: n
+      character(*), intent(in) :: words
+      character(:), allocatable :: ending
+
+      ending = ''
+      if (n > 1) ending = words//to_text(n)
+   end function others
+
+end module boundary_checks

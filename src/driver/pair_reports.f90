@@ -1,0 +1,102 @@
+!> What is said of the contact pairs of a deck once they are made.
+module pair_reports
+   use contact_pairs, only: contact_pairs_type
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use element_kinds, only: axisymmetric
+   use errors, only: error_type
+   use interface_operators, only: pair_surfaces
+   use kinds, only: dp
+   use model, only: model_type
+   use pair_rings, only: first_repeated
+   use pair_warnings, only: offset_warning, overlap_warning
+   use text, only: to_text
+   implicit none
+   private
+   public :: pair_all
+
+contains
+
+   !> Pairs the surfaces of every *CONTACT PAIR; reports those that cannot be paired, and warns of
+   !> those that may not be meant so.
+   subroutine pair_all(model, interfaces, report)
+      type(model_type), intent(in) :: model                  !! the model
+      !> (interfaces) their pairs
+      type(contact_pairs_type), allocatable, intent(out) :: interfaces(:)
+      type(deck_report_type), intent(inout) :: report        !! receives errors and warnings
+      type(error_type), allocatable :: error
+      integer, allocatable :: slave(:), master(:)
+      real(dp), allocatable :: normal(:, :)
+      integer :: i, known, pair
+
+      allocate (slave(0), master(0), normal(2, 0), interfaces(size(model%contacts)))
+      do i = 1, size(model%contacts)
+         call pair_surfaces(model, i, interfaces(i), error)
+         if (allocated(error)) then
+            call report%error(place_type(image=model%contacts(i)%card), error%message)
+            cycle
+         end if
+         call warn_of_pairs(model, i, interfaces(i), report)
+         known = size(slave)
+         slave = [slave, interfaces(i)%slave_node]
+         master = [master, interfaces(i)%master_node]
+         normal = reshape([normal, interfaces(i)%normal], [2, size(slave)])
+         pair = first_repeated(slave, master, normal)
+         if (pair == 0) cycle
+         associate (number => model%mesh%node_number)
+            call report%error(place_type(image=model%contacts(i)%card), 'contact pair '// &
+               interfaces(i)%name//': nodes '//to_text(number(slave(pair)))//' and '// &
+               to_text(number(master(pair)))//' are paired along the same normal by an '// &
+               'earlier *CONTACT PAIR already; leave one of the two out')
+         end associate
+         slave = slave(:known)
+         master = master(:known)
+         normal = normal(:, :known)
+      end do
+   end subroutine pair_all
+
+   subroutine warn_of_pairs(model, i, pairs, report)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: i
+      type(contact_pairs_type), intent(in) :: pairs
+      type(deck_report_type), intent(inout) :: report
+
+      call warn(offset_warning(model%mesh, pairs))
+      if (.not. model%contacts(i)%has_clearance) call warn(overlap_warning(model%mesh, pairs))
+      call warn(thickness_warning(model, i))
+   contains
+      subroutine warn(message)
+         character(*), intent(in) :: message
+
+         if (len(message) > 0) call report%warning(place_type(image=model%contacts(i)%card), &
+            message)
+      end subroutine warn
+   end subroutine warn_of_pairs
+
+   !> The areas of all pairs are those of the slave's first element; empty where all elements at the
+   !> interface are as thick.
+   pure function thickness_warning(model, i) result(warning)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: i
+      character(:), allocatable :: warning
+      integer, allocatable :: elements(:)
+      real(dp), allocatable :: thickness(:)
+      integer :: f
+
+      warning = ''
+      associate (mesh => model%mesh, contact => model%contacts(i))
+         elements = [mesh%surfaces(contact%slave)%faces(1, :), &
+            mesh%surfaces(contact%master)%faces(1, :)]
+         if (mesh%element_plane(elements(1)) == axisymmetric) return
+         thickness = model%sections(mesh%element_section(elements))%thickness
+         f = findloc(abs(thickness - thickness(1)) > 0.0_dp, .true., dim=1)
+         if (f == 0) return
+         warning = 'contact pair '//contact%name//': element '// &
+            to_text(mesh%element_number(elements(f)))//' is '//to_text(thickness(f))// &
+            ' thick; pressure and flux of all pairs are for the thickness '// &
+            to_text(thickness(1))//' of the slave''s element '// &
+            to_text(mesh%element_number(elements(1)))
+      end associate
+   end function thickness_warning
+
+end module pair_reports

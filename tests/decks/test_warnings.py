@@ -1,0 +1,178 @@
+"""Decks that can be solved but may not be meant so are warned of, others are not."""
+
+import re
+
+import pytest
+from blocks import block, solid, write
+from deck_runs import run
+from physics import nodes_of
+
+XS = [0.0, 1.0, 2.0, 3.0, 4.0]
+
+
+def blocks(shift=0.0, gap=0.0, thickness=("1.", "1."), pair="B.BOTTOM, A.TOP", clearance=None):
+    """Return two blocks, the upper one moved."""
+    cards = block("A", XS, [0.0, 1.0, 2.0])
+    cards += block("B", [x + shift for x in XS], [2.0 + gap, 3.0 + gap, 4.0 + gap], first=101)
+    for name, value in zip("AB", thickness, strict=True):
+        cards += [*solid(name, 2e5, 0.3), value]
+    cards += ["*SURFACE INTERACTION, NAME=I", "*CONTACT PAIR, INTERACTION=I, NAME=F", pair]
+    slave, master = pair.split(", ")
+    if clearance is not None:
+        cards += [f"*CLEARANCE, SLAVE={slave}, MASTER={master}, VALUE={clearance!r}"]
+    return [*cards, "*BOUNDARY", "A.BOTTOM, 1, 2", "B.LEFT, 1"]
+
+
+PRESSED = ["*STEP", "*STATIC", "1., 1.", "*DSLOAD", "B.TOP, P, 1.", "*END STEP"]
+
+
+def warnings(folder, *cards, status=0):
+    """Check a deck; return its warnings as (line image, message)."""
+    deck = write(folder / "deck.inp", *cards)
+    process = run("check", deck)
+    assert process.returncode == status, process.stderr
+    return re.findall(r"^.*: warning: (.*)\n(.*)$", process.stderr, re.M)
+
+
+def one(found, card):
+    """Return the message of the only warning, which stands at a card."""
+    assert len(found) == 1, found
+    assert found[0][1].startswith(card)
+    return found[0][0]
+
+
+@pytest.mark.parametrize(("shift", "told"), [(0.0, None), (0.02, None), (0.03, "6 %"),
+                                             (-0.2, "40 %"), (0.49, "98 %")])
+def test_nodes_beside_each_other(tmp_path, shift, told):
+    """Node spacing 0.5; a twentieth of it is allowed."""
+    found = warnings(tmp_path, blocks(shift), PRESSED)
+    if told is None:
+        assert found == []
+        return
+    message = one(found, "*CONTACT PAIR")
+    slave, master = ({p: n for n, p in nodes_of(block(*b)).items()}[x, 2.0] for *b, x in (
+        ("B", [x + shift for x in XS], [2.0, 3.0, 4.0], 101, shift),
+        ("A", XS, [0.0, 1.0, 2.0], 1, 0.0)))
+    assert f"contact pair F: slave node {slave} and master node {master} lie " in message
+    assert float(re.search(r"lie (\S+) beside each other", message)[1]) == abs(shift)
+    assert f"{told} of the node spacing (pairs with more than 5 %: 9)" in message
+    assert "moment" in message
+
+
+def test_an_offset_far_from_the_contact_is_that_of_curved_faces(tmp_path):
+    """Half the gap is allowed, as where faces are refused."""
+    assert warnings(tmp_path, blocks(0.2, gap=0.41), PRESSED) == []
+    assert "40 %" in one(warnings(tmp_path, blocks(0.2, gap=0.39), PRESSED), "*CONTACT PAIR")
+
+
+def test_warnings_of_pairs_stand_in_the_listing_too(tmp_path):
+    deck = write(tmp_path / "deck.inp", blocks(0.2), PRESSED)
+    assert "moment of force times offset is lost" in run("run", "--quiet", deck, "--out",
+                                                         tmp_path).stderr
+    listing = deck.with_suffix(".lst").read_text()
+    assert "contact pair F: slave node" in listing[listing.index("WARNINGS"):]
+
+
+@pytest.mark.parametrize(("gap", "clearance", "warned"), [
+    (-0.9, None, False), (-1.0, None, True), (-1.0, -1e-3, False)])
+def test_bodies_inside_each_other(tmp_path, gap, clearance, warned):
+    found = warnings(tmp_path, blocks(gap=gap, clearance=clearance), PRESSED)
+    if not warned:
+        assert found == []
+        return
+    assert "the faces overlap by 1 at slave node " in one(found, "*CONTACT PAIR")
+
+
+def test_swapped_faces(tmp_path):
+    """Top of the upper and bottom of the lower block named as the faces in contact."""
+    found = warnings(tmp_path, blocks(pair="B.TOP, A.BOTTOM"), PRESSED)
+    assert "overlap by 4" in one(found, "*CONTACT PAIR")
+
+
+def step(*cards):
+    """Return a step of mechanics with the load."""
+    return [*PRESSED[:-1], *cards, "*END STEP"]
+
+
+def test_a_second_value_for_one_degree_of_freedom(tmp_path):
+    """The last card of a step holds. What stands before the first step may be replaced there, and
+    the same value may be given twice."""
+    pushed = ["*BOUNDARY", "B.TOP, 1, 1, 0.", "B.LEFT, 1, 1, 0.1", "B.LEFT, 1, 1, 0.1"]
+    found = warnings(tmp_path, blocks(), step(*pushed))
+    assert re.fullmatch(r"node \d+: another card of this step gives degree of freedom 1 another "
+                        "value; the last one holds", one(found, "B.LEFT, 1, 1, 0.1"))
+    crossing = ["*BOUNDARY", "A.TOP, 2, 2, 0.", "A, 2, 2, 0.1"]
+    assert one(warnings(tmp_path, blocks(), step(*crossing)), "A, ").endswith("with two: 9")
+    assert warnings(tmp_path, blocks(), step("*BOUNDARY", "A.BOTTOM, 1, 2, 0.1")) == []
+    assert warnings(tmp_path, blocks(), step("*BOUNDARY", "A.BOTTOM, 1, 2, 0."),
+                    step("*BOUNDARY", "A.BOTTOM, 1, 2, 0.1")) == []
+
+
+def test_a_support_of_no_element(tmp_path):
+    orphan = ["*NODE, NSET=LOST", "901, 9., 9.", "902, 9., 8."]
+    message = one(warnings(tmp_path, blocks(), orphan, step("*BOUNDARY", "LOST, 1, 2")), "LOST")
+    assert message == ("node 901 belongs to no element: what is prescribed there has no effect; "
+                       "nodes without one: 2")
+
+
+def test_loads_that_no_step_solves_for(tmp_path):
+    """Mechanics in a deck of heat alone, heat in a deck of mechanics alone."""
+    heat = ["*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "A.BOTTOM, 11",
+            "B.TOP, 11, 11, 5."]
+    cards = blocks()
+    at = cards.index("*CONTACT PAIR, INTERACTION=I, NAME=F")
+    cards = [*cards[:at], "*GAP LAW, TYPE=POWER", "0., 1., 1.", *cards[at:]]
+    no_use = "without effect: no step from here on solves mechanics"
+    for load, what in (("*DSLOAD", "B.TOP, P, 1."), ("*CLOAD", "101, 1, 1."),
+                       ("*DLOAD", "B, BX, 1.")):
+        assert one(warnings(tmp_path, cards, heat, [load, what, "*END STEP"]), what) \
+            == f"a load {no_use}"
+    moved = [*heat, "B.TOP, 2, 2, 0.", "B.TOP, 1, 1, 0.1", "*END STEP"]
+    assert one(warnings(tmp_path, cards, moved), "B.TOP, 1") == f"a displacement {no_use}"
+    flux = step("*DFLUX", "B, BF, 1.")
+    assert "solves heat" in one(warnings(tmp_path, cards, flux), "B, BF")
+    assert warnings(tmp_path, cards, [*heat, "*END STEP"], PRESSED) == []
+
+
+@pytest.mark.parametrize(("keyword", "label"), [("*DLOAD", "P3, 1."), ("*DFLUX", "S3, 1."),
+                                                ("*FILM", "F3, 20., 1.")])
+def test_loads_on_sides_inside_a_body(tmp_path, keyword, label):
+    """Elements 101 to 104 are the lower row of the upper block."""
+    load = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", "*BOUNDARY",
+            "A.BOTTOM, 11", "B.TOP, 11", keyword]
+    for target, said in (("B", "side 3 of element 101 lies inside a body; the load acts there all "
+                          "the same; elements with such a side: 4"),
+                         ("102", "side 3 of element 102 lies inside a body; the load acts there "
+                          "all the same")):
+        found = warnings(tmp_path, blocks(), [*load, f"{target}, {label}", "*END STEP"])
+        assert one(found, target) == said
+    assert warnings(tmp_path, blocks(), [*load, f"105, {label}", "*END STEP"]) == []
+
+
+def test_conductance_that_rounding_leaves_unknown(tmp_path):
+    """TOL below what a few units in the last place of the displacements change in omega."""
+    cards = blocks()
+    at = cards.index("*CONTACT PAIR, INTERACTION=I, NAME=F")
+    heated = PRESSED.copy()
+    heated[1:2] = ["*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.5, 1.", "*BOUNDARY",
+                   "A.BOTTOM, 11", "B.TOP, 11, 11, 50."]
+    del heated[6]
+    for tolerance, warned in (("1.E-8", False), ("1.E-25", True)):
+        deck = write(tmp_path / "deck.inp", cards[:at],
+                     ["*GAP LAW, TYPE=POWER", "0., 0.1, 1."], cards[at:],
+                     [f"*FIXED POINT, TOL={tolerance}"], heated)
+        process = run("run", "--quiet", deck, "--out", tmp_path)
+        assert process.returncode == 0, process.stderr
+        found = re.findall(r"increment 2: the conductance of the contacts is known to (\S+) only, "
+                           r"not to TOL=", process.stderr)
+        assert len(found) == warned
+        assert all(0 < float(value) < 1e-8 for value in found)
+
+
+def test_bodies_of_different_thickness(tmp_path):
+    """The areas are the slave's; axisymmetric models have no thickness."""
+    cards = blocks(thickness=("1.", "5."))
+    message = one(warnings(tmp_path, cards, PRESSED), "*CONTACT PAIR")
+    assert "is 1 thick; pressure and flux of all pairs are for the thickness 5 of" in message
+    assert warnings(tmp_path, blocks(thickness=("5.", "5.")), PRESSED) == []
+    assert warnings(tmp_path, ["*OPTIONS, PLANE=AXISYMMETRIC"], cards, PRESSED) == []
