@@ -233,8 +233,8 @@ contains
       call self%mechanical%condense_forces(forces, condensed)
    end subroutine condense_thermal_load
 
-   !> Conductance of the bodies about each pair alone; 0 where both temperatures are prescribed. A pair
-   !> that closes a ring, whose jump only the others hold, has that of the bodies at its nodes.
+   !> Conductance of the bodies about each pair alone; 0 where both temperatures are prescribed. A
+   !> pair that closes a ring, whose jump only the others hold, has that of the bodies at its nodes.
    function conductors(self) result(conductance)
       class(interface_operators_type), intent(in) :: self  !! the reduced bodies
       real(dp) :: conductance(size(self%pairs%slave))      !! (m) [power/temperature]
