@@ -189,9 +189,9 @@ contains
       integer :: k
 
       gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(system%initial_gap)), &
-         maxval(abs(state%tangential))) + tiny(1.0_dp)
+         maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
       force_tolerance = max(1.0e-12_dp*maxval(abs(state%force)), &
-         1.0e-13_dp*largest_term(system, load, state)) + tiny(1.0_dp)
+         1.0e-13_dp*largest_term(system, load, state), system%least_force()) + tiny(1.0_dp)
       next(1, :) = state%status
       next(2, :) = state%direction
       do k = 1, size(state%status)

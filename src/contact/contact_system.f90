@@ -33,6 +33,8 @@ module contact_system
    private
    public :: contact_system_type
 
+   real(dp), parameter :: rounding = 1.0e-12_dp !! of the forces that a load is condensed of
+
    !> The reduced system, and the factors for the active set of its last solution.
    type :: contact_system_type
       integer, allocatable :: normal(:)           !! (m) place of d_n on the tail
@@ -44,6 +46,8 @@ module contact_system
       real(dp), allocatable :: give(:) !! (m) of stuck pairs, not zero in rings [length/force]
       integer, allocatable :: link(:)             !! (links) places of the links' forces
       real(dp), allocatable :: motion(:, :) !! (tail, q) unsupported rigid motions, orthonormal
+      real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
+      real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
       integer, allocatable :: free(:)             !! places on the tail that are sought
       integer, allocatable :: partner(:) !! (tail) place of d_n whose force enters the row, or 0
       real(dp), allocatable :: share(:)           !! (tail) factor of that force
@@ -60,6 +64,7 @@ module contact_system
       procedure :: solve_free
       procedure :: stiffness
       procedure :: turns_back
+      procedure :: least_force
       procedure :: friction_rows
       procedure :: slip
       procedure :: factor_set
@@ -151,7 +156,8 @@ contains
       real(dp), intent(in) :: unbalanced(:)
       type(error_type), allocatable, intent(out) :: error
 
-      self%driven = is_driven(unbalanced, load, self%schur, d)
+      self%driven = is_driven(unbalanced, load, self%schur, d) .and. &
+         maxval(abs(unbalanced)) > self%least_force()
       if (self%driven) call set_error(error, status_no_convergence, &
          'the bodies are not held by their supports and the pairs that are in contact')
    end subroutine check_balance
@@ -239,7 +245,7 @@ contains
       do k = 1, size(state%status)
          if (state%status(k) == status_open) call seek(self%normal(k))
          if (self%tangent(k) == 0) cycle
-         associate (place => self%tangent(k), law => self%closing(k))
+         associate (place => self%tangent(k), law => self%closing(k), give => self%give(k))
             if (state%status(k) == status_open) then
                call seek(place)
             else if (state%status(k) == status_slip) then
@@ -249,14 +255,14 @@ contains
             else if (law%acts) then
                call seek(place)
                self%partner(place) = self%normal(k)
-               associate (scale => law%compliance(2) + self%give(k))
-                  self%own(place) = (law%fraction*law%compliance(2) + self%give(k))/scale
+               associate (scale => law%compliance(2) + give)
+                  self%own(place) = (law%fraction*law%compliance(2) + give)/scale
                   self%share(place) = law%fraction*law%compliance(1)/scale
                   self%spring(place) = (1.0_dp - law%fraction)/scale
                end associate
-            else if (self%give(k) > 0.0_dp) then
+            else if (give > 0.0_dp) then
                call seek(place)
-               self%spring(place) = 1.0_dp/self%give(k)
+               self%spring(place) = 1.0_dp/give
             end if
          end associate
       end do
@@ -320,6 +326,15 @@ contains
       forces = self%schur(places, places) + &
          matmul(self%schur(places, self%free), response(self%free, :))
    end function stiffness
+
+   !> Force that rounding leaves of what the load is made of, and of coordinates.
+   pure real(dp) function least_force(self)
+      class(contact_system_type), intent(in) :: self  !! the reduced system
+      integer :: i
+
+      least_force = rounding*self%load_scale + self%least_length* &
+         maxval([0.0_dp, (self%schur(i, i), i=1, size(self%schur, 1))])
+   end function least_force
 
    !> Whether the set factored last turns the path of contact states back: its determinant is
    !> negative, which needs friction. The signs at all states under one load add up to one, so that

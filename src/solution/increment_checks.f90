@@ -1,6 +1,6 @@
 !> What a solved increment must satisfy before it is accepted.
 module increment_checks
-   use errors, only: error_type, set_error, status_internal, status_no_convergence
+   use errors, only: error_type, set_error, status_no_convergence
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -19,13 +19,13 @@ module increment_checks
 contains
 
    !> The recovered displacements keep the contact conditions.
-   !> Error: status_internal, they do not.
+   !> Error: they do not.
    subroutine check_violation(record, error)
       type(increment_record_type), intent(in) :: record     !! the increment
       type(error_type), allocatable, intent(out) :: error   !! see above
 
       if (record%contact_violation <= sound_violation) return
-      call set_error(error, status_internal, &
+      call set_error(error, status_no_convergence, &
          'the recovered displacements violate the contact conditions by '// &
          to_text(record%contact_violation))
    end subroutine check_violation

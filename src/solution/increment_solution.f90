@@ -159,10 +159,12 @@ contains
       type(model_type), intent(in) :: model
       type(increment_data_type), intent(inout) :: data
       type(solution_state_type), intent(inout) :: next
+      real(dp) :: thermal(2*size(next%temperature))
 
       next%force_load = loads%nodal_forces()
-      call operators%mechanical%set_load(next%force_load + thermal_forces(operators, &
-         next%temperature - model%initial_temperature), loads%displacement%value)
+      thermal = thermal_forces(operators, next%temperature - model%initial_temperature)
+      operators%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
+      call operators%mechanical%set_load(next%force_load + thermal, loads%displacement%value)
       call operators%mechanical%condense_load()
       data%welded_load = operators%mechanical%condensed
    end subroutine load_mechanics

@@ -10,6 +10,7 @@ module interface_operators
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
+   use mesh, only: extent_of
    use model, only: model_type
    use pair_rows, only: align_frames, pair_row_type, pair_surfaces, row_of
    use rigid_motions, only: unsupported_motions
@@ -22,6 +23,7 @@ module interface_operators
    public :: interface_operators_type
 
    real(dp), parameter :: held_by_others = 1.0e-6_dp !! part of a conductance that is rounding
+   real(dp), parameter :: rounding = 1.0e-15_dp  !! of coordinates, in the extent of the model
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
 
    !> The reduced bodies.
@@ -116,6 +118,7 @@ contains
          call self%mechanical%reduce(model%solver, error)
          if (allocated(error)) return
          self%contact = contact_system_of(self%mechanical, self%pairs, self%rigid)
+         self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
       end if
       if (heat) then
          call self%reduce_heat(model, error)
