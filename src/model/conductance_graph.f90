@@ -5,9 +5,12 @@
 !> but where the law jumps at gamma = p = 0: there the pair may rest with any conductance between
 !> the two values. The place passes through these values as well:
 !>
-!>    place < 0             closed, opening = place
-!>    0 <= place <= width   rest, opening = 0, between the closed and the open value
-!>    place > width         open, opening = place - width
+!>    place < -width         closed, opening = place + width
+!>    -width <= place <= 0   rest, opening = 0, between the closed and the open value
+!>    place > 0              open, opening = place
+!>
+!> The origin is where the pair opens: a law of the gap is ever so much steeper than one of the
+!> pressure, and a small gap must keep its digits.
 !>
 !> At rest omega/(omega + body) is linear in the place, which is nearly so for the heat that crosses
 !> the pair: with 1/body the resistance of the bodies it goes like 1/(1/body + 1/omega).
@@ -39,7 +42,7 @@ module conductance_graph
    end type conductance_graph_type
 
    real(dp), parameter :: straight = 1.0e-3_dp   !! change of omega that a slope gives, relative
-   real(dp), parameter :: beyond = 1.0e-100_dp   !! overlap that counts for none [length]
+   real(dp), parameter :: beyond = 1.0e-100_dp   !! gap that counts for none [length]
 
 contains
 
@@ -52,10 +55,10 @@ contains
 
       if (self%rests(place)) then
          ends = end_shares(self)
-         part = ends(1) + (ends(2) - ends(1))*place/self%width
+         part = ends(2) + (ends(2) - ends(1))*place/self%width
          omega = self%body*part/(1.0_dp - part)
       else
-         omega = conductance(self%law, place < 0.0_dp, place - self%width, -self%modulus*place)
+         omega = conductance(self%law, place < 0.0_dp, place, -self%modulus*(place + self%width))
       end if
    end function omega
 
@@ -68,12 +71,13 @@ contains
 
       if (self%rests(place)) then
          ends = end_shares(self)
-         part = ends(1) + (ends(2) - ends(1))*place/self%width
+         part = ends(2) + (ends(2) - ends(1))*place/self%width
          slope = self%body/(1.0_dp - part)**2*(ends(2) - ends(1))/self%width
       else if (place < 0.0_dp) then
-         slope = -self%modulus*conductance_slope(self%law, .true., 0.0_dp, -self%modulus*place)
+         slope = -self%modulus*conductance_slope(self%law, .true., 0.0_dp, &
+            -self%modulus*(place + self%width))
       else
-         slope = conductance_slope(self%law, .false., place - self%width, 0.0_dp)
+         slope = conductance_slope(self%law, .false., place, 0.0_dp)
       end if
    end function slope
 
@@ -93,7 +97,7 @@ contains
       real(dp), intent(in) :: place                      !! [length]
       real(dp) :: opening                                !! gap, or -p/modulus [length]
 
-      opening = min(place, 0.0_dp) + max(place - self%width, 0.0_dp)
+      opening = min(place + self%width, 0.0_dp) + max(place, 0.0_dp)
    end function opening
 
    !> Its derivative by the place.
@@ -113,15 +117,15 @@ contains
       real(dp) :: place                                  !! [length]
 
       place = to
-      if (from < 0.0_dp) then
-         place = min(to, 0.0_dp)
+      if (from < -self%width) then
+         place = min(to, -self%width)
       else if (self%width <= 0.0_dp) then
          if (from > 0.0_dp) place = max(to, 0.0_dp)
       else if (self%rests(from)) then
-         if (to < 0.0_dp) place = -beyond
-         if (to > self%width) place = self%width*(1.0_dp + 2*epsilon(1.0_dp))
-      else if (to <= self%width) then
-         place = self%width
+         if (to < -self%width) place = -self%width*(1.0_dp + 2*epsilon(1.0_dp))
+         if (to > 0.0_dp) place = beyond
+      else if (to <= 0.0_dp) then
+         place = 0.0_dp
       end if
    end function stopped
 
@@ -147,12 +151,13 @@ contains
       if (abs(own) <= 0.0_dp) return
       place = self%stopped(from, place)
       if (own <= 0.0_dp) return
-      if (abs(omega_slope*change) <= straight*omega_start .and. (from*place > 0.0_dp)) return
+      if (abs(omega_slope*change) <= straight*omega_start .and. &
+         (from + self%width)*(place + self%width) > 0.0_dp) return
       kappa = own*(omega_start + body)**2/body
       start = omega_start/(omega_start + body)
       wanted = (self%advance(from) - own*omega_slope)*change
       reach = self%place_of_opening(self%opening(from) + wanted + kappa*[-start, 1.0_dp - start])
-      if (reach(1) <= self%width .and. reach(1) > 0.0_dp) reach(1) = 0.0_dp
+      if (self%rests(reach(1))) reach(1) = -self%width
       do i = 1, 200
          place = 0.5_dp*(reach(1) + reach(2))
          if (reach(2) - reach(1) <= 2*epsilon(1.0_dp)*abs(place)) exit
@@ -171,7 +176,7 @@ contains
       real(dp), intent(in) :: place                      !! [length]
       logical :: rests                                   !! gamma = p = 0 by the place
 
-      rests = self%width > 0.0_dp .and. place >= 0.0_dp .and. place <= self%width
+      rests = self%width > 0.0_dp .and. place >= -self%width .and. place <= 0.0_dp
    end function rests
 
    !> Whether the pair may rest with a conductance.
@@ -194,7 +199,7 @@ contains
       real(dp) :: place                                  !! [length]
 
       place = opening
-      if (opening >= 0.0_dp) place = opening + self%width
+      if (opening < 0.0_dp) place = opening - self%width
    end function place_of_opening
 
    !> A place with a given conductance, the one of a given opening where that has it; elsewhere that
@@ -211,15 +216,15 @@ contains
       if (abs(self%omega(place) - omega) <= rounding*omega) return
       if (self%may_rest(omega)) then
          ends = end_shares(self)
-         place = self%width*(omega/(omega + self%body) - ends(1))/(ends(2) - ends(1))
-         place = min(max(place, 0.0_dp), self%width)
+         place = self%width*(omega/(omega + self%body) - ends(2))/(ends(2) - ends(1))
+         place = min(max(place, -self%width), 0.0_dp)
          return
       end if
-      at = [-conductance_inverse(self%law, .true., omega)/self%modulus, &
-         conductance_inverse(self%law, .false., omega) + self%width]
-      if (at(1) < 0.0_dp .and. (opening < 0.0_dp .or. at(2) < self%width)) then
+      at = [-conductance_inverse(self%law, .true., omega)/self%modulus - self%width, &
+         conductance_inverse(self%law, .false., omega)]
+      if (at(1) < -self%width .and. (opening < 0.0_dp .or. at(2) < 0.0_dp)) then
          place = at(1)
-      else if (at(2) >= self%width) then
+      else if (at(2) >= 0.0_dp) then
          place = at(2)
       end if
    end function place_of_omega

@@ -42,7 +42,7 @@ contains
          u_slope(k, :) = graph(k)%slope(graph(k)%place_of_opening(opening(k)))*slope(k, :)
          matrix(k, :) = -u_slope(k, :)
          matrix(k, k) = matrix(k, k) + 1.0_dp
-         if (resting(k)) matrix(k, :) = -sign(1.0_dp, graph(k)%slope(0.5_dp*graph(k)%width))* &
+         if (resting(k)) matrix(k, :) = -sign(1.0_dp, graph(k)%slope(-0.5_dp*graph(k)%width))* &
             slope(k, :)
       end do
       call lu%factor(matrix, singular)

@@ -12,8 +12,8 @@
 !> A pass is taken unless earlier ones, all but one, were better by both of its measures: |r|, and
 !> the mismatch of the shares omega/(omega + body) by which the heat goes (a filter: Gould, Leyffer
 !> & Toint 2004). Else its step is shortened. Where a short one does not help either, the method
-!> goes over to pseudo-transient continuation: (1/tau + J) dz = -r, implicit Euler steps of dz/dt =
-!> -r whose tau grows as |r| falls (Kelley & Keyes 1998). That leads to a state which is stable in
+!> goes over to pseudo-transient continuation: (M/tau + J) dz = -r, implicit Euler steps of M dz/dt
+!> = -r whose tau grows as |r| falls (Kelley & Keyes 1998). That leads to a state which is stable in
 !> this sense, and there the steps are Newton's again.
 module newton
    use conductance_graph, only: conductance_graph_type
@@ -212,49 +212,65 @@ contains
    subroutine make_step(self)
       class(newton_type), intent(inout) :: self
       real(dp) :: matrix(size(self%rest), size(self%rest)), step(size(self%rest), 1)
+      real(dp) :: inertia(size(self%rest))
       type(lu_type) :: lu
       logical :: singular
+      integer :: k
 
       self%part = 1.0_dp
       self%step = -self%rest
       if (.not. allocated(self%jacobian)) return
-      if (self%time_step < endless) self%time_step = min(self%time_step, longest_time_step(self))
-      call make_equations(self, matrix, step(:, 1))
+      inertia = inertias(self)
+      if (self%time_step < endless) self%time_step = min(self%time_step, &
+         stable_time_step(self, inertia))
+      matrix = self%jacobian
+      step(:, 1) = -self%rest
+      do k = 1, size(step)
+         if (self%time_step < endless) matrix(k, k) = matrix(k, k) + &
+            inertia(k)/self%time_step
+         if (.not. self%graph(k)%rests(self%place(k))) cycle
+         ! No conductance at which the pair may rest brings its opening to 0: it does not rest.
+         if (sum(abs(self%jacobian(k, :)))*self%graph(k)%width > abs(self%rest(k))) cycle
+         matrix(k, :) = 0.0_dp
+         matrix(k, k) = 1.0_dp
+         step(k, 1) = self%graph(k)%place_of_opening(-self%rest(k)) - self%place(k)
+      end do
       call lu%factor(matrix, singular)
       if (singular) return
       call lu%solve(step)
       self%step = step(:, 1)
    end subroutine make_step
 
-   !> Half the tau at which 1/tau + J turns singular: a longer step would lead back in time.
-   function longest_time_step(self) result(longest)
-      class(newton_type), intent(in) :: self
-      real(dp) :: longest
+   !> The diagonal of M: 1, and for a pair at rest what makes the time in which it goes through its
+   !> rest that of the others, however long the rest is.
+   pure function inertias(self) result(inertia)
+      type(newton_type), intent(in) :: self
+      real(dp) :: inertia(size(self%rest))
+      integer :: k
+
+      inertia = 1.0_dp
+      do k = 1, size(inertia)
+         if (self%graph(k)%rests(self%place(k)) .and. abs(self%jacobian(k, k)) > 0.0_dp) then
+            inertia(k) = abs(self%jacobian(k, k))
+         end if
+      end do
+   end function inertias
+
+   !> Largest tau with which (M/tau + J) dz = -r leads where M dz/dt = -r does: half of that at
+   !> which the matrix is singular. Where heat closes the gap it crosses, J has negative eigenvalues
+   !> on the way, and a longer step goes backwards.
+   function stable_time_step(self, inertia) result(tau)
+      type(newton_type), intent(in) :: self
+      real(dp), intent(in) :: inertia(:)
+      real(dp) :: tau
       real(dp), allocatable :: real_part(:), imaginary_part(:)
       logical :: found
 
-      longest = endless
-      call eigenvalues(self%jacobian, real_part, imaginary_part, found)
-      if (found) longest = 0.5_dp/max(-minval(real_part), 0.5_dp/endless)
-   end function longest_time_step
-
-   !> (1/tau + J) dz = -r.
-   pure subroutine make_equations(self, matrix, rhs)
-      class(newton_type), intent(in) :: self
-      real(dp), intent(out) :: matrix(:, :), rhs(:)
-      integer :: k
-
-      matrix = self%jacobian
-      rhs = -self%rest
-      do k = 1, size(rhs)
-         if (self%time_step < endless) matrix(k, k) = matrix(k, k) + 1.0_dp/self%time_step
-         if (.not. self%graph(k)%rests(self%place(k))) cycle
-         ! No conductance at which the pair may rest brings its opening to 0: it does not rest.
-         if (sum(abs(self%jacobian(k, :)))*self%graph(k)%width > abs(self%rest(k))) cycle
-         matrix(k, :) = 0.0_dp
-         matrix(k, k) = 1.0_dp
-         rhs(k) = self%graph(k)%place_of_opening(-self%rest(k)) - self%place(k)
-      end do
-   end subroutine make_equations
+      tau = huge(1.0_dp)
+      call eigenvalues(-self%jacobian/spread(inertia, 2, size(inertia)), real_part, &
+         imaginary_part, found)
+      if (.not. found) return
+      tau = 0.5_dp/max(maxval(real_part, mask=abs(imaginary_part) <= real_part), tiny(1.0_dp))
+   end function stable_time_step
 
 end module newton

@@ -16,6 +16,10 @@ module resting_pairs
    !> counts as the largest of an increment.
    real(dp), parameter :: least_pressure = 1.0e-6_dp
 
+   !> Part of the largest length that a gap counts by: what is left of one is closed in the end, and
+   !> takes force.
+   real(dp), parameter :: least_gap = 1.0e-5_dp
+
    !> Largest values of an increment, by which gaps and pressures are small.
    type :: contact_scales_type
       real(dp) :: length = 0.0_dp   !! gap or displacement [length]
@@ -62,8 +66,8 @@ contains
       if (any(resting)) then
          pressure = graph%modulus*max(-pass%opening, 0.0_dp)
          largest = max(maxval(pressure), scales%force/max(maxval(weight), tiny(1.0_dp)))
-         by_rest = max(pass%opening, 0.0_dp)/max(scales%length, maxval(pass%opening)) + &
-            pressure/max(largest, least_pressure* &
+         by_rest = max(pass%opening, 0.0_dp)/max(least_gap*scales%length, &
+            largest/graph%modulus) + pressure/max(largest, least_pressure* &
             graph%modulus*scales%length)
          resting = resting .and. by_rest < by_law
          where (resting) by_law = by_rest

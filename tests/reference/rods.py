@@ -17,6 +17,7 @@ bisection: no derivative of a law is asked for.
 
 from bisect import bisect_right
 from dataclasses import dataclass
+from decimal import Decimal, localcontext
 from itertools import pairwise
 
 
@@ -141,6 +142,61 @@ def solutions(rods, open_law, closed_law, count=200000):
             low, high = (middle, high) if (excess(middle) < 0.0) == rises else (low, middle)
         found.append(middle)
     return found
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A solution: conductance, derivatives of s by it and of the law by s, which is 0 at rest."""
+
+    conductance: float
+    opening: float
+    slope: float
+
+    @property
+    def gain(self):
+        """Return U'."""
+        return self.slope * self.opening
+
+
+def exact_solutions(rods, a, b, touch, c):
+    """Return all solutions with the laws gas(a, b) and power(touch, c, 1), by ascending
+    conductance: the roots of a quadratic on either side, with 60 digits, and where the laws jump
+    the state at rest.
+
+    With y the distance b + gamma, or the conductance of a closed pair, and G = g0 - e0,
+
+        (y - b - G)(y + a R0) + e1 (T1 - T2) a = 0,
+        ((y - touch) (L1/E1 + L2/E2)/c + G)(R0 y + 1) - e1 (T1 - T2) y = 0.
+    """
+    with localcontext(prec=60):
+        (l1, l2), (k1, k2), (a1, a2), (y1, y2), (t1, t2) = (
+            [Decimal(v) for v in pair] for pair in (rods.length, rods.conductivity, rods.expansion,
+                                                    rods.young, rods.temperature))
+        a, b, touch, c = map(Decimal, (a, b, touch, c))
+        resistance, stiff = l1 / k1 + l2 / k2, (l1 / y1 + l2 / y2) / c
+        space = Decimal(rods.gap) - (a1 * l1 * t1 + a2 * l2 * t2)
+        closing = (-a1 * l1**2 / (2 * k1) + a2 * l2**2 / (2 * k2)) * (t1 - t2)
+        r = a * resistance
+        found = [(a / y, -a / y**2) for y in roots(
+            Decimal(1), r - b - space, closing * a - r * (b + space)) if y > b]
+        found += [(y, -1 / stiff) for y in roots(
+            stiff * resistance, stiff + (space - stiff * touch) * resistance - closing,
+            space - stiff * touch) if y >= touch]
+        if closing * space > 0:   # at rest s = space - e1 q = 0
+            y = 1 / (closing / space - resistance)
+            if min(a / b, touch) < y < max(a / b, touch):
+                found.append((y, Decimal(0)))
+        return [Solution(float(y), float(-closing / (resistance * y + 1)**2), float(slope))
+                for y, slope in sorted(found)]
+
+
+def roots(a, b, c):
+    """Return the real roots of a y^2 + b y + c, Decimals."""
+    discriminant = b * b - 4 * a * c
+    if discriminant < 0:
+        return []
+    larger = -(b + discriminant.sqrt().copy_sign(b)) / 2
+    return [larger / a, c / larger] if larger else [Decimal(0)] * 2
 
 
 def resting(rods):
