@@ -4,7 +4,7 @@ module increments
    use errors, only: error_type, set_error, status_no_convergence
    use field_recovery, only: make_points, point_map_type
    use films, only: left_films
-   use increment_checks, only: check_heat, check_violation, warn_of_choices
+   use increment_checks, only: check_heat, check_values, check_violation, warn_of_choices
    use increment_control, only: increment_control_type
    use increment_records, only: make_record
    use increment_solution, only: recover_fields, solve_pairs
@@ -19,7 +19,7 @@ module increments
    use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
-   use step_reduction, only: measure_steps, step_reduction_type
+   use step_reduction, only: measure_factors, measure_steps, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
@@ -197,6 +197,7 @@ contains
             call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, &
                error)
             if (allocated(error)) return
+            call measure_factors(operators, self%sizes)
          end if
          since = wall_seconds()
          call solve_pairs(operators, self%loads, model, step, self%state, next, record, error)
@@ -216,6 +217,8 @@ contains
          call recover_fields(operators, self%loads, model, step, next)
          call make_record(operators, model, self%points, self%loads, step, self%state, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
+         call check_values(record, error)
+         if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call check_violation(record, error)
       end associate
    end subroutine attempt
