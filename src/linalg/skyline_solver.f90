@@ -47,7 +47,7 @@ contains
       self%smallest_pivot = self%skyline%smallest_pivot
       self%factor_bytes = storage_size(1.0_dp)/8*size(self%skyline%value, kind=long)
       if (bad_column > 0) call set_error(error, status_deck, &
-         'singular matrix: some body is not held by its supports and contacts')
+         'singular matrix: some body is not held by its supports and contacts, or far too softly')
    end subroutine factor
 
    !> As condense_interface of linear_solver says.

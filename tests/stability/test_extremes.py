@@ -44,16 +44,14 @@ def stack(below=1.0, above=1.0, xs=XS, gap=0.0, kind="CPE8"):
 
 
 def walls(folder, name, conductance, conductivities=(1.0, 1.0)):
-    """Return the row of two walls of thickness one with a conductance between them; elimination
-    loses the digits by which their conductivities differ."""
+    """Return the row of two walls of thickness one with a conductance between them."""
     k1, k2 = conductivities
     case = Outcome(
         folder, "walls", stack(), material("A", None, conductivity=k1),
         material("B", None, conductivity=k2), law("*GAP CONDUCTANCE", f"{conductance!r}, 0."),
         HEAT, bases("A.BOTTOM, 11, 11, 0.", "B.TOP, 11, 11, 100."), ["*END STEP"])
     flux, _ = wall([1.0, 1.0], [k2, k1], 100.0, 0.0, contacts=[conductance])
-    return judged(name, case, deviation(case.last("heat_flux"), flux),
-                  ROUNDING + 1e-14 * max(k1, k2) / min(k1, k2))
+    return judged(name, case, deviation(case.last("heat_flux"), flux), ROUNDING)
 
 
 def heat(folder):
@@ -62,7 +60,7 @@ def heat(folder):
     for exponent in (-15, -10, -5, 0, 5, 10, 15):
         table.rows.append(walls(folder, f"omega = 1e{exponent} k/L", float(f"1e{exponent}")))
     other = report.Table("Conductivities far apart", HEAD)
-    for ratio in (1e4, 1e8, 1e-8):
+    for ratio in (1e4, 1e8, 1e-8, 1e16, 1e-16):
         pair = (ratio**0.5, ratio**-0.5)
         other.rows.append(walls(folder, f"ratio {ratio:.0e}", 1.0, pair))
     return [table, other]
@@ -144,13 +142,17 @@ def friction(folder):
     return [table]
 
 
+def pressed_cards(young, poisson=0.0, xs=XS, heights=(1.0, 1.0), pressure=5.0):
+    """Return the cards of a stack under an even pressure."""
+    return [stack(*heights, xs), material("A", (young[0], poisson)), material("B", (young[1], poisson)),
+            law(), STATIC, bases("A.BOTTOM, 2", "A.LEFT, 1", "B.LEFT, 1"),
+            ["*DSLOAD", f"B.TOP, P, {pressure!r}", "*END STEP"]]
+
+
 def pressed(folder, name, young, allowed, poisson=0.0, xs=XS, heights=(1.0, 1.0)):
     """Return the row of a stack under an even pressure: pressure, and shortening of both blocks."""
     p, moduli = 5.0, [e / (1 - poisson**2) for e in young]
-    case = Outcome(
-        folder, "pressed", stack(*heights, xs), material("A", (young[0], poisson)),
-        material("B", (young[1], poisson)), law(), STATIC,
-        bases("A.BOTTOM, 2", "A.LEFT, 1", "B.LEFT, 1"), ["*DSLOAD", f"B.TOP, P, {p!r}", "*END STEP"])
+    case = Outcome(folder, "pressed", *pressed_cards(young, poisson, xs, heights, p))
     top = -p * sum(h / e for h, e in zip(heights, moduli, strict=True))
     off = max(deviation(case.last("pressure"), p),
               deviation(case.field("displacement")[:, 1].min(), top))
@@ -160,11 +162,14 @@ def pressed(folder, name, young, allowed, poisson=0.0, xs=XS, heights=(1.0, 1.0)
 def stiffness(folder):
     """Return the tables of moduli and Poisson's ratios."""
     table = report.Table("Young's moduli far apart", HEAD, text="A punch is measured by a base alone of which the "
-                         "nodes under it are pushed down evenly.")
+                         "nodes under it are pushed down evenly. A stiff block that only a soft one holds loses the "
+                         "digits of the ratio; from a pivot of 1e-9 on the program warns.")
     for ratio in (1e4, 1e8, 1e-8):
         table.rows.append(pressed(folder, f"A is {ratio:.0e} as stiff as B, flat",
                                   (ratio**0.5, ratio**-0.5),
                                   ROUNDING + 1e-14 * max(ratio, 1 / ratio)))
+    table.rows.append(refused("A is 1e-16 as stiff as B, flat", Outcome(
+        folder, "pressed", *pressed_cards((1e-8, 1e8)), status=1), "singular"))
     for ratio in (1e4, 1e8):
         table.rows.append(punch(folder, ratio))
     soft = report.Table(
@@ -231,8 +236,7 @@ def shapes(folder):
         table.rows.append(pressed(folder, f"nodes {near:.0e} apart beside sides of 1",
                                   (1000.0, 1000.0), spoilt(1 / near), 0.3, [0.0, near, 1.0]))
     for near in (1e-8, 1e-12):
-        cards = near_nodes(near)
-        case = Outcome(folder, "near", *cards, status=1)
+        case = Outcome(folder, "near", *near_nodes(near), status=1)
         table.rows.append(refused(f"nodes {near:.0e} apart beside sides of 1", case, "all but coincide"))
     case = Outcome(folder, "near", *near_nodes(0.0), status=1)
     table.rows.append(refused("nodes in one place, so that elements have no area", case, "Jacobian"))
