@@ -27,7 +27,7 @@ contains
    pure subroutine factor(self, matrix, singular)
       class(lu_type), intent(inout) :: self   !! the factors
       real(dp), intent(in) :: matrix(:, :)    !! (n, n)
-      logical, intent(out) :: singular        !! a pivot is zero or lost to rounding, or the matrix overflowed
+      logical, intent(out) :: singular !! a pivot is zero or lost, or the matrix overflowed
       integer :: i, info, n
 
       n = size(matrix, 1)

@@ -160,9 +160,9 @@ contains
       end associate
    end subroutine number
 
-   !> Whether the slave's body is far stiffer, or conducts far better, than the master's. A soft body
-   !> is to be written by the stiff one: the other way round its stiffness would be left over where
-   !> those of the stiff one cancel, and their rounding with it.
+   !> Whether the slave's body is far stiffer, or conducts far better, than the master's. A soft
+   !> body is to be written by the stiff one: the other way round its stiffness would be left over
+   !> where those of the stiff one cancel, and their rounding with it.
    pure function slave_is_stiffer(model, pairs, mechanics) result(stiffer)
       type(model_type), intent(in) :: model
       type(pair_row_type), intent(in) :: pairs

@@ -110,7 +110,7 @@ contains
       type(sparse_matrix_type), intent(in) :: film_new           !! F_i+1 [power/temperature]
       type(interface_operators_type), intent(inout) :: operators !! the bodies
       type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
-      type(run_size_type), intent(inout) :: sizes                !! receives bytes and pivot of factors
+      type(run_size_type), intent(inout) :: sizes                !! receives bytes and pivot
       type(error_type), allocatable, intent(out) :: error        !! see above
       logical :: heat, mechanics
       real(dp) :: since

@@ -2,11 +2,10 @@
 
 import os
 
+import report  # isort: skip, it makes the modules below known
 import fuzzing
 import lame
 import numpy as np
-import pytest
-import report
 import rods
 from cases import HEAD, Outcome, deviation, judged, refused
 from conduction import wall
@@ -308,7 +307,9 @@ def magnitudes(folder):
                                     "ended in words", "verdict"],
         text="Decks with one to three values of any magnitude, by a fixed seed: no crash, no hang, no infinite "
         "or missing value where the run says 0, no message but the program's own.")
-    sets = ((-30, 30, (1, 2, 3)),) if DEBUG else ((-300, 300, (1,)), (-100, 100, (1, 2, 3)))
+    sets = (-300, 300, (1,)), (-100, 100, (1, 2, 3))
+    if DEBUG:  # where an overflow stops the program
+        sets = (-20, 20, (1,)), (-20, 20, (1, 2, 3))
     for low, high, changed in sets:
         found = []
         for seed in range(20 if DEBUG else 150):
@@ -328,7 +329,6 @@ def tables(folder):
             *increments(folder), *magnitudes(folder)]
 
 
-@pytest.mark.skipif(DEBUG, reason="an overflow stops a build with traps")
 def test_extremes(tmp_path):
     """Every case holds, and the document tells the same."""
     import test_extremes
