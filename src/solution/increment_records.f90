@@ -138,8 +138,9 @@ contains
 
       fraction = 0.0_dp
       if (gap <= 0.0_dp .or. force <= 0.0_dp) return
-      stiffness = system%stiffness([place])
-      fraction = gap/(gap + force/stiffness(1, 1))
+      ! Zero where the pair alone holds a body, but for rounding: it then closes at once.
+      stiffness = max(system%stiffness([place]), 0.0_dp)
+      fraction = gap*stiffness(1, 1)/(gap*stiffness(1, 1) + force)
    end function closing_fraction
 
    !> Contact state of one interface.

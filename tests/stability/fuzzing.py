@@ -52,6 +52,7 @@ B, {initial}
 *CONTACT PAIR, INTERACTION=I, NAME=F
 B.BOTTOM, A.TOP
 *FIXED POINT, TOL={tolerance}
+*SOLVER, TYPE=%s
 *STEP
 %s
 *BOUNDARY
@@ -71,11 +72,12 @@ def fuzzed(path, seed, decades, changed=(1, 2, 3)):
     for name in names:
         values[name] = float(f"{10 ** chance.uniform(*decades):.3e}")
     law, step, load = (chance.choice(texts) for texts in (LAWS, STEPS, LOADS))
+    solver = chance.choice(("SKYLINE", "MUMPS"))
     texts = {name: f"{value!r}" for name, value in values.items()}
     xs = [0.0, values["width"] / 2, values["width"]]
     ys = [values["gap"], values["gap"] + values["height"]]
     write(path, ["*OPTIONS, WIDTH=200"], block("A", xs, [-values["height"], 0.0]),
-          block("B", xs, ys, 100), (CARDS % (law, step, load)).format(**texts))
+          block("B", xs, ys, 100), (CARDS % (law, solver, step, load)).format(**texts))
     return {name: values[name] for name in names}
 
 
