@@ -26,6 +26,7 @@ module contact_system
    use contact_states, only: closing_law_type, condition_code, contact_state_type
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
+   use finite_values, only: check_finite
    use kinds, only: dp
    use loose_motions, only: free_motions, is_driven
    use records, only: status_open, status_slip, status_stick
@@ -94,7 +95,7 @@ contains
 
    !> Solution for one active set. Where the load drives a body that the set leaves loose, driven
    !> is set, and the values stay as they are.
-   !> Errors: as factor_set; a body is driven away.
+   !> Errors: as factor_set; a body is driven away; forces overflow.
    subroutine solve_set(self, load, state, error)
       class(contact_system_type), intent(inout) :: self   !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
@@ -126,6 +127,9 @@ contains
          d(self%free) = d(self%free) + residual(self%free, 1)
       end if
       lambda = matmul(self%schur, d) - load
+      call check_finite([d, lambda], 'displacements and forces of the contact', &
+         status_no_convergence, error)
+      if (allocated(error)) return
       state%link = d(self%link)
       do k = 1, size(state%status)
          state%gap(k) = self%initial_gap(k) - d(self%normal(k))

@@ -28,8 +28,6 @@ module increment_records
    !> Part of K u or of the gaps below which a force or a displacement is no scale to measure by:
    !> where nothing is loaded only rounding is left of them.
    real(dp), parameter :: noise = 1.0e-6_dp
-   !> Stiffness of a pair, over that of the pair on held bodies, that is none.
-   real(dp), parameter :: nothing = 1.0e-12_dp
    !> Displacement, in the extent of the model, below which it is no scale.
    real(dp), parameter :: least_strain = 1.0e-12_dp
 
@@ -144,10 +142,9 @@ contains
 
       fraction = 0.0_dp
       if (gap <= 0.0_dp .or. force <= 0.0_dp) return
-      stiffness = system%stiffness([place])
-      ! Where only this pair holds a body, relieved it would go without end.
-      if (stiffness(1, 1) > nothing*system%schur(place, place)) fraction = gap/(gap + &
-         force/stiffness(1, 1))
+      ! Zero where the pair alone holds a body, but for rounding: it then closes at once.
+      stiffness = max(system%stiffness([place]), 0.0_dp)
+      fraction = gap*stiffness(1, 1)/(gap*stiffness(1, 1) + force)
    end function closing_fraction
 
    !> Contact state of one interface.

@@ -5,8 +5,9 @@ module increment_solution
    use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
       law_conductance, temperature_jumps, thermal_forces
    use contact_states, only: closing_law_type
-   use errors, only: error_type
+   use errors, only: error_type, status_no_convergence
    use films, only: film_history
+   use finite_values, only: check_finite
    use coupled_increment, only: solve_coupled
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
@@ -26,7 +27,8 @@ contains
 
    !> Jumps, contact state and conductance at the end of an increment, and the temperatures that
    !> belong to welded contacts. A field that the step does not solve stays.
-   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
+   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds,
+   !> loads that overflow.
    subroutine solve_pairs(operators, loads, model, step, previous, next, record, error)
       type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
@@ -48,6 +50,9 @@ contains
       record%coupling_gain_max = record%coupling_gain
       if (solves_heat(step%analysis)) then
          call load_heat(operators, loads, previous, data, next)
+         call check_finite([operators%thermal%condensed, next%temperature], &
+            'heat and temperatures', status_no_convergence, error)
+         if (allocated(error)) return
          call warn_of_imbalance(operators, loads, data, previous, next, record)
       end if
       if (.not. solves_mechanics(step%analysis)) then
@@ -60,6 +65,9 @@ contains
       call operators%contact%forget_factors()
       if (.not. solves_heat(step%analysis)) call give_temperatures(operators, loads, previous, next)
       call load_mechanics(operators, loads, model, data, next)
+      call check_finite([operators%mechanical%rhs(:, 1), data%welded_load], 'forces', &
+         status_no_convergence, error)
+      if (allocated(error)) return
       if (solves_heat(step%analysis) .and. size(next%omega) > 0) then
          if (is_explicit(step%scheme)) then
             call pass_once(operators, previous, data, next, record, error)

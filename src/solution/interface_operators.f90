@@ -7,6 +7,7 @@ module interface_operators
    use contact_reduction, only: contact_system_of
    use contact_system, only: contact_system_type
    use equation_numbering, only: make_map
+   use element_kinds, only: element_node_count
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
@@ -24,6 +25,7 @@ module interface_operators
 
    real(dp), parameter :: held_by_others = 1.0e-6_dp !! part of a conductance that is rounding
    real(dp), parameter :: rounding = 1.0e-15_dp  !! of coordinates, in the extent of the model
+   real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
 
    !> The reduced bodies.
@@ -94,13 +96,38 @@ contains
          on_tail(1, :) = .true.
          on_tail(2, :) = pairs%friction > 0.0_dp
          if (mechanics) call make_map(used, held, pairs%slave, pairs%master, frame, on_tail, &
-            self%mechanical%map, error)
+            self%mechanical%map, error, slave_is_stiffer(model, pairs, .true.))
          if (allocated(error) .or. .not. heat) return
          scalar = 1.0_dp
          call make_map(used, held_temperature, pairs%slave, pairs%master, scalar, on_tail(:1, :), &
-            self%thermal%map, error)
+            self%thermal%map, error, slave_is_stiffer(model, pairs, .false.))
       end associate
    end subroutine number
+
+   !> Whether the slave's body is far stiffer, or conducts far better, than the master's. A soft
+   !> body is to be written by the stiff one: the other way round its stiffness would be left over
+   !> where those of the stiff one cancel, and their rounding with it.
+   pure function slave_is_stiffer(model, pairs, mechanics) result(stiffer)
+      type(model_type), intent(in) :: model
+      type(pair_row_type), intent(in) :: pairs
+      logical, intent(in) :: mechanics
+      logical :: stiffer(size(pairs%slave))
+      real(dp) :: stiffness(size(model%mesh%node_number)), own
+      integer :: e, i
+
+      stiffness = 0.0_dp
+      do e = 1, size(model%mesh%element_number)
+         associate (section => model%sections(model%mesh%element_section(e)), &
+            nodes => model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), e))
+            associate (material => model%materials(section%material))
+               own = maxval([(material%elasticity(i, i), i=1, 4)])
+               if (.not. mechanics) own = maxval(material%conductivity)
+            end associate
+            stiffness(nodes) = max(stiffness(nodes), own*section%thickness)
+         end associate
+      end do
+      stiffer = stiffness(pairs%slave) > far*stiffness(pairs%master)
+   end function slave_is_stiffer
 
    !> Reduces the fields that are asked for to the unknowns that were numbered last.
    !> Errors: bodies that nothing holds, a failure of the solver.
