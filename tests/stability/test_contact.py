@@ -114,9 +114,9 @@ PAIR = """
 1, 0., 0.
 2, 0.8, 0.2
 3, 0., 1.
-4, 0., 0.
-5, 0.8, -0.2
-6, 0., -1.
+4, 0., {below}
+5, 0.8, {beside}
+6, 0., -2.
 *ELEMENT, TYPE=CPE3, ELSET=UP
 1, 1, 2, 3
 *ELEMENT, TYPE=CPE3, ELSET=LO
@@ -127,7 +127,7 @@ PAIR = """
 2, S3
 *MATERIAL, NAME=M
 *ELASTIC, TYPE=ORTHO
-1., 0.6, 3., 0., 0., 1., 1., 1.
+1., {d1122}, 3., 0., 0., 1., 1., 1.
 1.
 *SOLID SECTION, ELSET=UP, MATERIAL=M
 1.25
@@ -142,6 +142,16 @@ PAIR = """
 """
 
 
+def springs(coupling, gap=0.0):
+    """Return the cards of one pair on the springs (2, coupling; coupling, 1).
+
+    The shape function of node 1 of the upper triangle has the gradient (-1, -1), on which its
+    stiffness is (D1111 + D1212, D1122 + D1212; ., D2222 + D1212)/2; both faces slope alike, so that
+    the normal is along y. The other pair stays wide open.
+    """
+    return PAIR.format(below=-gap, beside=-gap - 0.2, d1122=-2.0 * coupling - 1.0)
+
+
 def one_pair_table(folder):
     """Return the table of the triangle with one free node: the spring matrix is S by its material."""
     table = Table(
@@ -151,7 +161,7 @@ def one_pair_table(folder):
 pushed aside. Uniqueness ends at friction 1/0.8. By hand (tests/reference/one_pair.py) between pushes of 1.25 and 2 the pair may
 stick or be open: it lets go at 2 and closes again at 1.25. The state of the increment before is kept while it holds.""")
     pushes = [step("*CLOAD", "1, 2, -1."), *(step("*CLOAD", f"1, 1, {-push}") for push in PUSHES)]
-    deck = solved_one(folder, "pair", PAIR, faces(MANY, "ABOVE", "BELOW"), *pushes)
+    deck = solved_one(folder, "pair", springs(SPRINGS[0][1]), faces(MANY, "ABOVE", "BELOW"), *pushes)
     gap, pressure, shear, status, weight = contact(
         deck, "P", "gap", "pressure", "shear", "status", "weight")
     reference, opened = 0.0, False
