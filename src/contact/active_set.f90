@@ -9,7 +9,8 @@
 !> the set that is found also holds without that. What drives off through all steps is loose.
 module active_set
    use closing_path, only: follow_closing_path
-   use contact_system, only: condition_code, contact_state_type, contact_system_type
+   use contact_states, only: condition_code, contact_state_type
+   use contact_system, only: contact_system_type
    use errors, only: error_type, set_error, status_no_convergence
    use friction, only: next_status
    use kinds, only: dp

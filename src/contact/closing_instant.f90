@@ -19,7 +19,8 @@
 !> closed on the way counts as one that holds.
 module closing_instant
    use active_set, only: solve_contact
-   use contact_system, only: closing_law_type, contact_state_type, contact_system_type
+   use contact_states, only: closing_law_type, contact_state_type
+   use contact_system, only: contact_system_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
    use records, only: status_open, status_stick

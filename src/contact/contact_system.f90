@@ -23,40 +23,15 @@
 !> them. A load that drives one of them has no solution; without such a load the least motion is
 !> taken.
 module contact_system
-   use dense, only: lu_type, null_space
+   use contact_states, only: closing_law_type, condition_code, contact_state_type
+   use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
+   use loose_motions, only: free_motions, is_driven
    use records, only: status_open, status_slip, status_stick
    implicit none
    private
-   public :: contact_system_type, contact_state_type, closing_law_type, condition_code
-
-   !> Force along a loose motion that is rounding, as part of the load and of the terms of S d.
-   real(dp), parameter :: balanced = 1.0e-10_dp, rounding = 1.0e-13_dp
-   !> Spring of a row, as part of the pair's stiffness, that does not hold a body.
-   real(dp), parameter :: slack = 1.0e-9_dp
-
-   !> Contact state of all pairs.
-   type :: contact_state_type
-      integer, allocatable :: status(:)       !! (m) status_open, status_slip or status_stick
-      integer, allocatable :: direction(:)    !! (m) sign of the friction force where it slips
-      real(dp), allocatable :: reference(:)   !! (m) d_t from which friction counts [length]
-      real(dp), allocatable :: gap(:)         !! (m) gamma = h - d_n [length]
-      real(dp), allocatable :: tangential(:)  !! (m) d_t [length]
-      real(dp), allocatable :: force(:)       !! (m) -lambda_n, positive in compression [force]
-      real(dp), allocatable :: shear_force(:) !! (m) lambda_t [force]
-      real(dp), allocatable :: link(:)        !! (links) what holds rings together [length]
-   end type contact_state_type
-
-   !> Where a pair that closes within the increment sticks: at the reference d_t - slip, where slip
-   !> is the left-hand side of the condition above.
-   type :: closing_law_type
-      logical :: acts = .false.                !! whether the pair closes in this increment
-      real(dp) :: start = 0.0_dp               !! d_t,i [length]
-      real(dp) :: fraction = 0.0_dp            !! f, the instant of closing
-      real(dp) :: compliance(2) = 0.0_dp       !! c_n, c_t [length/force]
-      real(dp) :: rate(2) = 0.0_dp             !! derivative of f by lambda_n, lambda_t [1/force]
-   end type closing_law_type
+   public :: contact_system_type
 
    !> The reduced system, and the factors for the active set of its last solution.
    type :: contact_system_type
@@ -175,10 +150,8 @@ contains
       real(dp), intent(in) :: load(:), d(:)
       real(dp), intent(in) :: unbalanced(:)
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: terms
 
-      terms = balanced*maxval(abs(load)) + rounding*maxval(matmul(abs(self%schur), abs(d)))
-      self%driven = maxval(abs(unbalanced)) > terms
+      self%driven = is_driven(unbalanced, load, self%schur, d)
       if (self%driven) call set_error(error, status_no_convergence, &
          'the bodies are not held by their supports and the pairs that are in contact')
    end subroutine check_balance
@@ -216,7 +189,7 @@ contains
       end if
       self%factored = condition_code(state)
       call list_free(self, state)
-      call find_loose(self)
+      self%loose = free_motions(self%motion, self%free, self%spring, self%schur)
       call self%factor_rows(singular)
       if (.not. singular) return
       call self%forget_factors()
@@ -243,27 +216,6 @@ contains
       end associate
       call self%lu%factor(rows, singular)
    end subroutine factor_rows
-
-   !> The unsupported motions that no place of the active set holds.
-   subroutine find_loose(self)
-      class(contact_system_type), intent(inout) :: self
-      logical :: held(size(self%schur, 1))
-      integer :: i
-
-      if (size(self%motion, 2) == 0) then
-         self%loose = reshape([real(dp) ::], [size(self%free), 0])
-         return
-      end if
-      held = .true.
-      do i = 1, size(self%free)
-         associate (place => self%free(i))
-            held(place) = self%spring(place) > slack*abs(self%schur(place, place))
-         end associate
-      end do
-      associate (places => pack([(i, i=1, size(held))], held))
-         self%loose = matmul(self%motion(self%free, :), null_space(self%motion(places, :)))
-      end associate
-   end subroutine find_loose
 
    !> Makes the next solution factor anew, because a closing law has changed.
    pure subroutine forget_factors(self)
@@ -382,14 +334,5 @@ contains
       turns_back = self%lu%negative_determinant() .neqv. &
          (mod(size(self%link) + size(self%loose, 2), 2) == 1)
    end function turns_back
-
-   !> One number per pair for its contact condition.
-   pure function condition_code(state) result(codes)
-      type(contact_state_type), intent(in) :: state   !! statuses and directions
-      integer :: codes(size(state%status))            !! (m)
-
-      codes = 3*state%status
-      where (state%status == status_slip) codes = codes + state%direction
-   end function condition_code
 
 end module contact_system

@@ -4,7 +4,7 @@ module contact_operator
    use axis_limits, only: tractions
    use closing_instant, only: solve_increment
    use conductance_laws, only: conductance, conductance_slope
-   use contact_system, only: contact_state_type
+   use contact_states, only: contact_state_type
    use controls, only: thermal_scheme_type
    use errors, only: error_type
    use interface_operators, only: interface_operators_type

@@ -4,7 +4,8 @@ module increment_records
    use axis_limits, only: tractions, with_axis_limit
    use balances, only: contact_violation, force_residual, imbalance
    use contact_operator, only: kept_contact, thermal_forces
-   use contact_system, only: contact_state_type, contact_system_type
+   use contact_states, only: contact_state_type
+   use contact_system, only: contact_system_type
    use element_kinds, only: axisymmetric
    use element_points, only: points_of_elements
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress

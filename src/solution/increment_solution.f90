@@ -4,7 +4,7 @@ module increment_solution
    use closing_instant, only: solve_increment
    use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
       law_conductance, temperature_jumps, thermal_forces
-   use contact_system, only: closing_law_type
+   use contact_states, only: closing_law_type
    use errors, only: error_type
    use films, only: film_history
    use coupled_increment, only: solve_coupled

@@ -17,7 +17,7 @@
 !> this sense, and there the steps are Newton's again.
 module newton
    use conductance_graph, only: conductance_graph_type
-   use dense, only: lu_type
+   use dense, only: eigenvalues, lu_type
    use fixed_point, only: accelerator_type, pass_type
    use kinds, only: dp
    implicit none
@@ -208,32 +208,53 @@ contains
       part = min(max(part, 0.1_dp), 0.5_dp)
    end function shortening
 
-   !> dz from the pass that was taken last.
+   !> dz from the pass that was taken last; the image where the derivative is not known.
    subroutine make_step(self)
       class(newton_type), intent(inout) :: self
       real(dp) :: matrix(size(self%rest), size(self%rest)), step(size(self%rest), 1)
       type(lu_type) :: lu
       logical :: singular
-      integer :: k
 
       self%part = 1.0_dp
       self%step = -self%rest
       if (.not. allocated(self%jacobian)) return
+      if (self%time_step < endless) self%time_step = min(self%time_step, longest_time_step(self))
+      call make_equations(self, matrix, step(:, 1))
+      call lu%factor(matrix, singular)
+      if (singular) return
+      call lu%solve(step)
+      self%step = step(:, 1)
+   end subroutine make_step
+
+   !> Half the tau at which 1/tau + J turns singular: a longer step would lead back in time.
+   function longest_time_step(self) result(longest)
+      class(newton_type), intent(in) :: self
+      real(dp) :: longest
+      real(dp), allocatable :: real_part(:), imaginary_part(:)
+      logical :: found
+
+      longest = endless
+      call eigenvalues(self%jacobian, real_part, imaginary_part, found)
+      if (found) longest = 0.5_dp/max(-minval(real_part), 0.5_dp/endless)
+   end function longest_time_step
+
+   !> (1/tau + J) dz = -r.
+   pure subroutine make_equations(self, matrix, rhs)
+      class(newton_type), intent(in) :: self
+      real(dp), intent(out) :: matrix(:, :), rhs(:)
+      integer :: k
+
       matrix = self%jacobian
-      step(:, 1) = -self%rest
-      do k = 1, size(step)
+      rhs = -self%rest
+      do k = 1, size(rhs)
          if (self%time_step < endless) matrix(k, k) = matrix(k, k) + 1.0_dp/self%time_step
          if (.not. self%graph(k)%rests(self%place(k))) cycle
          ! No conductance at which the pair may rest brings its opening to 0: it does not rest.
          if (sum(abs(self%jacobian(k, :)))*self%graph(k)%width > abs(self%rest(k))) cycle
          matrix(k, :) = 0.0_dp
          matrix(k, k) = 1.0_dp
-         step(k, 1) = self%graph(k)%place_of_opening(-self%rest(k)) - self%place(k)
+         rhs(k) = self%graph(k)%place_of_opening(-self%rest(k)) - self%place(k)
       end do
-      call lu%factor(matrix, singular)
-      if (singular) return
-      call lu%solve(step)
-      self%step = step(:, 1)
-   end subroutine make_step
+   end subroutine make_equations
 
 end module newton

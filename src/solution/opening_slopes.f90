@@ -12,7 +12,7 @@ module opening_slopes
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: law_jumps
    use contact_operator, only: increment_data_type, law_pressure
-   use contact_system, only: contact_state_type
+   use contact_states, only: contact_state_type
    use contact_tangent, only: contact_response
    use interface_operators, only: interface_operators_type
    use kinds, only: dp

@@ -4,7 +4,8 @@ module step_reduction
    use clock, only: wall_seconds
    use errors, only: error_type
    use films, only: left_films
-   use interface_operators, only: interface_operators_type, pair_row_type
+   use interface_operators, only: interface_operators_type
+   use pair_rows, only: pair_row_type
    use kinds, only: dp, long
    use loads, only: loads_type
    use model, only: model_type
