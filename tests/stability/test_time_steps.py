@@ -8,32 +8,24 @@ import numpy as np
 import test_rods as rods
 from blocks import write
 from deck_runs import CYLINDER, HERTZ, copy_deck, run, solve
-from physics import material
 from report import Table, check, verdict
 from test_contact import faces, springs, step
-from test_physics_schemes import ENDS, SCHEMES, free, model, sets
+from test_physics_schemes import ENDS, free, model, sets
 from test_physics_schemes import step as heat_step
 
 TITLE = "Time steps"
 TEXT = """
 The problem has no time of its own, but friction has a path, and the schemes of (3.4) lag behind the conductance. Errors at the end of the
-load against the number of increments in which it acts; the order is the slope of log(error) from 5 to 80 increments.
+load against the number of increments in which it acts; the order is that from 40 to 80 increments.
 """
 COUNTS = [5, 10, 20, 40, 80]
 ROUNDING = 1e-9
 
 
-def order(errors):
-    """Return the order by least squares, none where the errors are rounding."""
-    if max(errors) < ROUNDING:
-        return None
-    return -float(np.polyfit(np.log(COUNTS), np.log(np.maximum(errors, 1e-300)), 1)[0])
-
-
-def row_of(name, errors, should, tolerance=0.1):
+def row_of(name, errors, should):
     """Return a row with errors, order, what it should be (None: no error at all), and verdict."""
-    found = order(errors)
-    holds = found == should if None in (found, should) else abs(found - should) < tolerance
+    found = None if max(errors) < ROUNDING else math.log2(errors[-2] / errors[-1])
+    holds = found == should if None in (found, should) else abs(found - should) < 0.1
     return [name, *errors, "exact" if found is None else f"{found:.2f}",
             "exact" if should is None else str(should), verdict(holds)]
 
@@ -105,9 +97,6 @@ increment, however many there are. A path on which each pair goes on slipping, o
 
 # Interfaces where pairs close one after the other
 
-FINEST = 640
-
-
 def quiet(text, increment):
     """Return a deck's text with another first increment, fields of the last one and no checks."""
     text = text[: text.index("*VERIFY")] if "*VERIFY" in text else text
@@ -124,33 +113,58 @@ def at_the_end(deck, *names):
         return [file[f"contact/FACE/{name}"][-1] for name in names]
 
 
-def interfaces(folder):
-    """Return the table of meshes whose pairs close one after the other."""
+def hertz(folder):
+    """Return the table of a mesh whose pairs close one after the other, without heat."""
+    finest = 320
     table = Table(
-        "Friction: pairs that close one after the other", [*head("case")[:-2], "verdict"],
-        text=f"""Against {FINEST} increments. The order is that of the mean; it is not a clean one, because a pair that closes freezes the slip
-that it has: errors go in steps, down to nothing where each increment closes one pair at most. They must fall, from 5 to 80 increments
-at least as 1/sqrt(n).""")
+        "Friction: Hertz with friction", [*head("case")[:-3], "verdict"],
+        text=f"""Different materials (input/hertz), against {finest} increments. Errors fall in steps: they come from increments in which
+several pairs close, or a pair closes and slips; where all closed pairs stick and one closes at a time, nothing depends on the
+increments any more.""")
     names = "shear_force", "slip", "shear"
-    cases = {"Hertz, friction 0.05": (HERTZ, 1.0, 0.05), "Hertz, friction 0.3": (HERTZ, 1.0, 0.3),
-             "cylinder": (CYLINDER, 900.0, None)}
-    for case, (source, period, friction) in cases.items():
+    for friction in 0.05, 0.3:
         found = {}
-        for count in [*COUNTS, FINEST]:
-            text = quiet(source.read_text(), f"{period / count!r}")
-            if friction:
-                text = re.sub(r"(\*SURFACE INTERACTION.*)", rf"\1\n*FRICTION\n{friction}", text)
-            (deck := folder / f"{source.stem}{count}.inp").write_text(text)
+        for count in [*COUNTS, finest]:
+            text = re.sub(r"(\*SURFACE INTERACTION.*)", rf"\1\n*FRICTION\n{friction}",
+                          quiet(HERTZ.read_text(), f"{1 / count!r}"))
+            (deck := folder / f"hertz{count}.inp").write_text(text)
             found[count] = at_the_end(deck, *names)
         for k, name in enumerate(names):
-            scale = abs(found[FINEST][k]).max()
-            if scale < 1e-12:
+            scale = abs(found[finest][k]).max()
+            if scale < 1e-12:  # nothing slips
                 continue
-            errors = [float(abs(found[count][k] - found[FINEST][k]).max() / scale)
+            errors = [float(abs(found[count][k] - found[finest][k]).max() / scale)
                       for count in COUNTS]
-            slope = order(errors)
-            table.rows.append([f"{case}: {name.replace('_', ' ')}", *errors, f"{slope:.2f}",
-                               verdict(slope >= 0.5)])
+            table.rows.append([f"friction {friction}: {name.replace('_', ' ')}", *errors,
+                               verdict(errors[-1] < max(errors[0] / 8, ROUNDING))])
+    return table
+
+
+def cylinder(folder):
+    """Return the table of the published cylinder."""
+    counts, finest = [5, 20, 80, 320, 1280], 2560
+    table = Table(
+        "Friction: the cylinder", ["quantity at the end", *(f"{n} increments" for n in counts),
+                                   "verdict"],
+        text=f"""Its 21 pairs close one after the other while they slide, against {finest} increments; the deck has 45. The limit exists,
+but is not reached evenly: one pair slips at a time, and each that closes freezes the slip that it has, which the mesh makes wrong by more
+than the increments (docs/theory.md, section 6). Relative errors, of the edge in local nodal spacings.""")
+    names = "normal_force", "shear_force", "slip", "shear", "edge_stick", "s"
+    found = {}
+    for count in [*counts, finest]:
+        (deck := folder / f"cylinder{count}.inp").write_text(
+            quiet(CYLINDER.read_text(), f"{900 / count!r}"))
+        found[count] = at_the_end(deck, *names[:-1])
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        s = file["contact/FACE/s"][()]
+    edge = float(found[finest][4])
+    scales = [abs(values).max() for values in found[finest][:4]]
+    scales.append(np.diff(s)[np.searchsorted(s, edge) - 1])
+    for k, name in enumerate(names[:-1]):
+        errors = [float(abs(found[count][k] - found[finest][k]).max() / scales[k])
+                  for count in counts]
+        holds = max(errors[1:]) < 1.0 if name == "edge_stick" else errors[-1] < errors[0] / 4
+        table.rows.append([name.replace("_", " "), *errors, verdict(holds)])
     return table
 
 
@@ -185,9 +199,8 @@ def schemes(folder):
 quasi-static solution. A scheme with a3 = a1, b3 = 0 solves (3.3) itself; the others leave of a change of conductance dG in an increment
 a residual a2 dG T_i+1 - b3 dG T_i, which is of second order where a2 = b3, as is the error; else of first.""" * (k == 0))
         for scheme, should in ORDERS.items():
-            # An error of second order comes to its slope where the gap changes little in a step.
             errors = [float(found[scheme, count][k]) for count in COUNTS]
-            table.rows.append(row_of(scheme, errors, should, 0.35))
+            table.rows.append(row_of(scheme, errors, should))
         tables.append(table)
     return tables
 
@@ -225,7 +238,7 @@ def shown_part(value):
 
 def tables(folder):
     """Run the cases; return their tables."""
-    return [pairs(folder), interfaces(folder), *schemes(folder), imbalance(folder)]
+    return [pairs(folder), hertz(folder), cylinder(folder), *schemes(folder), imbalance(folder)]
 
 
 def test_time_steps(tmp_path):
