@@ -59,17 +59,20 @@ DECKS = 300
 
 def random_deck(folder, seed, analysis):
     """Return a deck of a block that is pressed on another one and pushed about; its friction."""
-    r = random.Random(seed)
-    kind, columns = r.choice(["CPE8", "CPE8", "CPE4", "CPE6"]), r.choice([4, 8, 12])
-    friction = 10 ** r.uniform(-1, 1)
+    r = random.Random(7 * seed + 1)
+    kind, columns = r.choice(["CPE8", "CPE4", "CPE6", "CPE3"]), r.choice([3, 6, 10, 16])
+    friction, gap = 10 ** r.uniform(-1, 1), r.choice([0.0, 0.0, 1e-3, 5e-3])
+    tilt = r.choice([0.0, 0.0, 2e-3, -1e-3])
     xs = [2.0 * i / columns for i in range(columns + 1)]
-    cards = [*mesh("UP", xs, [0.0, 0.3, 1.0], kind),
-             *mesh("LO", xs, [-1.0, -0.3, 0.0], kind, first=1001), *material("UP", (1000.0, 0.3)),
-             *material("LO", (1000.0 * 10 ** r.uniform(0, 3), r.choice([0.0, 0.3, 0.45]))),
+    upper = mesh("UP", xs, [0.0, 0.3, 1.0], kind, to=lambda x, y: (x, y + gap + tilt * x))
+    cards = [*upper, *mesh("LO", xs, [-1.0, -0.3, 0.0], kind, first=1001),
+             *material("UP", (1000.0, 0.3)),
+             *material("LO", (10 ** r.uniform(2, 6), r.choice([0.0, 0.3, 0.45]))),
              *faces(friction)]
     for _ in range(6):
+        down = gap + 10 ** r.uniform(-4, -2) - r.choice([0.0, 0.0, 0.005])
         cards += step(
-            "*BOUNDARY", "LO.BOTTOM, 1, 2", f"UP.TOP, 2, 2, {-10 ** r.uniform(-4, -2)!r}",
+            "*BOUNDARY", "LO.BOTTOM, 1, 2", f"UP.TOP, 2, 2, {-down!r}",
             f"UP.TOP, 1, 1, {r.uniform(-0.01, 0.01)!r}", "*DSLOAD",
             f"UP.LEFT, P, {r.uniform(-3, 3)!r}", f"UP.RIGHT, P, {r.uniform(-3, 3)!r}",
             "*CONTACT FILE, FREQUENCY=0", analysis=analysis,
@@ -80,26 +83,23 @@ def random_deck(folder, seed, analysis):
 def random_blocks(folder, analysis):
     """Return the table of the random blocks under fixed or cut increments."""
     fixed = "DIRECT" in analysis
+    text = f"The same {DECKS} with DIRECT, which allows no cut-back." if fixed else f"""\
+{DECKS} blocks above a base that is 0.1 to 1000 times as stiff, with and without a gap and a slope between them, of elements of 8, 6, 4
+and 3 nodes; six steps of random motion down and aside, with lifts, and of pressures on the sides, in 1, 2 or 10 increments each."""
     table = Table(
-        f"Random blocks, {'fixed increments' if fixed else 'increments cut back where they fail'}",
+        f"Random blocks, increments {'fixed' if fixed else 'cut back where they fail'}",
         ["friction", "runs", "increments", "cut-backs", "runs that end early",
-         "times several states are proven", "largest violation", "verdict"],
-        text=f"""{DECKS} blocks on a base, {'the same with DIRECT' if fixed else
-'''moduli 1 to 1000 times theirs, of elements of 8, 6 and 4 nodes; six steps of
-random motion down and aside and of pressures on the sides, in 1 to 10 increments each'''}.""")
-    (own := folder / ("direct" if fixed else "cut")).mkdir()
+         "times several states are proven", "largest violation", "verdict"], text=text)
+    (own := folder / ("fixed" if fixed else "cut")).mkdir()
     decks = [random_deck(own, seed, analysis) for seed in range(DECKS)]
     outcomes = solved([deck for deck, _ in decks])
     for low, high in zip(RANGES, RANGES[1:], strict=False):
         of_range = [o for o, (_, mu) in zip(outcomes, decks, strict=True) if low <= mu < high]
         ended = [o.message for o in of_range if o.message]
-        holds = all(o.increments or o.message for o in of_range) and (fixed or not ended)
-        holds &= all("DIRECT keeps from being cut back" in message for message in ended)
         table.rows.append(
             [f"{low} to {high}", len(of_range), sum(o.increments for o in of_range),
              sum(o.cut_backs for o in of_range), len(ended), sum(o.several for o in of_range),
-             max(v for o in of_range for v in o.violations),
-             "refused" if holds and ended else verdict(holds)])
+             max(v for o in of_range for v in o.violations), verdict(not ended)])
     return table
 
 
