@@ -13,6 +13,7 @@ module interface_operators
    use model, only: model_type
    use pair_rows, only: align_frames, pair_row_type, pair_surfaces, row_of
    use rigid_motions, only: unsupported_motions
+   use ring_links, only: node_stiffness
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
@@ -20,6 +21,7 @@ module interface_operators
    private
    public :: interface_operators_type
 
+   real(dp), parameter :: held_by_others = 1.0e-6_dp !! part of a conductance that is rounding
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
 
    !> The reduced bodies.
@@ -42,6 +44,7 @@ module interface_operators
       procedure :: reduce
       procedure :: reduce_heat
       procedure :: set_film
+      procedure :: conductors
       procedure :: release
    end type interface_operators_type
 
@@ -229,6 +232,27 @@ contains
       end do
       call self%mechanical%condense_forces(forces, condensed)
    end subroutine condense_thermal_load
+
+   !> Conductance of the bodies about each pair alone; 0 where both temperatures are prescribed. A
+   !> pair that closes a ring, whose jump only the others hold, has that of the bodies at its nodes.
+   function conductors(self) result(conductance)
+      class(interface_operators_type), intent(in) :: self  !! the reduced bodies
+      real(dp) :: conductance(size(self%pairs%slave))      !! (m) [power/temperature]
+      real(dp), allocatable :: schur(:, :)
+      integer :: k
+
+      conductance = 0.0_dp
+      schur = self%thermal%solver%schur_complement()
+      do k = 1, size(conductance)
+         if (self%jump_place(k) == 0) cycle
+         conductance(k) = schur(self%jump_place(k), self%jump_place(k))
+         if (.not. self%thermal%map%in_ring(k)) cycle
+         associate (at_nodes => node_stiffness(self%thermal%matrix, [self%pairs%slave(k), &
+            self%pairs%master(k)], 1))
+            if (conductance(k) < held_by_others*at_nodes) conductance(k) = at_nodes
+         end associate
+      end do
+   end function conductors
 
    !> Frees the factors.
    subroutine release(self)
