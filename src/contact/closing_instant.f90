@@ -16,8 +16,8 @@
 !> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
 !> to slip, and each value could call for the other condition: then there is no solution. C still
 !> jumps where another pair closes or opens. Where that goes round and round, every pair that was
-!> closed on the way counts as one that holds. Then C stays, and only f can go on swinging, with much
-!> friction; of each change half is made in the end.
+!> closed on the way counts as one that holds. Then C stays, and only f can go on swinging, with
+!> much friction; of each change half is made in the end.
 module closing_instant
    use active_set, only: solve_contact
    use contact_states, only: closing_law_type, contact_state_type
@@ -120,8 +120,9 @@ contains
          if (allocated(error)) return
          call make_law(compliance, previous, state, k, law)
          change = max(change, law_change(system%closing(k), law))
-         if (damped .and. system%closing(k)%acts) &
+         if (damped .and. system%closing(k)%acts) then
             law%fraction = 0.5_dp*(law%fraction + system%closing(k)%fraction)
+         end if
          system%closing(k) = law
       end do
       if (change > settled) call system%forget_factors()

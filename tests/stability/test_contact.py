@@ -159,7 +159,8 @@ def one_pair_table(folder):
         ["push", "states that hold", "state found", "gap or force over its scale: error", "verdict"],
         text="""One pair on the springs S = (2, -0.8; -0.8, 1), a triangle with one free node, pressed by 1 and
 pushed aside. Uniqueness ends at friction 1/0.8. By hand (tests/reference/one_pair.py) between pushes of 1.25 and 2 the pair may
-stick or be open: it lets go at 2 and closes again at 1.25. The state of the increment before is kept while it holds.""")
+stick or be open: it lets go at 2 and closes again at 1.25. The state of the increment before is kept while it holds. That there
+are others the run says only where it proves them, at a state in which the path of states turns back: never here, sometimes above.""")
     pushes = [step("*CLOAD", "1, 2, -1."), *(step("*CLOAD", f"1, 1, {-push}") for push in PUSHES)]
     deck = solved_one(folder, "pair", springs(SPRINGS[0][1]), faces(MANY, "ABOVE", "BELOW"), *pushes)
     gap, pressure, shear, status, weight = contact(
@@ -301,8 +302,8 @@ def shakedown(folder):
                       "slip of the 8th cycle", "over that of the 7th", "should", "verdict"],
         text="""Two blocks that mirror each other, so that shear does not change their pressure, moved between two places, in
 parts of the move at which the first pair slips. Melan's theorem holds for such contact (A. Klarbring, M. Ciavarella, J. R. Barber,
-Int. J. Solids Struct. 44, 2007, 8355): slip dies out where one frozen state of slip keeps all pairs within their friction, between 0 and
-twice the first slip. Slip: the largest motion of a pair within a cycle, in parts of the first slip's move.""")
+Int. J. Solids Struct. 44, 2007, 8355): slip dies out where one frozen state of slip keeps all pairs within their friction: here while
+the places are less than 2 apart. Slip: the largest motion of a pair within a cycle, in parts of that move.""")
     unit = 1e-3
     deck = solved_one(folder, "stuck", mirrored(1000.0, [unit]))
     pressure, shear = contact(deck, "P", "pressure", "shear")
