@@ -153,10 +153,10 @@ def springs(coupling, gap=0.0):
 
 
 def one_pair_table(folder):
-    """Return the table of the triangle with one free node: the spring matrix is S by its material."""
+    """Return the table of a pair that is pushed until it lets go, and back."""
     table = Table(
         "Friction 2 on coupled springs: where uniqueness ends",
-        ["push", "states that hold", "state found", "gap or force over its scale: error", "verdict"],
+        ["push", "states that hold", "state found", "error of gap and forces", "verdict"],
         text="""One pair on the springs S = (2, -0.8; -0.8, 1), a triangle with one free node, pressed by 1 and
 pushed aside. Uniqueness ends at friction 1/0.8. By hand (tests/reference/one_pair.py) between pushes of 1.25 and 2 the pair may
 stick or be open: it lets go at 2 and closes again at 1.25. The state of the increment before is kept while it holds. That there
