@@ -16,7 +16,8 @@
 !> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
 !> to slip, and each value could call for the other condition: then there is no solution. C still
 !> jumps where another pair closes or opens. Where that goes round and round, every pair that was
-!> closed on the way counts as one that holds.
+!> closed on the way counts as one that holds. Then C stays, and only f can go on swinging, with
+!> much friction; of each change half is made in the end.
 module closing_instant
    use active_set, only: solve_contact
    use contact_states, only: closing_law_type, contact_state_type
@@ -28,8 +29,9 @@ module closing_instant
    private
    public :: solve_increment
 
-   integer, parameter :: most_passes = 60                 !! passes over the closing laws
+   integer, parameter :: most_passes = 120 !! passes over the closing laws
    integer, parameter :: free_passes = 10 !! of these, with the pairs holding that are closed
+   integer, parameter :: plain_passes = 60 !! of these, going all the way to the new laws
    real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
    !> Determinant of a pair's stiffness, over that of the pair alone on held bodies, that is none.
    real(dp), parameter :: nothing = 1.0e-12_dp
@@ -55,7 +57,7 @@ contains
          call solve_contact(system, load, state, error)
          if (allocated(error)) return
          holds = state%status /= status_open .or. (holds .and. pass > free_passes)
-         call update_laws(system, previous, state, holds, change, error)
+         call update_laws(system, previous, state, holds, pass > plain_passes, change, error)
          if (allocated(error)) return
          if (change <= merge(settled, rounding, pass <= free_passes)) then
             do k = 1, size(state%status)
@@ -88,11 +90,12 @@ contains
    !> Closing laws of the pairs that are closed now and were open at the start of the increment. A
    !> pair that has opened again keeps its law, on which nothing depends: without it the pair might
    !> close, with it open, for ever.
-   subroutine update_laws(system, previous, state, holds, change, error)
+   subroutine update_laws(system, previous, state, holds, damped, change, error)
       type(contact_system_type), intent(inout) :: system
       type(contact_state_type), intent(in) :: previous
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: holds(:)
+      logical, intent(in) :: damped
       real(dp), intent(out) :: change
       type(error_type), allocatable, intent(out) :: error
       type(contact_system_type) :: held
@@ -120,6 +123,9 @@ contains
          call make_law(compliance, previous, state, k, law)
          if (alone) law%fraction = 0.0_dp
          change = max(change, law_change(system%closing(k), law))
+         if (damped .and. system%closing(k)%acts) then
+            law%fraction = 0.5_dp*(law%fraction + system%closing(k)%fraction)
+         end if
          system%closing(k) = law
       end do
       if (change > settled) call system%forget_factors()
