@@ -146,8 +146,8 @@ contains
 
    !> Compliance of one pair while all other closed pairs hold their places. A pair of a ring may
    !> have none along a direction in which the others hold it, so it is opened there. Where only
-   !> this pair holds a body, relieved it would go without end: it closes at once, for which a normal
-   !> compliance of zero and the start of the increment stand.
+   !> this pair holds a body, relieved it would go without end: it closes at once, for which a
+   !> normal compliance of zero and the start of the increment stand.
    !> Error: a singular system.
    subroutine find_compliance(held, held_state, k, compliance, alone, error)
       type(contact_system_type), intent(in) :: held
