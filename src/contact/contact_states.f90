@@ -12,6 +12,8 @@ module contact_states
       integer, allocatable :: direction(:)    !! (m) sign of the friction force where it slips
       real(dp), allocatable :: reference(:)   !! (m) d_t from which friction counts [length]
       real(dp), allocatable :: gap(:)         !! (m) gamma = h - d_n [length]
+      !> (m) d_n, with the digits that it loses in h; unallocated before a solution [length]
+      real(dp), allocatable :: approach(:)
       real(dp), allocatable :: tangential(:)  !! (m) d_t [length]
       real(dp), allocatable :: force(:)       !! (m) -lambda_n, positive in compression [force]
       real(dp), allocatable :: shear_force(:) !! (m) lambda_t [force]

@@ -131,6 +131,7 @@ contains
          status_no_convergence, error)
       if (allocated(error)) return
       state%link = d(self%link)
+      state%approach = d(self%normal)
       do k = 1, size(state%status)
          state%gap(k) = self%initial_gap(k) - d(self%normal(k))
          state%force(k) = -lambda(self%normal(k))

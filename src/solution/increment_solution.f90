@@ -13,7 +13,7 @@ module increment_solution
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
-   use records, only: increment_record_type, iteration_record_type
+   use records, only: increment_record_type, iteration_record_type, status_open
    use scheme_properties, only: is_explicit
    use scheme_start, only: warn_of_imbalance
    use solution_state, only: solution_state_type
@@ -202,7 +202,8 @@ contains
             next%temperature - model%initial_temperature), loads%displacement%value)
       end if
       allocate (on_tail(operators%mechanical%map%tail))
-      on_tail(operators%contact%normal) = operators%pairs%initial_gap - next%contact%gap
+      on_tail(operators%contact%normal) = merge(next%contact%approach, &
+         operators%pairs%initial_gap - next%contact%gap, next%contact%status == status_open)
       do k = 1, size(next%contact%status)
          if (operators%contact%tangent(k) > 0) then
             on_tail(operators%contact%tangent(k)) = next%contact%tangential(k)

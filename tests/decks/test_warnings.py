@@ -202,3 +202,11 @@ def test_a_stiff_body_on_a_far_softer_one(tmp_path, ratio, told):
     assert process.returncode == 0, process.stderr
     listing = deck.with_suffix(".lst").read_text()
     assert ("the smallest pivot of the bodies is" in listing) == told
+
+
+def test_faces_far_apart_are_paired_all_the_same(tmp_path):
+    """Distances between all their ends are the same to rounding."""
+    deck = write(tmp_path / "deck.inp", blocks(gap=1e12), PRESSED)
+    process = run("check", deck)
+    assert process.returncode == 0, process.stderr
+    assert "9 node pairs, initial gaps 1E+12 to 1E+12" in process.stdout.replace("1E12", "1E+12")

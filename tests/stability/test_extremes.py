@@ -226,7 +226,7 @@ def shrunk(folder, poisson):
 
 def shapes(folder):
     """Return the tables of slender elements, near nodes and strips."""
-    table = report.Table("Slender elements and near nodes", HEAD, text="Blocks under an even pressure. What is "
+    table = report.Table("Slender elements, near nodes, bodies far apart", HEAD, text="Blocks under an even pressure. What is "
                          "lost grows with the square of the ratio of the sides; from 1e-5 on the program warns.")
     for width in (1e2, 1e4):
         table.rows.append(pressed(folder, f"elements {width:.0e} times as wide as high", (1000.0, 1000.0),
@@ -239,12 +239,31 @@ def shapes(folder):
         table.rows.append(refused(f"nodes {near:.0e} apart beside sides of 1", case, "all but coincide"))
     case = Outcome(folder, "near", *near_nodes(0.0), status=1)
     table.rows.append(refused("nodes in one place, so that elements have no area", case, "Jacobian"))
+    for gap in (1e3, 1e6, 1e12):
+        table.rows.append(far_apart(folder, gap))
     strips = report.Table(
         "Thin strips that contact alone holds", HEAD, text="Strips with friction, without any support, pressed "
         "on a base that cannot move: the pressure goes through every face.")
     for thickness in (1e-2, 1e-4):
         strips.rows.append(strip(folder, thickness))
     return [table, strips]
+
+
+def hanging(gap, load):
+    """Return the cards of a block that hangs over another one and is pulled down."""
+    return [stack(1.0, 1.0, XS, gap), material("A", (1000.0, 0.0)), material("B", (1000.0, 0.0)), law(),
+            STATIC, bases("A.BOTTOM, 1, 2", "B.TOP, 2", "B.LEFT, 1"),
+            ["*DLOAD", f"B, BY, -{load!r}", "*END STEP"]]
+
+
+def far_apart(folder, gap):
+    """Return the row of two blocks so many times their size apart: the upper one's displacement;
+    its coordinates know its height to their last place."""
+    load = 3.0
+    case = Outcome(folder, "apart", *hanging(gap, load))
+    end = load / 2 / 1000.0
+    off = deviation(case.field("displacement")[:, 1].min(), -end)
+    return judged(f"blocks {gap:.0e} times their size apart", case, off, ROUNDING + gap * np.finfo(float).eps)
 
 
 def spoilt(ratio):
