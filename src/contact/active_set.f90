@@ -9,7 +9,8 @@
 !> the set that is found also holds without that. What drives off through all steps is loose.
 module active_set
    use closing_path, only: follow_closing_path
-   use contact_system, only: condition_code, contact_state_type, contact_system_type
+   use contact_states, only: condition_code, contact_state_type
+   use contact_system, only: contact_system_type
    use errors, only: error_type, set_error, status_no_convergence
    use friction, only: next_status
    use kinds, only: dp
@@ -188,9 +189,9 @@ contains
       integer :: k
 
       gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(system%initial_gap)), &
-         maxval(abs(state%tangential))) + tiny(1.0_dp)
+         maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
       force_tolerance = max(1.0e-12_dp*maxval(abs(state%force)), &
-         1.0e-13_dp*largest_term(system, load, state)) + tiny(1.0_dp)
+         1.0e-13_dp*largest_term(system, load, state), system%least_force()) + tiny(1.0_dp)
       next(1, :) = state%status
       next(2, :) = state%direction
       do k = 1, size(state%status)

@@ -16,10 +16,12 @@
 !> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
 !> to slip, and each value could call for the other condition: then there is no solution. C still
 !> jumps where another pair closes or opens. Where that goes round and round, every pair that was
-!> closed on the way counts as one that holds.
+!> closed on the way counts as one that holds. Then C stays, and only f can go on swinging, with
+!> much friction; of each change half is made in the end.
 module closing_instant
    use active_set, only: solve_contact
-   use contact_system, only: closing_law_type, contact_state_type, contact_system_type
+   use contact_states, only: closing_law_type, contact_state_type
+   use contact_system, only: contact_system_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
    use records, only: status_open, status_stick
@@ -27,9 +29,12 @@ module closing_instant
    private
    public :: solve_increment
 
-   integer, parameter :: most_passes = 60                 !! passes over the closing laws
+   integer, parameter :: most_passes = 120 !! passes over the closing laws
    integer, parameter :: free_passes = 10 !! of these, with the pairs holding that are closed
+   integer, parameter :: plain_passes = 60 !! of these, going all the way to the new laws
    real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
+   !> Determinant of a pair's stiffness, over that of the pair alone on held bodies, that is none.
+   real(dp), parameter :: nothing = 1.0e-12_dp
    real(dp), parameter :: rounding = 1.0e-10_dp   !! the same where it does not come down to that
 
 contains
@@ -52,7 +57,7 @@ contains
          call solve_contact(system, load, state, error)
          if (allocated(error)) return
          holds = state%status /= status_open .or. (holds .and. pass > free_passes)
-         call update_laws(system, previous, state, holds, change, error)
+         call update_laws(system, previous, state, holds, pass > plain_passes, change, error)
          if (allocated(error)) return
          if (change <= merge(settled, rounding, pass <= free_passes)) then
             do k = 1, size(state%status)
@@ -85,17 +90,18 @@ contains
    !> Closing laws of the pairs that are closed now and were open at the start of the increment. A
    !> pair that has opened again keeps its law, on which nothing depends: without it the pair might
    !> close, with it open, for ever.
-   subroutine update_laws(system, previous, state, holds, change, error)
+   subroutine update_laws(system, previous, state, holds, damped, change, error)
       type(contact_system_type), intent(inout) :: system
       type(contact_state_type), intent(in) :: previous
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: holds(:)
+      logical, intent(in) :: damped
       real(dp), intent(out) :: change
       type(error_type), allocatable, intent(out) :: error
       type(contact_system_type) :: held
       type(contact_state_type) :: held_state
       type(closing_law_type) :: law
-      logical :: closes(size(state%status))
+      logical :: closes(size(state%status)), alone
       real(dp) :: compliance(2, 2)
       integer :: k
 
@@ -112,10 +118,14 @@ contains
       if (allocated(error)) return
       do k = 1, size(closes)
          if (.not. closes(k)) cycle
-         call find_compliance(held, held_state, k, compliance, error)
+         call find_compliance(held, held_state, k, compliance, alone, error)
          if (allocated(error)) return
          call make_law(compliance, previous, state, k, law)
+         if (alone) law%fraction = 0.0_dp
          change = max(change, law_change(system%closing(k), law))
+         if (damped .and. system%closing(k)%acts) then
+            law%fraction = 0.5_dp*(law%fraction + system%closing(k)%fraction)
+         end if
          system%closing(k) = law
       end do
       if (change > settled) call system%forget_factors()
@@ -135,17 +145,20 @@ contains
    end function law_change
 
    !> Compliance of one pair while all other closed pairs hold their places. A pair of a ring may
-   !> have none along a direction in which the others hold it, so it is opened there.
-   !> Error: only this pair holds a body.
-   subroutine find_compliance(held, held_state, k, compliance, error)
+   !> have none along a direction in which the others hold it, so it is opened there. Where only
+   !> this pair holds a body, relieved it would go without end: it closes at once, for which a
+   !> normal compliance of zero and the start of the increment stand.
+   !> Error: a singular system.
+   subroutine find_compliance(held, held_state, k, compliance, alone, error)
       type(contact_system_type), intent(in) :: held
       type(contact_state_type), intent(in) :: held_state
       integer, intent(in) :: k
       real(dp), intent(out) :: compliance(2, 2)
+      logical, intent(out) :: alone
       type(error_type), allocatable, intent(out) :: error
       type(contact_system_type) :: opened
       type(contact_state_type) :: opened_state
-      real(dp) :: response(size(held%schur, 1), 2), stiffness(2, 2)
+      real(dp) :: response(size(held%schur, 1), 2), stiffness(2, 2), determinant
       integer :: places(2)
 
       places = [held%normal(k), held%tangent(k)]
@@ -160,12 +173,17 @@ contains
          response(places(2), 2) = 1.0_dp
          call opened%solve_free(response)
          compliance = response(places, :)
+         alone = size(opened%loose, 2) > size(held%loose, 2)
       else
          stiffness = held%stiffness(places)
-         compliance = reshape([stiffness(2, 2), -stiffness(2, 1), -stiffness(1, 2), &
-            stiffness(1, 1)], [2, 2])/ &
-            (stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1))
+         determinant = stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1)
+         alone = determinant <= nothing*held%schur(places(1), places(1))* &
+            held%schur(places(2), places(2))
+         if (.not. alone) compliance = reshape([stiffness(2, 2), -stiffness(2, 1), &
+            -stiffness(1, 2), stiffness(1, 1)], [2, 2])/determinant
       end if
+      if (alone) compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, &
+         1.0_dp/held%schur(places(2), places(2))], [2, 2])
    end subroutine find_compliance
 
    !> The closing law of one pair.

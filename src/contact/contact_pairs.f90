@@ -96,12 +96,12 @@ contains
    end function never_approached
 
    !> Turns both lines to run from the slave's first pair on: an open one if its ends so lie
-   !> nearer, a ring of the master always, for it runs against the slave.
+   !> nearer to the slave's, a ring of the master always, for it runs against the slave.
    subroutine align(mesh, slave, master, turned_slave, turned_master)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(inout) :: slave, master
       logical, intent(out) :: turned_slave, turned_master
-      real(dp) :: distance(size(master%nodes)), end_distance(size(master%nodes))
+      real(dp) :: distance(size(master%nodes))
       integer :: n, start
 
       turned_slave = .false.
@@ -115,8 +115,6 @@ contains
          end if
          n = size(master%nodes)
          distance = norm2(x(:, master%nodes) - spread(x(:, slave%nodes(1)), 2, n), dim=1)
-         end_distance = norm2(x(:, master%nodes) - &
-            spread(x(:, slave%nodes(size(slave%nodes))), 2, n), dim=1)
          if (master%closed) then
             start = 1 + (master%side_nodes - 1)*(minloc(distance(::master%side_nodes - 1), dim=1) &
                - 1)
@@ -124,7 +122,9 @@ contains
             master%nodes(2:) = master%nodes(n:2:-1)
             turned_master = .true.
          else
-            turned_master = distance(1) + end_distance(n) > distance(n) + end_distance(1)
+            ! Squares of these distances, less what they have in common: bodies may lie far apart.
+            turned_master = dot_product(x(:, slave%nodes(size(slave%nodes))) - &
+               x(:, slave%nodes(1)), x(:, master%nodes(n)) - x(:, master%nodes(1))) < 0.0_dp
             if (turned_master) master%nodes = master%nodes(n:1:-1)
          end if
       end associate

@@ -23,40 +23,18 @@
 !> them. A load that drives one of them has no solution; without such a load the least motion is
 !> taken.
 module contact_system
-   use dense, only: lu_type, null_space
+   use contact_states, only: closing_law_type, condition_code, contact_state_type
+   use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
+   use finite_values, only: check_finite
    use kinds, only: dp
+   use loose_motions, only: free_motions, is_driven
    use records, only: status_open, status_slip, status_stick
    implicit none
    private
-   public :: contact_system_type, contact_state_type, closing_law_type, condition_code
+   public :: contact_system_type
 
-   !> Force along a loose motion that is rounding, as part of the load and of the terms of S d.
-   real(dp), parameter :: balanced = 1.0e-10_dp, rounding = 1.0e-13_dp
-   !> Spring of a row, as part of the pair's stiffness, that does not hold a body.
-   real(dp), parameter :: slack = 1.0e-9_dp
-
-   !> Contact state of all pairs.
-   type :: contact_state_type
-      integer, allocatable :: status(:)       !! (m) status_open, status_slip or status_stick
-      integer, allocatable :: direction(:)    !! (m) sign of the friction force where it slips
-      real(dp), allocatable :: reference(:)   !! (m) d_t from which friction counts [length]
-      real(dp), allocatable :: gap(:)         !! (m) gamma = h - d_n [length]
-      real(dp), allocatable :: tangential(:)  !! (m) d_t [length]
-      real(dp), allocatable :: force(:)       !! (m) -lambda_n, positive in compression [force]
-      real(dp), allocatable :: shear_force(:) !! (m) lambda_t [force]
-      real(dp), allocatable :: link(:)        !! (links) what holds rings together [length]
-   end type contact_state_type
-
-   !> Where a pair that closes within the increment sticks: at the reference d_t - slip, where slip
-   !> is the left-hand side of the condition above.
-   type :: closing_law_type
-      logical :: acts = .false.                !! whether the pair closes in this increment
-      real(dp) :: start = 0.0_dp               !! d_t,i [length]
-      real(dp) :: fraction = 0.0_dp            !! f, the instant of closing
-      real(dp) :: compliance(2) = 0.0_dp       !! c_n, c_t [length/force]
-      real(dp) :: rate(2) = 0.0_dp             !! derivative of f by lambda_n, lambda_t [1/force]
-   end type closing_law_type
+   real(dp), parameter :: rounding = 1.0e-12_dp !! of the forces that a load is condensed of
 
    !> The reduced system, and the factors for the active set of its last solution.
    type :: contact_system_type
@@ -69,6 +47,8 @@ module contact_system
       real(dp), allocatable :: give(:) !! (m) of stuck pairs, not zero in rings [length/force]
       integer, allocatable :: link(:)             !! (links) places of the links' forces
       real(dp), allocatable :: motion(:, :) !! (tail, q) unsupported rigid motions, orthonormal
+      real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
+      real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
       integer, allocatable :: free(:)             !! places on the tail that are sought
       integer, allocatable :: partner(:) !! (tail) place of d_n whose force enters the row, or 0
       real(dp), allocatable :: share(:)           !! (tail) factor of that force
@@ -85,6 +65,7 @@ module contact_system
       procedure :: solve_free
       procedure :: stiffness
       procedure :: turns_back
+      procedure :: least_force
       procedure :: friction_rows
       procedure :: slip
       procedure :: factor_set
@@ -114,7 +95,7 @@ contains
 
    !> Solution for one active set. Where the load drives a body that the set leaves loose, driven
    !> is set, and the values stay as they are.
-   !> Errors: as factor_set; a body is driven away.
+   !> Errors: as factor_set; a body is driven away; forces overflow.
    subroutine solve_set(self, load, state, error)
       class(contact_system_type), intent(inout) :: self   !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
@@ -146,7 +127,11 @@ contains
          d(self%free) = d(self%free) + residual(self%free, 1)
       end if
       lambda = matmul(self%schur, d) - load
+      call check_finite([d, lambda], 'displacements and forces of the contact', &
+         status_no_convergence, error)
+      if (allocated(error)) return
       state%link = d(self%link)
+      state%approach = d(self%normal)
       do k = 1, size(state%status)
          state%gap(k) = self%initial_gap(k) - d(self%normal(k))
          state%force(k) = -lambda(self%normal(k))
@@ -175,10 +160,9 @@ contains
       real(dp), intent(in) :: load(:), d(:)
       real(dp), intent(in) :: unbalanced(:)
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: terms
 
-      terms = balanced*maxval(abs(load)) + rounding*maxval(matmul(abs(self%schur), abs(d)))
-      self%driven = maxval(abs(unbalanced)) > terms
+      self%driven = is_driven(unbalanced, load, self%schur, d) .and. &
+         maxval(abs(unbalanced)) > self%least_force()
       if (self%driven) call set_error(error, status_no_convergence, &
          'the bodies are not held by their supports and the pairs that are in contact')
    end subroutine check_balance
@@ -216,7 +200,7 @@ contains
       end if
       self%factored = condition_code(state)
       call list_free(self, state)
-      call find_loose(self)
+      self%loose = free_motions(self%motion, self%free, self%spring, self%schur)
       call self%factor_rows(singular)
       if (.not. singular) return
       call self%forget_factors()
@@ -244,27 +228,6 @@ contains
       call self%lu%factor(rows, singular)
    end subroutine factor_rows
 
-   !> The unsupported motions that no place of the active set holds.
-   subroutine find_loose(self)
-      class(contact_system_type), intent(inout) :: self
-      logical :: held(size(self%schur, 1))
-      integer :: i
-
-      if (size(self%motion, 2) == 0) then
-         self%loose = reshape([real(dp) ::], [size(self%free), 0])
-         return
-      end if
-      held = .true.
-      do i = 1, size(self%free)
-         associate (place => self%free(i))
-            held(place) = self%spring(place) > slack*abs(self%schur(place, place))
-         end associate
-      end do
-      associate (places => pack([(i, i=1, size(held))], held))
-         self%loose = matmul(self%motion(self%free, :), null_space(self%motion(places, :)))
-      end associate
-   end subroutine find_loose
-
    !> Makes the next solution factor anew, because a closing law has changed.
    pure subroutine forget_factors(self)
       class(contact_system_type), intent(inout) :: self  !! the reduced system
@@ -287,7 +250,7 @@ contains
       do k = 1, size(state%status)
          if (state%status(k) == status_open) call seek(self%normal(k))
          if (self%tangent(k) == 0) cycle
-         associate (place => self%tangent(k), law => self%closing(k))
+         associate (place => self%tangent(k), law => self%closing(k), give => self%give(k))
             if (state%status(k) == status_open) then
                call seek(place)
             else if (state%status(k) == status_slip) then
@@ -297,14 +260,14 @@ contains
             else if (law%acts) then
                call seek(place)
                self%partner(place) = self%normal(k)
-               associate (scale => law%compliance(2) + self%give(k))
-                  self%own(place) = (law%fraction*law%compliance(2) + self%give(k))/scale
+               associate (scale => law%compliance(2) + give)
+                  self%own(place) = (law%fraction*law%compliance(2) + give)/scale
                   self%share(place) = law%fraction*law%compliance(1)/scale
                   self%spring(place) = (1.0_dp - law%fraction)/scale
                end associate
-            else if (self%give(k) > 0.0_dp) then
+            else if (give > 0.0_dp) then
                call seek(place)
-               self%spring(place) = 1.0_dp/self%give(k)
+               self%spring(place) = 1.0_dp/give
             end if
          end associate
       end do
@@ -369,6 +332,15 @@ contains
          matmul(self%schur(places, self%free), response(self%free, :))
    end function stiffness
 
+   !> Force that rounding leaves of what the load is made of, and of coordinates.
+   pure real(dp) function least_force(self)
+      class(contact_system_type), intent(in) :: self  !! the reduced system
+      integer :: i
+
+      least_force = rounding*self%load_scale + self%least_length* &
+         maxval([0.0_dp, (self%schur(i, i), i=1, size(self%schur, 1))])
+   end function least_force
+
    !> Whether the set factored last turns the path of contact states back: its determinant is
    !> negative, which needs friction. The signs at all states under one load add up to one, so that
    !> then there are others. Closing laws, frozen in the set, are no part of that: with them none is
@@ -382,14 +354,5 @@ contains
       turns_back = self%lu%negative_determinant() .neqv. &
          (mod(size(self%link) + size(self%loose, 2), 2) == 1)
    end function turns_back
-
-   !> One number per pair for its contact condition.
-   pure function condition_code(state) result(codes)
-      type(contact_state_type), intent(in) :: state   !! statuses and directions
-      integer :: codes(size(state%status))            !! (m)
-
-      codes = 3*state%status
-      where (state%status == status_slip) codes = codes + state%direction
-   end function condition_code
 
 end module contact_system

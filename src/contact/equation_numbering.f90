@@ -19,7 +19,7 @@ contains
    !> Numbers the unknowns. Degree of freedom c of node i is components*(i - 1) + c.
    !> Error: a pair whose normal motion, component 1, is prescribed on both nodes, or whose motion
    !> is prescribed on both nodes along a direction that is neither normal nor tangent.
-   subroutine make_map(used, prescribed, slave, master, frame, on_tail, map, error)
+   subroutine make_map(used, prescribed, slave, master, frame, on_tail, map, error, slave_leads)
       logical, intent(in) :: used(:)                      !! (nodes) whether a node carries unknowns
       logical, intent(in) :: prescribed(:)                !! (dofs) prescribed values
       integer, intent(in) :: slave(:)                     !! (m) slave nodes of the pairs
@@ -28,8 +28,13 @@ contains
       logical, intent(in) :: on_tail(:, :) !! (components, m) relative values that contact acts on
       type(equation_map_type), intent(out) :: map         !! the numbering
       type(error_type), allocatable, intent(out) :: error !! see above
-      logical :: closes(size(slave)), held(size(frame, 1), size(slave))
+      !> (m) whether the slave is to lead where neither node is prescribed; else the master does.
+      logical, intent(in), optional :: slave_leads(:)
+      logical :: closes(size(slave)), held(size(frame, 1), size(slave)), leads(size(slave))
       integer :: components, k, tied(size(slave)), twins
+
+      leads = .false.
+      if (present(slave_leads)) leads = slave_leads
 
       call find_held(prescribed, slave, master, frame, held, error)
       if (allocated(error)) return
@@ -44,18 +49,19 @@ contains
       end do
       call tie_nodes(map, [used, spread(.true., 1, twins)], &
          [prescribed, spread(.false., 1, components*twins)], tied, master, frame, held, &
-         on_tail, closes)
+         on_tail, closes, leads)
       call make_links(map, slave, master, tied, components)
    end subroutine make_map
 
    !> Writes every degree of freedom by the unknowns.
-   pure subroutine tie_nodes(map, used, prescribed, slave, master, frame, held, on_tail, closes)
+   pure subroutine tie_nodes(map, used, prescribed, slave, master, frame, held, on_tail, closes, &
+      slave_leads)
       type(equation_map_type), intent(inout) :: map
       logical, intent(in) :: used(:)
       logical, intent(in) :: prescribed(:)
       integer, intent(in) :: slave(:), master(:)
       real(dp), intent(in) :: frame(:, :, :)
-      logical, intent(in) :: held(:, :), on_tail(:, :), closes(:)
+      logical, intent(in) :: held(:, :), on_tail(:, :), closes(:), slave_leads(:)
       integer :: order(size(slave), size(frame, 1)), length(size(prescribed))
       logical :: from_slave(size(slave), size(frame, 1)), follows(size(prescribed))
       integer :: c, components, dof, node
@@ -64,7 +70,7 @@ contains
       follows = prescribed
       length = 0
       do c = 1, components
-         call order_pairs(components, c, prescribed, slave, master, order(:, c), &
+         call order_pairs(components, c, prescribed, slave, master, slave_leads, order(:, c), &
             from_slave(:, c), follows, length)
       end do
       associate (dofs => size(prescribed), most_terms => 1 + components*maxval([0, length]))
@@ -85,13 +91,15 @@ contains
    end subroutine tie_nodes
 
    !> Puts the pairs in an order in which each one's leading node, of one component, comes before
-   !> the following one. Prescribed nodes lead; where there is none, the master that comes first.
-   !> Pairs that are prescribed on both nodes come last, as order 0. No pair closes a ring.
-   pure subroutine order_pairs(components, c, prescribed, slave, master, order, from_slave, &
-      follows, length)
+   !> the following one. Prescribed nodes lead; where there is none, the first pair's master, or its
+   !> slave where that is to. Pairs that are prescribed on both nodes come last, as order 0. No pair
+   !> closes a ring.
+   pure subroutine order_pairs(components, c, prescribed, slave, master, slave_leads, order, &
+      from_slave, follows, length)
       integer, intent(in) :: components, c
       logical, intent(in) :: prescribed(:)
       integer, intent(in) :: slave(:), master(:)
+      logical, intent(in) :: slave_leads(:)
       integer, intent(out) :: order(:)
       logical, intent(out) :: from_slave(:)
       logical, intent(inout) :: follows(:)
@@ -121,7 +129,9 @@ contains
             follows(components*(follower - 1) + c) = .true.
             length(components*(follower - 1) + c) = length(components*(leader - 1) + c) + 1
          end do
-         if (found == first) reached(master(findloc(placed, .false., dim=1))) = .true.
+         if (found > first) cycle
+         k = findloc(placed, .false., dim=1)
+         reached(merge(slave(k), master(k), slave_leads(k))) = .true.
       end do
    end subroutine order_pairs
 

@@ -163,14 +163,14 @@ contains
       type(mesh_type), intent(in) :: mesh                 !! the mesh
       character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
       integer, intent(in) :: slave(:), master(:)          !! (m) nodes
-      real(dp), intent(in) :: tangent(:, :)               !! (2, m) unit tangents
+      real(dp), intent(in) :: tangent(:, :)               !! (2, m) unit tangents, 0 where none
       real(dp), intent(in) :: twice_allowed(:)            !! (m) element edge or gap [length]
       type(error_type), allocatable, intent(out) :: error !! the first such pair
       real(dp) :: offset(size(slave))
       integer :: k
 
       offset = abs(sum(tangent*(mesh%coordinates(:, master) - mesh%coordinates(:, slave)), dim=1))
-      k = findloc(offset > 0.5_dp*twice_allowed, .true., dim=1)
+      k = findloc(offset > 0.5_dp*twice_allowed .or. norm2(tangent, dim=1) < 0.5_dp, .true., dim=1)
       if (k == 0) return
       call set_error(error, status_deck, 'contact pair '//name//': slave node '// &
          to_text(mesh%node_number(slave(k)))//' and master node '// &

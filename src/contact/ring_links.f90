@@ -16,7 +16,7 @@ module ring_links
    public :: ring_link_type, node_stiffness, add_links, link_entries, support_forces, ring_give
 
    !> Part of the bodies' compliance at its nodes by which a stuck pair of a ring gives.
-   real(dp), parameter :: ring_give = 1.0e-6_dp
+   real(dp), parameter :: ring_give = 1.0e-8_dp
 
    !> One component of a link: its elongation is coefficient*unknowns + given(base(1)) -
    !> given(base(2)), a base of 0 counting as zero.

@@ -10,6 +10,8 @@ module text
    public :: nearest_name, nearest_known, edit_distance, likely_slip
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
+   !> Magnitudes of numbers that are not 0: products of three of them stay finite.
+   real(dp), parameter :: smallest_magnitude = 1.0e-100_dp, largest_magnitude = 1.0e100_dp
    integer, parameter :: likely_slip = 2          !! letters that differ in a misspelt name
 
    !> A string in a list.
@@ -122,11 +124,12 @@ contains
       valid = .true.
    end subroutine read_integer
 
-   !> Reads a real number: sign, digits with at most one point, exponent with E or D of at most 300.
+   !> Reads a real number: sign, digits with at most one point, exponent with E or D. Its magnitude
+   !> is 0 or from 1E-100 to 1E100.
    pure subroutine read_real(string, number, valid)
       character(*), intent(in) :: string   !! text without blanks around it
       real(dp), intent(out) :: number      !! its value, 0 when not valid
-      logical, intent(out) :: valid        !! whether it is a finite number
+      logical, intent(out) :: valid        !! whether it is a number in that range
       integer :: status, mark, exponent
 
       number = 0.0_dp
@@ -141,6 +144,8 @@ contains
       read (string, *, iostat=status) number
       valid = status == 0
       if (valid) valid = ieee_is_finite(number)
+      if (valid) valid = abs(number) <= largest_magnitude .and. &
+         (abs(number) <= 0.0_dp .or. abs(number) >= smallest_magnitude)
       if (.not. valid) number = 0.0_dp
    end subroutine read_real
 

@@ -10,6 +10,7 @@ module deck_checks
    use mesh, only: mesh_type
    use mesh_checks, only: check_jacobians, check_planes, check_sides
    use model, only: model_type
+   use slender_elements, only: check_slenderness
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
@@ -38,6 +39,7 @@ contains
       call check_planes(context, model%mesh, report)
       call check_orientations(context, model, report)
       call check_jacobians(context, model%mesh, report)
+      call check_slenderness(context, model%mesh, report)
       call check_sides(context, model%mesh, uses, report)
       call check_loads(context, model, uses, report)
    end subroutine check_model

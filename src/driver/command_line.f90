@@ -39,7 +39,8 @@ module command_line
       new_line('a')//new_line('a')// &
       'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,'// &
       new_line('a')// &
-      '             4 a *VERIFY check failed; of several decks the largest'   !! text of --help
+      '             4 a *VERIFY check failed, 5 ended by SIGINT or SIGTERM; of several decks'// &
+      new_line('a')//'             the largest'   !! text of --help
 
 contains
 

@@ -96,6 +96,7 @@ contains
             output%run%seconds_iterate = simulation%seconds%iterate
             output%run%seconds_recover = simulation%seconds%recover
             output%run%factor_bytes = simulation%sizes%factor_bytes
+            output%run%smallest_pivot = simulation%sizes%smallest_pivot
             if (allocated(error)) exit
             call output%accept(record, model, pairs, error)
             if (allocated(error)) return

@@ -5,7 +5,7 @@ module pair_reports
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric
    use errors, only: error_type
-   use interface_operators, only: pair_surfaces
+   use pair_rows, only: pair_surfaces
    use kinds, only: dp
    use model, only: model_type
    use pair_rings, only: first_repeated

@@ -31,6 +31,7 @@ contains
       run%equations_mechanical = simulation%sizes%equations_mechanical
       run%contact_unknowns = simulation%sizes%contact_unknowns
       run%factor_bytes = simulation%sizes%factor_bytes
+      run%smallest_pivot = simulation%sizes%smallest_pivot
       if (any(solves_heat(model%steps%analysis))) call find_biot(model, simulation, run)
    end subroutine describe_run
 

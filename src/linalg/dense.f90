@@ -1,5 +1,6 @@
 !> The few dense solves of the interface problem, by LAPACK.
 module dense
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use blas_lapack, only: dgeev, dgelsy, dgesvd, dgetrf, dgetrs
    use kinds, only: dp
    implicit none
@@ -26,13 +27,15 @@ contains
    pure subroutine factor(self, matrix, singular)
       class(lu_type), intent(inout) :: self   !! the factors
       real(dp), intent(in) :: matrix(:, :)    !! (n, n)
-      logical, intent(out) :: singular        !! a pivot is zero or lost to rounding
+      logical, intent(out) :: singular !! a pivot is zero or lost, or the matrix overflowed
       integer :: i, info, n
 
       n = size(matrix, 1)
       self%factors = matrix
       if (allocated(self%pivots)) deallocate (self%pivots)
-      allocate (self%pivots(n))
+      allocate (self%pivots(n), source=[(i, i=1, n)])
+      singular = .not. all(ieee_is_finite(matrix))
+      if (singular) return
       call dgetrf(n, n, self%factors, max(n, 1), self%pivots, info)
       singular = info /= 0
       do i = 1, n
@@ -110,14 +113,16 @@ contains
       real(dp), intent(in) :: matrix(:, :)                      !! (n, n), n > 0
       real(dp), allocatable, intent(out) :: real_part(:)        !! (n)
       real(dp), allocatable, intent(out) :: imaginary_part(:)   !! (n)
-      logical, intent(out) :: found                             !! LAPACK found them
+      logical, intent(out) :: found !! LAPACK found them; not where the matrix overflowed
       real(dp), allocatable :: copy(:, :), work(:)
       real(dp) :: left(1, 1), right(1, 1), best(1)
       integer :: info, n
 
       n = size(matrix, 1)
       copy = matrix
-      allocate (real_part(n), imaginary_part(n))
+      allocate (real_part(n), imaginary_part(n), source=0.0_dp)
+      found = all(ieee_is_finite(matrix))
+      if (.not. found) return
       call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, left, 1, right, 1, best, -1, info)
       allocate (work(max(1, nint(best(1)))))
       call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, left, 1, right, 1, work, &
@@ -126,7 +131,7 @@ contains
    end subroutine eigenvalues
 
    !> The shortest x for which |matrix x - rhs| is least; columns that depend on others to rounding
-   !> do not count.
+   !> do not count. 0 where matrix or right-hand side overflowed.
    function least_squares(matrix, rhs) result(x)
       real(dp), intent(in) :: matrix(:, :)   !! (m, n), m and n > 0
       real(dp), intent(in) :: rhs(:)         !! (m)
@@ -135,6 +140,8 @@ contains
       real(dp) :: solution(max(size(matrix, 1), size(matrix, 2)), 1)
       integer :: free(size(matrix, 2)), info, rank
 
+      x = 0.0_dp
+      if (.not. (all(ieee_is_finite(matrix)) .and. all(ieee_is_finite(rhs)))) return
       copy = matrix
       solution = 0.0_dp
       solution(:size(rhs), 1) = rhs

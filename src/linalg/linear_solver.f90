@@ -17,6 +17,9 @@ module linear_solver
       integer :: tail = 0                !! tail unknowns, the last ones
       integer(long) :: full_flops = 0    !! operations of a factorisation of the leading block
       integer(long) :: factor_bytes = 0  !! memory of the factors [byte]
+      !> Smallest pivot of the leading block over its diagonal entry, at most 1; MUMPS: over the
+      !> largest entry of its row, nearly.
+      real(dp) :: smallest_pivot = 1.0_dp
       type(skyline_type) :: skyline      !! what Crout factors: the whole matrix, or its tail alone
    contains
       procedure(factor_interface), deferred :: factor

@@ -31,7 +31,7 @@ module mumps_solver
 
    !> Message for a matrix that is not positive definite.
    character(*), parameter :: unheld = &
-      'singular matrix: some body is not held by its supports and contacts'
+      'singular matrix: some body is not held by its supports and contacts, or far too softly'
 
    !> MUMPS's factors behind the common interface.
    type, extends(linear_solver_type) :: mumps_solver_type
@@ -81,6 +81,8 @@ contains
          return
       end if
       self%full_flops = int(self%mumps%rinfog(3), long)
+      ! RINFOG(19) is of the matrix as MUMPS has scaled it, rows and columns to about 1.
+      if (self%mumps%rinfog(19) > 0.0_dp) self%smallest_pivot = min(1.0_dp, self%mumps%rinfog(19))
       self%factor_bytes = factor_entries(self%mumps%infog(9))*storage_size(1.0_dp)/8
       call self%skyline%set_schur(reshape(self%mumps%schur(:tail*tail), [tail, tail]))
    end subroutine factor

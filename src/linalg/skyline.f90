@@ -21,6 +21,7 @@ module skyline
       real(dp), allocatable :: value(:)           !! unit upper factor, its diagonal replaced by D
       real(dp), allocatable :: schur(:, :) !! (tail, tail) upper triangle of the Schur complement
       integer(long) :: leading_flops = 0          !! operations of factor_leading
+      real(dp) :: smallest_pivot = 1.0_dp         !! of factor_leading, over its diagonal entry
    contains
       procedure :: set_matrix
       procedure :: set_schur
@@ -99,6 +100,7 @@ contains
 
       bad_column = 0
       self%leading_flops = 0
+      self%smallest_pivot = 1.0_dp
       allocate (self%schur(self%order - self%leading, self%order - self%leading), source=0.0_dp)
       do j = 1, self%order
          column_j = self%offset(j)
@@ -128,7 +130,9 @@ contains
          self%leading_flops = self%leading_flops + 3*max(high - self%first_row(j) + 1, 0)
          if (j > self%leading) then
             self%schur(j - self%leading, j - self%leading) = self%value(column_j + j)
-         else if (self%value(column_j + j) <= 64*epsilon(1.0_dp)*abs(original)) then
+         else if (self%value(column_j + j) > 64*epsilon(1.0_dp)*abs(original)) then
+            self%smallest_pivot = min(self%smallest_pivot, self%value(column_j + j)/original)
+         else
             bad_column = j
             return
          end if

@@ -44,9 +44,10 @@ contains
       call self%skyline%set_matrix(permuted_lower(lower, self%place), tail)
       call self%skyline%factor_leading(bad_column)
       self%full_flops = self%skyline%leading_flops
+      self%smallest_pivot = self%skyline%smallest_pivot
       self%factor_bytes = storage_size(1.0_dp)/8*size(self%skyline%value, kind=long)
       if (bad_column > 0) call set_error(error, status_deck, &
-         'singular matrix: some body is not held by its supports and contacts')
+         'singular matrix: some body is not held by its supports and contacts, or far too softly')
    end subroutine factor
 
    !> As condense_interface of linear_solver says.

@@ -5,7 +5,7 @@ module mesh
    use kinds, only: dp
    implicit none
    private
-   public :: mesh_type, set_type, surface_type
+   public :: mesh_type, set_type, surface_type, extent_of
    public :: nodes_per_element, face_nodes
 
    integer, parameter :: nodes_per_element = 8 !! four corners, then four midside nodes
@@ -43,5 +43,14 @@ module mesh
       type(set_type), allocatable :: element_sets(:)  !! element sets
       type(surface_type), allocatable :: surfaces(:)  !! surfaces
    end type mesh_type
+
+contains
+
+   !> Largest extent of the nodes along x or y.
+   pure real(dp) function extent_of(coordinates)
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes) x and y [length]
+
+      extent_of = maxval(maxval(coordinates, dim=2) - minval(coordinates, dim=2))
+   end function extent_of
 
 end module mesh

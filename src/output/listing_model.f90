@@ -36,6 +36,8 @@ contains
       call print_count(unit, 'contact unknowns', run%contact_unknowns)
       call print_entry(unit, 'solver', or_blank(run%solver))
       call print_entry(unit, 'bytes of factors', to_text(real(run%factor_bytes, dp)))
+      call print_entry(unit, 'smallest pivot', to_text(run%smallest_pivot)// &
+         ' of its diagonal entry')
       call print_entry(unit, 'load axis', or_blank(model%load_label))
       if (run%has_biot) call print_entry(unit, 'contact Biot number', from_to(run%contact_biot))
       call print_interfaces(unit, model, pairs)

@@ -67,6 +67,8 @@ contains
       if (allocated(error)) return
       call write_attribute(file, group, 'factor_bytes', run%factor_bytes, error)
       if (allocated(error)) return
+      call write_attribute(file, group, 'smallest_pivot', run%smallest_pivot, error)
+      if (allocated(error)) return
       call write_attribute(file, group, 'verify_passed', run%verify_passed, error)
       if (allocated(error)) return
       call write_attribute(file, group, 'verify_failed', run%verify_failed, error)

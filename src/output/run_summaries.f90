@@ -16,6 +16,7 @@ module run_summaries
       integer :: equations_mechanical = 0        !! unknown displacements
       integer :: contact_unknowns = 0            !! unknowns of the reduced system
       integer(long) :: factor_bytes = 0          !! bytes of the factors
+      real(dp) :: smallest_pivot = 1.0_dp        !! of the factors, over its diagonal entry [-]
       logical :: has_biot = .false.              !! whether contact_biot was computed
       real(dp) :: contact_biot(2) = 0.0_dp       !! omega L/K at the start, smallest and largest [-]
       real(dp) :: seconds_read = 0.0_dp          !! reading the deck [s]

@@ -1,9 +1,9 @@
 !> Balances of heat and force that can fail: the reactions of each body alone, on the recovered
 !> fields, against what the reduced system says crosses the contacts.
 module balances
-   use contact_system, only: contact_state_type
+   use contact_states, only: contact_state_type
    use controls, only: thermal_scheme_type
-   use interface_operators, only: pair_row_type
+   use pair_rows, only: pair_row_type
    use kinds, only: dp
    use records, only: status_open, status_slip, status_stick
    implicit none

@@ -4,9 +4,10 @@ module contact_operator
    use axis_limits, only: tractions
    use closing_instant, only: solve_increment
    use conductance_laws, only: conductance, conductance_slope
-   use contact_system, only: contact_state_type
+   use contact_states, only: contact_state_type
    use controls, only: thermal_scheme_type
-   use errors, only: error_type
+   use errors, only: error_type, status_no_convergence
+   use finite_values, only: check_finite
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use records, only: status_open, status_slip, work_record_type
@@ -31,7 +32,7 @@ module contact_operator
 contains
 
    !> U: conductance in, conductance of the resulting contact state out.
-   !> Error: as solve_increment.
+   !> Errors: as solve_increment; jumps or conductances overflow.
    subroutine contact_operator_pass(operators, data, omega, jump, state, image, work, error)
       type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
       type(increment_data_type), intent(inout) :: data           !! the increment
@@ -43,10 +44,13 @@ contains
       type(error_type), allocatable, intent(out) :: error        !! see above
 
       call temperature_jumps(operators, data, omega, jump, work)
+      call check_finite(jump, 'temperature jumps', status_no_convergence, error)
+      if (allocated(error)) return
       call solve_increment(operators%contact, data%previous, &
          condensed_load(operators, data, jump), state, error)
       if (allocated(error)) return
       image = law_conductance(operators, state)
+      call check_finite(image, 'conductances', status_no_convergence, error)
    end subroutine contact_operator_pass
 
    !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first

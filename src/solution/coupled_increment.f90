@@ -64,7 +64,7 @@ contains
       type(solution_state_type), intent(in) :: previous
       type(solution_state_type), intent(in) :: next
       real(dp) :: omega(size(previous%omega))
-      real(dp), allocatable :: conductor(:, :)
+      real(dp), allocatable :: conductor(:)
       real(dp) :: ratio
       integer :: i, k
 
@@ -76,11 +76,10 @@ contains
          end do
       case (start_open, start_closed)
          omega = previous%omega
-         conductor = operators%thermal%solver%schur_complement()
+         conductor = operators%conductors()
          do k = 1, size(omega)
             if (operators%jump_place(k) == 0 .or. operators%pairs%weight(k) <= 0.0_dp) cycle
-            omega(k) = end_conductance(merge(1, 2, kind == start_open))* &
-               conductor(operators%jump_place(k), operators%jump_place(k))/ &
+            omega(k) = end_conductance(merge(1, 2, kind == start_open))*conductor(k)/ &
                operators%pairs%weight(k)
          end do
       case default

@@ -2,7 +2,8 @@
 module field_problem
    use controls, only: solver_mumps
    use equation_map, only: equation_map_type
-   use errors, only: error_type
+   use errors, only: error_type, status_deck
+   use finite_values, only: check_finite
    use kinds, only: dp
    use linear_solver, only: linear_solver_type
    use mumps_solver, only: mumps_solver_type
@@ -37,7 +38,7 @@ contains
 
    !> Factors the matrix for a numbering of the unknowns; done once for all increments with the same
    !> supports.
-   !> Error: as the solver's factor.
+   !> Errors: the matrix or its factors overflow; as the solver's factor.
    subroutine reduce(self, solver_kind, error)
       class(field_problem_type), intent(inout) :: self    !! the problem; its matrix and map are set
       integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
@@ -49,6 +50,8 @@ contains
       else
          allocate (skyline_solver_type :: self%solver)
       end if
+      call check_finite(self%matrix%value, 'matrices of the bodies', status_deck, error)
+      if (allocated(error)) return
       call self%map%stiffen_links(self%matrix)
       if (allocated(self%added%value)) then
          call self%solver%factor(self%map%transform(linear_combination(1.0_dp, self%matrix, &
@@ -56,6 +59,9 @@ contains
       else
          call self%solver%factor(self%map%transform(self%matrix), self%map%tail, error)
       end if
+      if (allocated(error)) return
+      call check_finite(reshape(self%solver%schur_complement(), [self%map%tail**2]), &
+         'factors of the bodies', status_deck, error)
    end subroutine reduce
 
    !> Takes the load of an increment.

@@ -1,6 +1,7 @@
 !> What a solved increment must satisfy before it is accepted.
 module increment_checks
-   use errors, only: error_type, set_error, status_internal, status_no_convergence
+   use errors, only: error_type, set_error, status_no_convergence
+   use finite_values, only: check_finite
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -12,23 +13,55 @@ module increment_checks
    use thermal_matrix, only: contact_diagonal
    implicit none
    private
-   public :: check_heat, check_violation, warn_of_choices
+   public :: check_heat, check_values, check_violation, warn_of_choices
 
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
 
 contains
 
    !> The recovered displacements keep the contact conditions.
-   !> Error: status_internal, they do not.
+   !> Error: they do not.
    subroutine check_violation(record, error)
       type(increment_record_type), intent(in) :: record     !! the increment
       type(error_type), allocatable, intent(out) :: error   !! see above
 
       if (record%contact_violation <= sound_violation) return
-      call set_error(error, status_internal, &
+      call set_error(error, status_no_convergence, &
          'the recovered displacements violate the contact conditions by '// &
-         to_text(record%contact_violation))
+         to_text(record%contact_violation)//' of the largest displacement or force')
    end subroutine check_violation
+
+   !> The fields and the contact state of an increment are numbers.
+   !> Error: status_no_convergence, something overflowed.
+   subroutine check_values(record, error)
+      type(increment_record_type), intent(in) :: record     !! the increment
+      type(error_type), allocatable, intent(out) :: error   !! see above
+      integer :: i
+
+      associate (fields => record%fields)
+         if (allocated(fields%temperature)) then
+            call check_finite(fields%temperature, 'temperatures', status_no_convergence, error)
+            if (allocated(error)) return
+         end if
+         if (allocated(fields%heat_flux)) then
+            call check_finite([fields%heat_flux, record%heat_imbalance], 'heat fluxes', &
+               status_no_convergence, error)
+            if (allocated(error)) return
+         end if
+         if (allocated(fields%displacement)) then
+            call check_finite([fields%displacement, fields%stress, fields%reaction], &
+               'displacements and stresses', status_no_convergence, error)
+            if (allocated(error)) return
+         end if
+      end associate
+      do i = 1, size(record%contacts)
+         associate (pairs => record%contacts(i))
+            call check_finite([pairs%gap, pairs%pressure, pairs%shear, pairs%slip], &
+               'gaps and pressures', status_no_convergence, error)
+            if (allocated(error)) return
+         end associate
+      end do
+   end subroutine check_values
 
    !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
    !> place of whatever error followed from it.

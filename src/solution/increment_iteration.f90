@@ -3,7 +3,7 @@ module increment_iteration
    use accelerators, only: make_accelerator
    use conductance_graph, only: conductance_graph_type
    use contact_operator, only: contact_operator_pass, increment_data_type, residual_floor
-   use contact_system, only: closing_law_type, contact_state_type
+   use contact_states, only: closing_law_type, contact_state_type
    use controls, only: fixed_point_type, method_newton
    use errors, only: error_type, set_error, status_no_convergence
    use fixed_point, only: accelerator_type, pass_type

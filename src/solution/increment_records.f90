@@ -4,7 +4,8 @@ module increment_records
    use axis_limits, only: tractions, with_axis_limit
    use balances, only: contact_violation, force_residual, imbalance
    use contact_operator, only: kept_contact, thermal_forces
-   use contact_system, only: contact_state_type, contact_system_type
+   use contact_states, only: contact_state_type
+   use contact_system, only: contact_system_type
    use element_kinds, only: axisymmetric
    use element_points, only: points_of_elements
    use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
@@ -12,6 +13,7 @@ module increment_records
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
+   use mesh, only: extent_of
    use model, only: model_type
    use records, only: contact_record_type, increment_record_type, status_open
    use scheme_properties, only: is_explicit
@@ -26,6 +28,8 @@ module increment_records
    !> Part of K u or of the gaps below which a force or a displacement is no scale to measure by:
    !> where nothing is loaded only rounding is left of them.
    real(dp), parameter :: noise = 1.0e-6_dp
+   !> Displacement, in the extent of the model, below which it is no scale.
+   real(dp), parameter :: least_strain = 1.0e-12_dp
 
 contains
 
@@ -138,8 +142,9 @@ contains
 
       fraction = 0.0_dp
       if (gap <= 0.0_dp .or. force <= 0.0_dp) return
-      stiffness = system%stiffness([place])
-      fraction = gap/(gap + force/stiffness(1, 1))
+      ! Zero where the pair alone holds a body, but for rounding: it then closes at once.
+      stiffness = max(system%stiffness([place]), 0.0_dp)
+      fraction = gap*stiffness(1, 1)/(gap*stiffness(1, 1) + force)
    end function closing_fraction
 
    !> Contact state of one interface.
@@ -184,6 +189,22 @@ contains
       end associate
    end function contact_record
 
+   !> Displacement below which none is a scale to measure by. Where bodies are at their initial
+   !> temperature, the rounding of that temperature strains them.
+   pure real(dp) function least_displacement(model, temperature)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)
+      real(dp) :: expansion
+      integer :: i
+
+      expansion = 0.0_dp
+      do i = 1, size(model%materials)
+         expansion = max(expansion, maxval(abs(model%materials(i)%expansion)))
+      end do
+      least_displacement = extent_of(model%mesh%coordinates)*max(least_strain, noise*expansion* &
+         max(maxval(abs(temperature)), maxval(abs(model%initial_temperature))))
+   end function least_displacement
+
    !> Stress, reactions, force balance, and the contact conditions on the recovered displacements.
    subroutine balance_forces(operators, model, points, loads, next, record)
       type(interface_operators_type), intent(in) :: operators
@@ -193,14 +214,15 @@ contains
       type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
-      real(dp) :: length, scale
+      real(dp) :: least, length, scale
       logical :: along_x
 
       next%stress = recover_stress(model%mesh, model%sections, model%materials, &
          model%orientations, points, reshape(next%displacement, [2, size(next%temperature)]), &
          next%temperature - model%initial_temperature)
       next%stress_temperature = next%temperature
-      length = max(maxval(abs(next%displacement)), tiny(1.0_dp))
+      least = least_displacement(model, next%temperature)
+      length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp))
       if (size(operators%pairs%initial_gap) > 0) then
          length = max(length, noise*maxval(abs(operators%pairs%initial_gap)))
       end if
@@ -210,7 +232,7 @@ contains
       associate (held => loads%displacement%active)
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*maxval(abs(operators%mechanical%matrix%value))* &
-            length, tiny(1.0_dp))
+            length, least*maxval(abs(operators%mechanical%matrix%value)), tiny(1.0_dp))
          along_x = all(model%mesh%element_plane /= axisymmetric)
          record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
             [along_x, .true.], scale)

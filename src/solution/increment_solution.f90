@@ -4,15 +4,16 @@ module increment_solution
    use closing_instant, only: solve_increment
    use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
       law_conductance, temperature_jumps, thermal_forces
-   use contact_system, only: closing_law_type
-   use errors, only: error_type
+   use contact_states, only: closing_law_type
+   use errors, only: error_type, status_no_convergence
    use films, only: film_history
+   use finite_values, only: check_finite
    use coupled_increment, only: solve_coupled
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
-   use records, only: increment_record_type, iteration_record_type
+   use records, only: increment_record_type, iteration_record_type, status_open
    use scheme_properties, only: is_explicit
    use scheme_start, only: warn_of_imbalance
    use solution_state, only: solution_state_type
@@ -26,7 +27,8 @@ contains
 
    !> Jumps, contact state and conductance at the end of an increment, and the temperatures that
    !> belong to welded contacts. A field that the step does not solve stays.
-   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
+   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds,
+   !> loads that overflow.
    subroutine solve_pairs(operators, loads, model, step, previous, next, record, error)
       type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
@@ -48,6 +50,9 @@ contains
       record%coupling_gain_max = record%coupling_gain
       if (solves_heat(step%analysis)) then
          call load_heat(operators, loads, previous, data, next)
+         call check_finite([operators%thermal%condensed, next%temperature], &
+            'heat and temperatures', status_no_convergence, error)
+         if (allocated(error)) return
          call warn_of_imbalance(operators, loads, data, previous, next, record)
       end if
       if (.not. solves_mechanics(step%analysis)) then
@@ -60,6 +65,9 @@ contains
       call operators%contact%forget_factors()
       if (.not. solves_heat(step%analysis)) call give_temperatures(operators, loads, previous, next)
       call load_mechanics(operators, loads, model, data, next)
+      call check_finite([operators%mechanical%rhs(:, 1), data%welded_load], 'forces', &
+         status_no_convergence, error)
+      if (allocated(error)) return
       if (solves_heat(step%analysis) .and. size(next%omega) > 0) then
          if (is_explicit(step%scheme)) then
             call pass_once(operators, previous, data, next, record, error)
@@ -159,10 +167,12 @@ contains
       type(model_type), intent(in) :: model
       type(increment_data_type), intent(inout) :: data
       type(solution_state_type), intent(inout) :: next
+      real(dp) :: thermal(2*size(next%temperature))
 
       next%force_load = loads%nodal_forces()
-      call operators%mechanical%set_load(next%force_load + thermal_forces(operators, &
-         next%temperature - model%initial_temperature), loads%displacement%value)
+      thermal = thermal_forces(operators, next%temperature - model%initial_temperature)
+      operators%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
+      call operators%mechanical%set_load(next%force_load + thermal, loads%displacement%value)
       call operators%mechanical%condense_load()
       data%welded_load = operators%mechanical%condensed
    end subroutine load_mechanics
@@ -192,7 +202,8 @@ contains
             next%temperature - model%initial_temperature), loads%displacement%value)
       end if
       allocate (on_tail(operators%mechanical%map%tail))
-      on_tail(operators%contact%normal) = operators%pairs%initial_gap - next%contact%gap
+      on_tail(operators%contact%normal) = merge(next%contact%approach, &
+         operators%pairs%initial_gap - next%contact%gap, next%contact%status == status_open)
       do k = 1, size(next%contact%status)
          if (operators%contact%tangent(k) > 0) then
             on_tail(operators%contact%tangent(k)) = next%contact%tangential(k)

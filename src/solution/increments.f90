@@ -4,7 +4,7 @@ module increments
    use errors, only: error_type, set_error, status_no_convergence
    use field_recovery, only: make_points, point_map_type
    use films, only: left_films
-   use increment_checks, only: check_heat, check_violation, warn_of_choices
+   use increment_checks, only: check_heat, check_values, check_violation, warn_of_choices
    use increment_control, only: increment_control_type
    use increment_records, only: make_record
    use increment_solution, only: recover_fields, solve_pairs
@@ -19,12 +19,14 @@ module increments
    use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
-   use step_reduction, only: measure_steps, step_reduction_type
+   use step_reduction, only: measure_factors, measure_steps, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
-   use text, only: to_text
+   use text, only: append, to_text
    implicit none
    private
    public :: simulation_type
+
+   real(dp), parameter :: doubtful = 1.0e-9_dp   !! pivot over its diagonal entry; 1e-6 is left
 
    !> A run: the reduced bodies, the loads and the state, moved on by advance.
    type :: simulation_type
@@ -37,6 +39,7 @@ module increments
       type(run_seconds_type) :: seconds             !! where the time went
       type(run_size_type) :: sizes                  !! sizes over all steps
       character(:), allocatable :: undecided        !! what was last warned of
+      real(dp) :: pivot_told = 1.0_dp               !! smallest pivot that was warned of
    contains
       procedure :: start
       procedure :: reduce
@@ -149,10 +152,24 @@ contains
             to_text(record%time)//'): '//error%message
          return
       end do
+      call warn_of_pivot(self, record)
       self%state = next
       call self%control%accept(model, clock)
       record%last_of_step = self%control%step_is_over(model)
    end subroutine advance
+
+   !> Warns of pivots so small that digits are lost which results need, again where it is a tenth.
+   subroutine warn_of_pivot(self, record)
+      class(simulation_type), intent(inout) :: self
+      type(increment_record_type), intent(inout) :: record
+
+      if (self%sizes%smallest_pivot >= min(doubtful, 0.1_dp*self%pivot_told)) return
+      self%pivot_told = self%sizes%smallest_pivot
+      call append(record%warnings, 'increment '//to_text(record%increment)// &
+         ': the smallest pivot of the bodies is '//to_text(self%pivot_told)//' of its diagonal '// &
+         'entry, so that results may be right to '//to_text(10*epsilon(1.0_dp)/self%pivot_told)// &
+         ' only: are bodies held by others that are far softer?')
+   end subroutine warn_of_pivot
 
    !> A step takes no more increments than INC= allows; attempts that failed do not count.
    subroutine check_count(control, model, error)
@@ -197,6 +214,7 @@ contains
             call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, &
                error)
             if (allocated(error)) return
+            call measure_factors(operators, self%sizes)
          end if
          since = wall_seconds()
          call solve_pairs(operators, self%loads, model, step, self%state, next, record, error)
@@ -216,6 +234,8 @@ contains
          call recover_fields(operators, self%loads, model, step, next)
          call make_record(operators, model, self%points, self%loads, step, self%state, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
+         call check_values(record, error)
+         if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call check_violation(record, error)
       end associate
    end subroutine attempt

@@ -3,38 +3,30 @@
 module interface_operators
    use bodies, only: bodies_on_axis
    use body_names, only: cold_bodies
-   use conductance_laws, only: conductance_law_type
-   use contact_pairs, only: contact_pairs_type, make_pairs
+   use contact_pairs, only: contact_pairs_type
+   use contact_reduction, only: contact_system_of
    use contact_system, only: contact_system_type
-   use dense, only: column_space
    use equation_numbering, only: make_map
+   use element_kinds, only: element_node_count
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
+   use mesh, only: extent_of
    use model, only: model_type
+   use pair_rows, only: align_frames, pair_row_type, pair_surfaces, row_of
    use rigid_motions, only: unsupported_motions
-   use ring_links, only: node_stiffness, ring_give
+   use ring_links, only: node_stiffness
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
    implicit none
    private
-   public :: interface_operators_type, pair_row_type, pair_surfaces, over_constrained
+   public :: interface_operators_type
 
-   real(dp), parameter :: nearly_aligned = 0.99_dp !! cosine of a normal that counts as along an
-   !! axis
+   real(dp), parameter :: held_by_others = 1.0e-6_dp !! part of a conductance that is rounding
+   real(dp), parameter :: rounding = 1.0e-15_dp  !! of coordinates, in the extent of the model
+   real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
-
-   !> The pairs of all interfaces in one row.
-   type :: pair_row_type
-      integer, allocatable :: interface_start(:)              !! (interfaces + 1) first pair of each
-      integer, allocatable :: slave(:), master(:)             !! (m) node indexes
-      real(dp), allocatable :: weight(:)                      !! (m) tributary areas [length^2]
-      real(dp), allocatable :: initial_gap(:)                 !! (m) h [length]
-      real(dp), allocatable :: friction(:)                    !! (m) mu [-]
-      real(dp), allocatable :: normal(:, :), tangent(:, :)    !! (2, m) unit vectors
-      type(conductance_law_type), allocatable :: law(:)       !! (m) conductance laws
-   end type pair_row_type
 
    !> The reduced bodies.
    type :: interface_operators_type
@@ -56,6 +48,7 @@ module interface_operators
       procedure :: reduce
       procedure :: reduce_heat
       procedure :: set_film
+      procedure :: conductors
       procedure :: release
    end type interface_operators_type
 
@@ -78,53 +71,6 @@ contains
       end if
       self%pairs = row_of(self%interfaces, model)
    end subroutine prepare
-
-   !> Pairs the surfaces of one *CONTACT PAIR, with the thickness of the slave's first element.
-   !> Error: as make_pairs.
-   subroutine pair_surfaces(model, i, pairs, error)
-      type(model_type), intent(in) :: model               !! the model
-      integer, intent(in) :: i                            !! index into model%contacts
-      type(contact_pairs_type), intent(out) :: pairs      !! the pairs
-      type(error_type), allocatable, intent(out) :: error !! see above
-      real(dp) :: thickness
-
-      thickness = 1.0_dp
-      associate (faces => model%mesh%surfaces(model%contacts(i)%slave)%faces)
-         if (size(faces, 2) > 0) then
-            thickness = model%sections(model%mesh%element_section(faces(1, 1)))%thickness
-         end if
-      end associate
-      call make_pairs(model%mesh, model%contacts(i), thickness, pairs, error)
-   end subroutine pair_surfaces
-
-   !> Puts the pairs of all interfaces in one row.
-   pure function row_of(interfaces, model) result(row)
-      type(contact_pairs_type), intent(in) :: interfaces(:)
-      type(model_type), intent(in) :: model
-      type(pair_row_type) :: row
-      integer :: i, first, last, m
-
-      allocate (row%interface_start(size(interfaces) + 1))
-      row%interface_start(1) = 1
-      do i = 1, size(interfaces)
-         row%interface_start(i + 1) = row%interface_start(i) + size(interfaces(i)%slave_node)
-      end do
-      m = row%interface_start(size(interfaces) + 1) - 1
-      allocate (row%slave(m), row%master(m), row%weight(m), row%initial_gap(m), row%friction(m), &
-         row%normal(2, m), row%tangent(2, m), row%law(m))
-      do i = 1, size(interfaces)
-         first = row%interface_start(i)
-         last = row%interface_start(i + 1) - 1
-         row%slave(first:last) = interfaces(i)%slave_node
-         row%master(first:last) = interfaces(i)%master_node
-         row%weight(first:last) = interfaces(i)%weight
-         row%initial_gap(first:last) = interfaces(i)%initial_gap
-         row%normal(:, first:last) = interfaces(i)%normal
-         row%tangent(:, first:last) = interfaces(i)%tangent
-         row%friction(first:last) = model%interactions(model%contacts(i)%interaction)%friction
-         row%law(first:last) = model%interactions(model%contacts(i)%interaction)%law
-      end do
-   end function row_of
 
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
    !> Error: an over-constrained pair.
@@ -150,13 +96,38 @@ contains
          on_tail(1, :) = .true.
          on_tail(2, :) = pairs%friction > 0.0_dp
          if (mechanics) call make_map(used, held, pairs%slave, pairs%master, frame, on_tail, &
-            self%mechanical%map, error)
+            self%mechanical%map, error, slave_is_stiffer(model, pairs, .true.))
          if (allocated(error) .or. .not. heat) return
          scalar = 1.0_dp
          call make_map(used, held_temperature, pairs%slave, pairs%master, scalar, on_tail(:1, :), &
-            self%thermal%map, error)
+            self%thermal%map, error, slave_is_stiffer(model, pairs, .false.))
       end associate
    end subroutine number
+
+   !> Whether the slave's body is far stiffer, or conducts far better, than the master's. A soft
+   !> body is to be written by the stiff one: the other way round its stiffness would be left over
+   !> where those of the stiff one cancel, and their rounding with it.
+   pure function slave_is_stiffer(model, pairs, mechanics) result(stiffer)
+      type(model_type), intent(in) :: model
+      type(pair_row_type), intent(in) :: pairs
+      logical, intent(in) :: mechanics
+      logical :: stiffer(size(pairs%slave))
+      real(dp) :: stiffness(size(model%mesh%node_number)), own
+      integer :: e, i
+
+      stiffness = 0.0_dp
+      do e = 1, size(model%mesh%element_number)
+         associate (section => model%sections(model%mesh%element_section(e)), &
+            nodes => model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), e))
+            associate (material => model%materials(section%material))
+               own = maxval([(material%elasticity(i, i), i=1, 4)])
+               if (.not. mechanics) own = maxval(material%conductivity)
+            end associate
+            stiffness(nodes) = max(stiffness(nodes), own*section%thickness)
+         end associate
+      end do
+      stiffer = stiffness(pairs%slave) > far*stiffness(pairs%master)
+   end function slave_is_stiffer
 
    !> Reduces the fields that are asked for to the unknowns that were numbered last.
    !> Errors: bodies that nothing holds, a failure of the solver.
@@ -173,7 +144,8 @@ contains
          if (allocated(self%jump_load)) deallocate (self%jump_load)
          call self%mechanical%reduce(model%solver, error)
          if (allocated(error)) return
-         call set_contact(self)
+         self%contact = contact_system_of(self%mechanical, self%pairs, self%rigid)
+         self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
       end if
       if (heat) then
          call self%reduce_heat(model, error)
@@ -260,107 +232,6 @@ contains
          model%materials, model%orientations)
    end subroutine assemble
 
-   !> A pair that is held along one axis on both nodes, as on an axis of symmetry, moves along the
-   !> other one. Its normal, which a curved side gives only nearly so, is then taken along the axes.
-   pure subroutine align_frames(pairs, held)
-      type(pair_row_type), intent(inout) :: pairs
-      logical, intent(in) :: held(:)
-      logical :: both(2)
-      integer :: along, k
-
-      do k = 1, size(pairs%slave)
-         both = held(2*pairs%slave(k) - 1:2*pairs%slave(k)) .and. &
-            held(2*pairs%master(k) - 1:2*pairs%master(k))
-         if (both(1) .eqv. both(2)) cycle
-         along = merge(2, 1, both(1))
-         if (abs(pairs%normal(along, k)) < nearly_aligned) cycle
-         pairs%normal(3 - along, k) = 0.0_dp
-         pairs%normal(along, k) = sign(1.0_dp, pairs%normal(along, k))
-         pairs%tangent(along, k) = 0.0_dp
-         pairs%tangent(3 - along, k) = sign(1.0_dp, pairs%tangent(3 - along, k))
-      end do
-   end subroutine align_frames
-
-   !> Pairs whose normal motion is prescribed on both nodes, or their motion along a direction that
-   !> is neither their normal nor their tangent, once frames are aligned.
-   pure function over_constrained(pairs, held) result(too_much)
-      type(pair_row_type), intent(in) :: pairs     !! the pairs
-      logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
-      logical :: too_much(size(pairs%slave))       !! (m)
-      logical :: both(2)
-      integer :: k
-
-      do k = 1, size(pairs%slave)
-         both = held(2*pairs%slave(k) - 1:2*pairs%slave(k)) .and. &
-            held(2*pairs%master(k) - 1:2*pairs%master(k))
-         too_much(k) = any(both) .and. (all(both) .or. &
-            abs(pairs%normal(merge(2, 1, both(1)), k)) < nearly_aligned)
-      end do
-   end function over_constrained
-
-   !> The contact system from the mechanical Schur complement.
-   subroutine set_contact(self)
-      class(interface_operators_type), intent(inout) :: self
-      type(contact_system_type) :: contact
-
-      allocate (contact%normal(size(self%pairs%slave)), contact%tangent(size(self%pairs%slave)))
-      associate (map => self%mechanical%map)
-         contact%normal(:) = map%tail_index(map%relative(1, :))
-         contact%tangent(:) = map%tail_index(map%relative(2, :))
-      end associate
-      contact%schur = self%mechanical%solver%schur_complement()
-      call set_motions(self, contact)
-      allocate (contact%closing(size(self%pairs%slave)))
-      contact%initial_gap = self%pairs%initial_gap
-      contact%friction = self%pairs%friction
-      call set_rings(self, contact)
-      self%contact = contact
-   end subroutine set_contact
-
-   !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
-   !> force; what S makes of them is rounding, and is taken from it.
-   subroutine set_motions(self, contact)
-      class(interface_operators_type), intent(in) :: self
-      type(contact_system_type), intent(inout) :: contact
-      real(dp), allocatable :: forces(:, :), on_tail(:, :), relative(:, :)
-      integer :: k, m, s
-
-      allocate (on_tail(size(contact%schur, 1), size(self%rigid, 2)), source=0.0_dp)
-      do k = 1, size(self%pairs%slave)
-         s = 2*self%pairs%slave(k)
-         m = 2*self%pairs%master(k)
-         relative = self%rigid(s - 1:s, :) - self%rigid(m - 1:m, :)
-         on_tail(contact%normal(k), :) = matmul(self%pairs%normal(:, k), relative)
-         if (contact%tangent(k) > 0) then
-            on_tail(contact%tangent(k), :) = matmul(self%pairs%tangent(:, k), relative)
-         end if
-      end do
-      contact%motion = column_space(on_tail)
-      if (size(contact%motion, 2) == 0) return
-      associate (z => contact%motion)
-         forces = matmul(contact%schur, z)
-         contact%schur = contact%schur - matmul(forces, transpose(z)) - &
-            matmul(z, transpose(forces)) + &
-            matmul(z, matmul(matmul(transpose(z), forces), transpose(z)))
-      end associate
-   end subroutine set_motions
-
-   !> The links of the rings, and how much their stuck pairs give.
-   subroutine set_rings(self, contact)
-      class(interface_operators_type), intent(in) :: self
-      type(contact_system_type), intent(inout) :: contact
-      integer :: k
-
-      associate (map => self%mechanical%map, pairs => self%pairs)
-         contact%link = map%tail_index(map%links%force)
-         allocate (contact%give(size(pairs%slave)), source=0.0_dp)
-         do k = 1, size(pairs%slave)
-            if (map%in_ring(k)) contact%give(k) = ring_give/node_stiffness( &
-               self%mechanical%matrix, [pairs%slave(k), pairs%master(k)], 2)
-         end do
-      end associate
-   end subroutine set_rings
-
    !> Condensed mechanical load of a unit jump at each pair.
    subroutine form_jump_load(self)
       class(interface_operators_type), intent(inout) :: self
@@ -391,6 +262,27 @@ contains
       end do
       call self%mechanical%condense_forces(forces, condensed)
    end subroutine condense_thermal_load
+
+   !> Conductance of the bodies about each pair alone; 0 where both temperatures are prescribed. A
+   !> pair that closes a ring, whose jump only the others hold, has that of the bodies at its nodes.
+   function conductors(self) result(conductance)
+      class(interface_operators_type), intent(in) :: self  !! the reduced bodies
+      real(dp) :: conductance(size(self%pairs%slave))      !! (m) [power/temperature]
+      real(dp), allocatable :: schur(:, :)
+      integer :: k
+
+      conductance = 0.0_dp
+      schur = self%thermal%solver%schur_complement()
+      do k = 1, size(conductance)
+         if (self%jump_place(k) == 0) cycle
+         conductance(k) = schur(self%jump_place(k), self%jump_place(k))
+         if (.not. self%thermal%map%in_ring(k)) cycle
+         associate (at_nodes => node_stiffness(self%thermal%matrix, [self%pairs%slave(k), &
+            self%pairs%master(k)], 1))
+            if (conductance(k) < held_by_others*at_nodes) conductance(k) = at_nodes
+         end associate
+      end do
+   end function conductors
 
    !> Frees the factors.
    subroutine release(self)

@@ -3,7 +3,7 @@ module loose_bodies
    use bodies, only: bodies_on_axis
    use body_names, only: body_name, reached_bodies
    use conductance_laws, only: law_none
-   use interface_operators, only: pair_row_type
+   use pair_rows, only: pair_row_type
    use kinds, only: dp
    use model, only: model_type
    use records, only: status_open, status_slip, status_stick

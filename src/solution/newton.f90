@@ -208,7 +208,7 @@ contains
       part = min(max(part, 0.1_dp), 0.5_dp)
    end function shortening
 
-   !> dz from the pass that was taken last.
+   !> dz from the pass that was taken last; the image where the derivative is not known.
    subroutine make_step(self)
       class(newton_type), intent(inout) :: self
       real(dp) :: matrix(size(self%rest), size(self%rest)), step(size(self%rest), 1)

@@ -12,7 +12,7 @@ module opening_slopes
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: law_jumps
    use contact_operator, only: increment_data_type, law_pressure
-   use contact_system, only: contact_state_type
+   use contact_states, only: contact_state_type
    use contact_tangent, only: contact_response
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
@@ -28,12 +28,12 @@ module opening_slopes
 contains
 
    !> Graphs of the conductance of all pairs.
-   pure function make_graph(operators, length) result(graph)
+   function make_graph(operators, length) result(graph)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       real(dp), intent(in) :: length                          !! of a rest, > 0 [length]
       type(conductance_graph_type), allocatable :: graph(:)   !! (m)
       real(dp) :: stiffness(size(operators%pairs%weight)), weight(size(operators%pairs%weight))
-      real(dp), allocatable :: conductor(:, :)
+      real(dp), allocatable :: conductor(:)
       integer :: k
 
       allocate (graph(size(weight)))
@@ -48,12 +48,12 @@ contains
       where (stiffness <= 0.0_dp) stiffness = 1.0_dp
       graph%modulus = stiffness/weight
       if (.not. any([(law_jumps(graph(k)%law), k=1, size(graph))])) return
-      conductor = operators%thermal%solver%schur_complement()
+      conductor = operators%conductors()
       do k = 1, size(weight)
          if (operators%pairs%weight(k) <= 0.0_dp .or. operators%jump_place(k) == 0) cycle
          if (.not. law_jumps(graph(k)%law)) cycle
          graph(k)%width = length
-         graph(k)%body = conductor(operators%jump_place(k), operators%jump_place(k))/weight(k)
+         graph(k)%body = conductor(k)/weight(k)
       end do
    end function make_graph
 

@@ -3,7 +3,7 @@
 module resting_pairs
    use conductance_graph, only: conductance_graph_type
    use contact_operator, only: increment_data_type
-   use contact_system, only: contact_state_type
+   use contact_states, only: contact_state_type
    use fixed_point, only: pair_residual, pass_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp

@@ -19,6 +19,7 @@ module run_measures
       integer :: equations_mechanical = 0   !! unknown displacements, largest of the steps
       integer :: contact_unknowns = 0       !! unknowns on the pairs, largest of the steps
       integer(long) :: factor_bytes = 0     !! bytes of factors, largest so far
+      real(dp) :: smallest_pivot = 1.0_dp   !! over its diagonal entry, smallest so far [-]
    end type run_size_type
 
 end module run_measures

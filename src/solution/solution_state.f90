@@ -1,6 +1,6 @@
 !> What changes from increment to increment.
 module solution_state
-   use contact_system, only: contact_state_type
+   use contact_states, only: contact_state_type
    use kinds, only: dp
    use sparse_matrix, only: sparse_matrix_type
    implicit none

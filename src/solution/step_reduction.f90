@@ -4,8 +4,10 @@ module step_reduction
    use clock, only: wall_seconds
    use errors, only: error_type
    use films, only: left_films
-   use interface_operators, only: interface_operators_type, pair_row_type
+   use interface_operators, only: interface_operators_type
+   use pair_rows, only: pair_row_type
    use kinds, only: dp, long
+   use linear_solver, only: linear_solver_type
    use loads, only: loads_type
    use model, only: model_type
    use run_measures, only: run_seconds_type, run_size_type
@@ -15,7 +17,7 @@ module step_reduction
    use text, only: to_text
    implicit none
    private
-   public :: step_reduction_type, measure_steps
+   public :: step_reduction_type, measure_steps, measure_factors
 
    !> What of the bodies is numbered and reduced.
    type :: step_reduction_type
@@ -109,7 +111,7 @@ contains
       type(sparse_matrix_type), intent(in) :: film_new           !! F_i+1 [power/temperature]
       type(interface_operators_type), intent(inout) :: operators !! the bodies
       type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
-      type(run_size_type), intent(inout) :: sizes                !! receives the bytes of factors
+      type(run_size_type), intent(inout) :: sizes                !! receives bytes and pivot
       type(error_type), allocatable, intent(out) :: error        !! see above
       logical :: heat, mechanics
       real(dp) :: since
@@ -130,7 +132,7 @@ contains
       self%mechanics_is_reduced = self%mechanics_is_reduced .or. (mechanics .and. &
          .not. allocated(error))
       self%heat_is_reduced = self%heat_is_reduced .or. (heat .and. .not. allocated(error))
-      sizes%factor_bytes = max(sizes%factor_bytes, bytes_of_factors(operators))
+      call measure_factors(operators, sizes)
       seconds%reduce = seconds%reduce + (wall_seconds() - since)
    end subroutine reduce
 
@@ -148,17 +150,23 @@ contains
       strain = strain .and. any(solves_mechanics(model%steps%analysis))
    end function temperatures_strain
 
-   pure function bytes_of_factors(operators) result(bytes)
-      type(interface_operators_type), intent(in) :: operators
+   !> Notes the memory of the factors that stand, and their smallest pivot.
+   subroutine measure_factors(operators, sizes)
+      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      type(run_size_type), intent(inout) :: sizes               !! receives both
       integer(long) :: bytes
 
       bytes = 0
-      if (allocated(operators%mechanical%solver)) then
-         bytes = bytes + operators%mechanical%solver%factor_bytes
-      end if
-      if (allocated(operators%thermal%solver)) then
-         bytes = bytes + operators%thermal%solver%factor_bytes
-      end if
-   end function bytes_of_factors
+      if (allocated(operators%mechanical%solver)) call measure(operators%mechanical%solver)
+      if (allocated(operators%thermal%solver)) call measure(operators%thermal%solver)
+      sizes%factor_bytes = max(sizes%factor_bytes, bytes)
+   contains
+      subroutine measure(solver)
+         class(linear_solver_type), intent(in) :: solver
+
+         bytes = bytes + solver%factor_bytes
+         sizes%smallest_pivot = min(sizes%smallest_pivot, solver%smallest_pivot)
+      end subroutine measure
+   end subroutine measure_factors
 
 end module step_reduction

@@ -16,10 +16,10 @@ COUPLED = INPUT / "cylinder" / "cylinder-coupled.inp"
 HERTZ = INPUT / "hertz" / "hertz.inp"
 
 
-def run(*arguments, folder=None):
+def run(*arguments, folder=None, seconds=300):
     """Run the program with these arguments, in a folder; return the finished process."""
     command = [PROGRAM, *map(str, arguments)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=seconds)
 
 
 def solve(deck, *arguments, status=0):

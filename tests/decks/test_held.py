@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from blocks import block, solid, write
 from deck_runs import run, solve
-from physics import nodes_of
+from physics import mesh, nodes_of
 
 XS = [0.0, 0.3, 1.0]
 UPPER, LOWER = [0.0, 0.4, 0.5], [-1.0, -0.3, 0.0]
@@ -228,3 +228,61 @@ def test_a_film_of_nothing_leaves_a_temperature_undetermined(tmp_path):
     assert f"increment 2 (time 1): {said}" in refuse(deck, 2)
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
         assert list(file["history/time"]) == [0.5]
+
+
+LAWS = ["*GAP LAW, TYPE=GAS", "1.E-4, 1.E-3", "*GAP LAW, TYPE=POWER", "0.1, 0.01, 1."]
+SQUARES = [0.0, 1.0, 2.0, 3.0, 4.0]
+TWO = [*block("LOWER", SQUARES, [0.0, 1.0, 2.0], 1), *block("UPPER", SQUARES, [2.0, 3.0, 4.0], 1001),
+       *solid("LOWER", 2e5, 0.3, 1.2e-5, 0.05), *solid("UPPER", 2e5, 0.3, 1.2e-5, 0.05)]
+COUPLED = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.5, 1.", "*BOUNDARY"]
+
+
+def at(bottom, top):
+    """Return the cards of prescribed temperatures."""
+    return [f"LOWER.BOTTOM, 11, 11, {bottom!r}", f"UPPER.TOP, 11, 11, {top!r}"]
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("initial", [20.0, 300.0, 1000.0 / 3.0])
+@pytest.mark.parametrize("peak", [None, 400.0])
+def test_nothing_is_pressed_at_the_initial_temperature(tmp_path, initial, friction, peak):
+    """At once, and after a cycle: what rounding leaves of the strain is no load and no gap."""
+    supports = ["LOWER.BOTTOM, 1, 2", *([] if friction else ["UPPER.LEFT, 1"])]
+    cards = [*COUPLED, *supports, *at(peak or initial, peak or initial), "*END STEP"]
+    if peak:
+        cards += [*COUPLED, *at(initial, initial), "*END STEP"]
+    deck = write(tmp_path / "rest.inp", TWO, interaction(friction), LAWS, FACES,
+                 ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"LOWER, {initial!r}",
+                  f"UPPER, {initial!r}"], cards)
+    gap, pressure = read(solve(deck), "FACE", "gap", "pressure")
+    np.testing.assert_allclose(gap, 0.0, atol=1e-12)
+    np.testing.assert_allclose(pressure, 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["CPE8", "CPE6", "CPE3"])
+@pytest.mark.parametrize("hot", [100.0, 1000.0])
+def test_block_that_stands_on_its_bulge_keeps_its_place(tmp_path, kind, hot):
+    """The lower face of the upper block is convex: few pairs carry all of its load, and it could
+    turn on them."""
+    parts = [*mesh("LOWER", SQUARES, [0.0, 1.0, 2.0], kind),
+             *mesh("UPPER", SQUARES, [2.0, 3.0, 4.0], kind, 1001), *TWO[-16:]]
+    deck = write(tmp_path / "bulge.inp", ["*OPTIONS, WIDTH=120"], parts, interaction(0.3), LAWS,
+                 FACES, [*COUPLED, *FLOOR[1:], *at(hot, 0.0), "*DSLOAD", "UPPER.TOP, P, 1.",
+                         "*END STEP"])
+    result = solve(deck)
+    (force,) = read(result, "FACE", "normal_force")
+    np.testing.assert_allclose(force, 4.0, rtol=1e-9)
+    with h5py.File(result) as file:
+        assert np.isfinite(file["VTKHDF/PointData/displacement"][()]).all()
+        assert np.abs(file["VTKHDF/PointData/displacement"][()]).max() < 0.1
+
+
+def test_heated_block_above_the_floor_only_expands(tmp_path):
+    """Nothing drives it; the forces that heat makes in it balance but for rounding."""
+    deck = write(tmp_path / "hover.inp", RAISED,
+                 solid("UPPER", 1e4, 0.3, 1e-5), solid("LOWER", 2e3, 0.45, 1e-5), interaction(0.0),
+                 ["*GAP LAW, TYPE=GAS", "1., 1."], FACES,
+                 COUPLED, FLOOR[1:], ["UPPER.LEFT, 1"], at(100.0, 100.0), ["*END STEP"])
+    gap, force = read(solve(deck), "FACE", "gap", "normal_force")
+    np.testing.assert_allclose(force, 0.0, atol=1e-12)
+    assert (np.abs(gap - 0.02) < 2e-3).all()

@@ -176,3 +176,37 @@ def test_bodies_of_different_thickness(tmp_path):
     assert "is 1 thick; pressure and flux of all pairs are for the thickness 5 of" in message
     assert warnings(tmp_path, blocks(thickness=("5.", "5.")), PRESSED) == []
     assert warnings(tmp_path, ["*OPTIONS, PLANE=AXISYMMETRIC"], cards, PRESSED) == []
+
+
+@pytest.mark.parametrize(("side", "told"), [(2e-5, False), (5e-6, True)])
+def test_nodes_that_all_but_coincide(tmp_path, side, told):
+    """Pressures beside a side of 5e-6 of the longest are lost to 2.2e-16/(5e-6)^2."""
+    deck = [*block("A", [0.0, 1.0], [0.0, side]), *solid("A", 2e5, 0.3), "*BOUNDARY", "A.BOTTOM, 1, 2"]
+    step = ["*STEP", "*STATIC", "1., 1.", "*DLOAD", "A, P3, 1.", "*END STEP"]
+    found = warnings(tmp_path, deck, step)
+    assert len(found) == told
+    if told:
+        assert float(re.search(r"known to (\S+) only", one(found, "1, "))[1]) == pytest.approx(8.9e-6, rel=0.01)
+        assert "shortest side is 5E-6 of its longest" in found[0][0]
+
+
+@pytest.mark.parametrize(("ratio", "told"), [(1e-6, False), (1e-11, True)])
+def test_a_stiff_body_on_a_far_softer_one(tmp_path, ratio, told):
+    """What holds the upper block is lost in its rounding."""
+    cards = block("A", XS, [0.0, 1.0, 2.0]) + block("B", XS, [2.0, 3.0, 4.0], first=101)
+    cards += solid("A", 1e5 * ratio, 0.0) + solid("B", 1e5, 0.0)
+    cards += ["*SURFACE INTERACTION, NAME=I", "*CONTACT PAIR, INTERACTION=I, NAME=F", "B.BOTTOM, A.TOP",
+              "*BOUNDARY", "A.BOTTOM, 1, 2", "B.LEFT, 1"]
+    deck = write(tmp_path / "deck.inp", cards, PRESSED)
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    listing = deck.with_suffix(".lst").read_text()
+    assert ("the smallest pivot of the bodies is" in listing) == told
+
+
+def test_faces_far_apart_are_paired_all_the_same(tmp_path):
+    """Distances between all their ends are the same to rounding."""
+    deck = write(tmp_path / "deck.inp", blocks(gap=1e12), PRESSED)
+    process = run("check", deck)
+    assert process.returncode == 0, process.stderr
+    assert "9 node pairs, initial gaps 1E+12 to 1E+12" in process.stdout.replace("1E12", "1E+12")

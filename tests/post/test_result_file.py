@@ -189,6 +189,7 @@ def test_the_file_holds_the_card_images_and_the_run(results, stored):
     assert run_attributes["solver"].upper() == "SKYLINE"
     for name in "equations_thermal equations_mechanical contact_unknowns factor_bytes".split():
         assert run_attributes[name] > 0, name
+    assert 0 < run_attributes["smallest_pivot"] <= 1
     for name in "read assemble reduce iterate recover write".split():
         assert run_attributes[f"seconds_{name}"] > 0, name
     for name in "heat contact friction coupling".split():

@@ -1,0 +1,82 @@
+!> The contact system of the reduced bodies: the Schur complement of equilibrium on the pairs.
+module contact_reduction
+   use contact_system, only: contact_system_type
+   use dense, only: column_space
+   use field_problem, only: field_problem_type
+   use kinds, only: dp
+   use pair_rows, only: pair_row_type
+   use ring_links, only: node_stiffness, ring_give
+   implicit none
+   private
+   public :: contact_system_of
+
+contains
+
+   !> The contact system from the mechanical Schur complement.
+   pure function contact_system_of(mechanical, pairs, rigid) result(contact)
+      type(field_problem_type), intent(in) :: mechanical !! equilibrium, reduced
+      type(pair_row_type), intent(in) :: pairs           !! all pairs
+      real(dp), intent(in) :: rigid(:, :) !! (2 nodes, motions) that the supports leave free
+      type(contact_system_type) :: contact               !! the system, nothing closed
+      integer :: m
+
+      m = size(pairs%slave)
+      allocate (contact%normal(m), contact%tangent(m), contact%closing(m))
+      associate (map => mechanical%map)
+         contact%normal(:) = map%tail_index(map%relative(1, :))
+         contact%tangent(:) = map%tail_index(map%relative(2, :))
+      end associate
+      contact%schur = mechanical%solver%schur_complement()
+      contact%initial_gap = pairs%initial_gap
+      contact%friction = pairs%friction
+      call set_motions(pairs, rigid, contact)
+      call set_rings(mechanical, pairs, contact)
+   end function contact_system_of
+
+   !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
+   !> force; what S makes of them is rounding, and is taken from it.
+   pure subroutine set_motions(pairs, rigid, contact)
+      type(pair_row_type), intent(in) :: pairs
+      real(dp), intent(in) :: rigid(:, :)
+      type(contact_system_type), intent(inout) :: contact
+      real(dp), allocatable :: forces(:, :), on_tail(:, :), relative(:, :)
+      integer :: k, m, s
+
+      allocate (on_tail(size(contact%schur, 1), size(rigid, 2)), source=0.0_dp)
+      do k = 1, size(pairs%slave)
+         s = 2*pairs%slave(k)
+         m = 2*pairs%master(k)
+         relative = rigid(s - 1:s, :) - rigid(m - 1:m, :)
+         on_tail(contact%normal(k), :) = matmul(pairs%normal(:, k), relative)
+         if (contact%tangent(k) > 0) then
+            on_tail(contact%tangent(k), :) = matmul(pairs%tangent(:, k), relative)
+         end if
+      end do
+      contact%motion = column_space(on_tail)
+      if (size(contact%motion, 2) == 0) return
+      associate (z => contact%motion)
+         forces = matmul(contact%schur, z)
+         contact%schur = contact%schur - matmul(forces, transpose(z)) - &
+            matmul(z, transpose(forces)) + &
+            matmul(z, matmul(matmul(transpose(z), forces), transpose(z)))
+      end associate
+   end subroutine set_motions
+
+   !> The links of the rings, and how much their stuck pairs give.
+   pure subroutine set_rings(mechanical, pairs, contact)
+      type(field_problem_type), intent(in) :: mechanical
+      type(pair_row_type), intent(in) :: pairs
+      type(contact_system_type), intent(inout) :: contact
+      integer :: k
+
+      associate (map => mechanical%map)
+         contact%link = map%tail_index(map%links%force)
+         allocate (contact%give(size(pairs%slave)), source=0.0_dp)
+         do k = 1, size(pairs%slave)
+            if (map%in_ring(k)) contact%give(k) = ring_give/node_stiffness( &
+               mechanical%matrix, [pairs%slave(k), pairs%master(k)], 2)
+         end do
+      end associate
+   end subroutine set_rings
+
+end module contact_reduction
