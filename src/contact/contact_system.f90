@@ -56,6 +56,7 @@ module contact_system
       real(dp), allocatable :: spring(:)          !! (tail) factor of the row's displacement
       type(lu_type) :: lu                         !! factors on the free places, bordered
       real(dp) :: border = 1.0_dp                 !! scale of the border [force/length]
+      real(dp), allocatable :: scale(:) !! (free) factor of the rows, 1 in those with a border
       integer, allocatable :: factored(:)         !! (m) status*3 + direction of the factors
       real(dp), allocatable :: loose(:, :)        !! (free, l) motions that the set leaves free
       logical :: driven = .false.                 !! whether the load drives one of them
@@ -221,6 +222,13 @@ contains
          do i = 1, f
             rows(i, i) = rows(i, i) + self%spring(self%free(i))
          end do
+         ! Rows of slipping pairs are mu times as large, those of stuck ones in rings 1e8 times.
+         self%scale = [(1.0_dp, i=1, f)]
+         if (size(self%loose, 2) == 0) self%scale = 1.0_dp/max(maxval(abs(rows(:f, :f)), dim=2), &
+            tiny(1.0_dp))
+         do i = 1, f
+            rows(i, :f) = self%scale(i)*rows(i, :f)
+         end do
          self%border = max(maxval(abs(rows)), tiny(1.0_dp))
          rows(:f, f + 1:) = self%border*self%loose
          rows(f + 1:, :f) = self%border*transpose(self%loose)
@@ -310,7 +318,7 @@ contains
       associate (f => size(self%free))
          rows = 0.0_dp
          associate (of_tail => self%friction_rows(x))
-            rows(:f, :) = of_tail(self%free, :)
+            rows(:f, :) = spread(self%scale, 2, size(x, 2))*of_tail(self%free, :)
          end associate
          if (size(rows, 1) > 0) call self%lu%solve(rows)
          x(self%free, :) = rows(:f, :)
