@@ -182,8 +182,10 @@ contains
          if (.not. alone) compliance = reshape([stiffness(2, 2), -stiffness(2, 1), &
             -stiffness(1, 2), stiffness(1, 1)], [2, 2])/determinant
       end if
-      if (alone) compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, &
-         1.0_dp/held%schur(places(2), places(2))], [2, 2])
+      ! A pair that closes a ring has no stiffness of its own.
+      if (alone) compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, merge(held%give(k), &
+         1.0_dp/max(held%schur(places(2), places(2)), tiny(1.0_dp)), held%give(k) > 0.0_dp)], &
+         [2, 2])
    end subroutine find_compliance
 
    !> The closing law of one pair.

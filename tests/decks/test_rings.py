@@ -184,16 +184,20 @@ def test_four_blocks_round_a_point_carry_pressure_and_heat_evenly(tmp_path, solv
     follows(tmp_path, lambda conductance: four_blocks(conductance, solver), 4.0, 5.0)
 
 
-def pellets(pressure, order=("ENDS", "LOWER", "UPPER")):
-    """Return two pellets about an axis, on each other in a rigid tube: sigma_r = nu/(1-nu) p."""
+def pellets(pressure, order=("ENDS", "LOWER", "UPPER"), hollow=0.0, friction=None):
+    """Return two pellets about an axis, on each other in a rigid tube: sigma_r = nu/(1-nu) p.
+
+    A hollow in the top of the first one leaves them in touch at its edge alone.
+    """
     ys = [0.0, 0.3, 1.0]
-    cards = [*mesh("FIRST", XS, ys, "CAX8"), *mesh("SECOND", XS, [1 + y for y in ys], "CAX8", 101),
+    first = mesh("FIRST", XS, ys, "CAX8", to=lambda x, y: (x, y - hollow * y * (1.0 - x)))
+    cards = [*first, *mesh("SECOND", XS, [1 + y for y in ys], "CAX8", 101),
              *mesh("TUBE", [1.0, 1.3], [*ys, *(1 + y for y in ys[1:])], "CAX8", 201)]
     for name in ("FIRST", "SECOND", "TUBE"):
         cards += material(name, (YOUNG, POISSON))
     # Rows of the tube: two beside each pellet.
     cards += ["*SURFACE, NAME=BORE1", "201, S4", "202, S4", "*SURFACE, NAME=BORE2", "203, S4",
-              "204, S4", *interaction(None)]
+              "204, S4", *interaction(friction)]
     faces = {"ENDS": "SECOND.BOTTOM, FIRST.TOP", "LOWER": "FIRST.RIGHT, BORE1",
              "UPPER": "SECOND.RIGHT, BORE2"}
     for name in order:
@@ -215,3 +219,13 @@ def pellets(pressure, order=("ENDS", "LOWER", "UPPER")):
 def test_two_pellets_and_their_tube_meet_in_one_ring(tmp_path, last):
     order = sorted(("ENDS", "LOWER", "UPPER"), key=lambda name: name == last)
     follows(tmp_path, lambda pressure: pellets(pressure, order), 2.0, 3.0)
+
+
+def test_edges_that_alone_carry_a_pellet_stick_and_slip_in_their_ring(tmp_path):
+    """The pair that closes the ring is the only one between the pellets."""
+    cards, _ = pellets(0.2, ("LOWER", "UPPER", "ENDS"), hollow=5e-2, friction=0.4)
+    result = judge(tmp_path, cards, [("time", "", "LAST", 1.0, 1e-12)])
+    with h5py.File(result) as file:
+        assert (file["contact/ENDS/status"][-1] > 0).sum() == 1
+        assert file["contact/ENDS/normal_force"][-1] > 0.1 * math.pi
+        assert file["history/force_imbalance"][-1] < 1e-10
