@@ -224,6 +224,10 @@ def test_two_pellets_and_their_tube_meet_in_one_ring(tmp_path, last):
 def test_edges_that_alone_carry_a_pellet_stick_and_slip_in_their_ring(tmp_path):
     """The pair that closes the ring is the only one between the pellets."""
     cards, _ = pellets(0.2, ("LOWER", "UPPER", "ENDS"), hollow=5e-2, friction=0.4)
+    at = cards.index("*STEP")
+    cards[at:at] = [f"*CLEARANCE, SLAVE={slave}, MASTER={master}, VALUE={gap}"
+                    for slave, master, gap in (("SECOND.RIGHT", "BORE2", 0.01),
+                                               ("FIRST.RIGHT", "BORE1", 0.01))]
     result = judge(tmp_path, cards, [("time", "", "LAST", 1.0, 1e-12)])
     with h5py.File(result) as file:
         assert (file["contact/ENDS/status"][-1] > 0).sum() == 1
