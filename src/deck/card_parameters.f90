@@ -106,11 +106,10 @@ contains
    end subroutine take_real_parameter
 
    !> Takes one of several words.
-   subroutine choose(card, name, choices, later, report, choice)
+   subroutine choose(card, name, choices, report, choice)
       type(keyword_card_type), intent(in) :: card              !! keyword card
       character(*), intent(in) :: name                         !! parameter
       character(*), intent(in) :: choices                      !! words, separated by slashes
-      character(*), intent(in) :: later   !! words that are not built yet, likewise
       type(deck_report_type), intent(inout) :: report          !! receives the error
       character(:), allocatable, intent(inout) :: choice   !! the word as in choices; else as it was
       type(string_type), allocatable :: words(:)
@@ -125,13 +124,8 @@ contains
          choice = words(i)%value
          return
       end do
-      if (index('/'//without_blanks(later)//'/', '/'//wanted//'/') > 0) then
-         call report%error(parameter_place(card, name), name//'='//wanted//' on *'//card%name// &
-            ' is not built yet')
-      else
-         call report%error(parameter_place(card, name), 'unknown '//name//'='//wanted//' of *'// &
-            card%name//nearest_known(wanted, words))
-      end if
+      call report%error(parameter_place(card, name), 'unknown '//name//'='//wanted//' of *'// &
+         card%name//nearest_known(wanted, words))
    end subroutine choose
 
    pure function split_words(choices) result(words)

@@ -28,7 +28,7 @@ contains
 
       before = fixed_point
       method = ''
-      call choose(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', '', report, method)
+      call choose(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', report, method)
       if (method /= '') fixed_point%method = findloc(method_names == method, .true., dim=1)
       call take_parameter(card, 'TOL', report, fixed_point%tolerance)
       call take_parameter(card, 'MAXITER', report, fixed_point%max_iterations)
@@ -64,7 +64,7 @@ contains
       if (.not. has_parameter(card, 'TYPE')) then
          call report%error(card%place, '*THERMAL SCHEME needs TYPE=')
       end if
-      call choose(card, 'TYPE', 'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/FREE', '', report, kind)
+      call choose(card, 'TYPE', 'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/FREE', report, kind)
       if (kind == 'FREE') then
          if (card%last_data < card%first_data) then
             call report%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')

@@ -58,7 +58,7 @@ contains
 
       call need_parameter(card, 'NAME', report, amplitude%name)
       kind = 'STEP TIME'
-      call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', '', report, kind)
+      call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', report, kind)
       amplitude%total_time = kind == 'TOTAL TIME'
       n = 0
       do j = card%first_data, card%last_data
@@ -98,7 +98,7 @@ contains
             if (.not. has_parameter(card, 'TYPE')) then
                call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE')
             end if
-            call choose(card, 'TYPE', 'TEMPERATURE', '', report, kind)
+            call choose(card, 'TYPE', 'TEMPERATURE', report, kind)
             if (kind /= 'TEMPERATURE') cycle
             do j = card%first_data, card%last_data
                valid = .true.

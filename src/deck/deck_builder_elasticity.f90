@@ -37,7 +37,7 @@ contains
 
       kind = 'ISO'
       call choose(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/'// &
-         'ANISOTROPIC', '', report, kind)
+         'ANISOTROPIC', report, kind)
       material%has_elasticity = .true.
       select case (kind)
       case ('ENGINEERING CONSTANTS')

@@ -31,7 +31,7 @@ contains
 
       kind = ''
       if (.not. has_parameter(card, 'TYPE')) call report%error(card%place, '*GAP LAW needs TYPE=')
-      call choose(card, 'TYPE', 'GAS/POWER/CLEARANCE', '', report, kind)
+      call choose(card, 'TYPE', 'GAS/POWER/CLEARANCE', report, kind)
       if (kind == '') return
       if (kind == 'POWER' .and. law%closed_kind /= law_none) then
          call report%error(card%place, 'a second closed law in one surface interaction')

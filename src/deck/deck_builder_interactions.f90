@@ -117,7 +117,7 @@ contains
             'PRESSURE-OVERCLOSURE='//kind// &
             ' is refused: tied faces do not open; let the bodies share nodes')
       case default
-         call choose(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD', '', report, kind)
+         call choose(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD', report, kind)
          call context%note('*SURFACE BEHAVIOR is read and not needed: contact is exact')
       end select
    end subroutine check_behavior

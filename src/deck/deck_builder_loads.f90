@@ -75,7 +75,7 @@ contains
       logical :: first
 
       operation = 'MOD'
-      call choose(card, 'OP', 'MOD/NEW', '', report, operation)
+      call choose(card, 'OP', 'MOD/NEW', report, operation)
       first = context%load_step(card%known) < step
       context%load_step(card%known) = step
       if (operation /= 'NEW' .or. step == 0) return

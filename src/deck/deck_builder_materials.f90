@@ -103,7 +103,7 @@ contains
       logical :: valid
 
       kind = 'ISO'
-      call choose(card, 'TYPE', 'ISO/ORTHO', '', report, kind)
+      call choose(card, 'TYPE', 'ISO/ORTHO', report, kind)
       material%has_expansion = .true.
       if (kind == 'ORTHO') then
          call read_constants(cards, card, names, context, report, material%expansion, valid)
@@ -129,7 +129,7 @@ contains
       logical :: valid
 
       kind = 'ISO'
-      call choose(card, 'TYPE', 'ISO/ORTHO', '', report, kind)
+      call choose(card, 'TYPE', 'ISO/ORTHO', report, kind)
       material%has_conductivity = .true.
       if (kind == 'ORTHO') then
          n = min(max(size(cards%data(card%first_data)%fields), 2), 3)

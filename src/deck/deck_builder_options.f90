@@ -59,7 +59,7 @@ contains
       character(:), allocatable :: plane
 
       plane = ''
-      call choose(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', '', report, plane)
+      call choose(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', report, plane)
       if (plane == 'STRAIN') context%plane = plane_strain
       if (plane == 'STRESS') context%plane = plane_stress
       if (plane == 'AXISYMMETRIC') context%plane = axisymmetric
@@ -104,7 +104,7 @@ contains
 
       kind = ''
       if (.not. has_parameter(card, 'TYPE')) call report%error(card%place, '*SOLVER needs TYPE=')
-      call choose(card, 'TYPE', 'SKYLINE/MUMPS', '', report, kind)
+      call choose(card, 'TYPE', 'SKYLINE/MUMPS', report, kind)
       if (kind == 'SKYLINE') model%solver = solver_skyline
       if (kind == 'MUMPS') model%solver = solver_mumps
    end subroutine build_solver

@@ -59,7 +59,7 @@ contains
       logical :: valid
 
       system = 'RECTANGULAR'
-      call choose(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', '', report, system)
+      call choose(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', report, system)
       valid = .true.
       associate (data => cards%data(card%first_data))
          call read_point(data, 1, 'a', report, a, valid)

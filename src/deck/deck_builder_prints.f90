@@ -46,12 +46,12 @@ contains
       choice = 'NO'
       if (card%name == 'NODE PRINT') then
          call take_set(card, 'NSET', 'node', mesh%node_sets, context, report, request%set)
-         call choose(card, 'TOTALS', 'YES/NO/ONLY', '', report, choice)
+         call choose(card, 'TOTALS', 'YES/NO/ONLY', report, choice)
          request%each_node = choice /= 'ONLY'
          request%totals = choice /= 'NO'
       else
          call take_set(card, 'ELSET', 'element', mesh%element_sets, context, report, request%set)
-         call choose(card, 'GLOBAL', 'YES/NO', '', report, choice)
+         call choose(card, 'GLOBAL', 'YES/NO', report, choice)
          request%local_axes = choice == 'NO'
       end if
       call read_frequency(card, report, request%frequency)

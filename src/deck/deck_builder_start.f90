@@ -25,7 +25,7 @@ contains
 
       from = ''
       if (.not. has_parameter(card, 'FROM')) call report%error(card%place, '*START needs FROM=')
-      call choose(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', '', report, from)
+      call choose(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', report, from)
       if (from == 'GIVEN') then
          call build_given(cards, card, model, report, start)
          return

@@ -117,7 +117,7 @@ contains
          call context%note('*STEP without INC=: '//to_text(step%max_increments)//' increments')
       end if
       course = 'RAMP'
-      call choose(card, 'AMPLITUDE', 'RAMP/STEP', '', report, course)
+      call choose(card, 'AMPLITUDE', 'RAMP/STEP', report, course)
       step%ramped = course == 'RAMP'
       step%field_frequency = before%field_frequency
       step%contact_print_frequency = before%contact_print_frequency

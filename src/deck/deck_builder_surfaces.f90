@@ -64,7 +64,7 @@ contains
 
       kind = 'ELEMENT'
       call need_parameter(card, 'NAME', report, surface%name)
-      call choose(card, 'TYPE', 'ELEMENT/NODE', '', report, kind)
+      call choose(card, 'TYPE', 'ELEMENT/NODE', report, kind)
       if (kind == 'NODE') then
          call report%error(parameter_place(card, 'TYPE'), 'TYPE=NODE is refused on *SURFACE: '// &
             'pairs need the areas and normals of faces; name elements and faces S1 to S4')

@@ -37,7 +37,7 @@ contains
             kind = ''
             if (.not. has_parameter(card, 'KIND')) call report%error(card%place, &
                '*VERIFY needs KIND=')
-            call choose(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', '', report, &
+            call choose(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', report, &
                kind)
             do j = card%first_data, card%last_data
                n = n + 1

@@ -5,7 +5,7 @@ module keyword_cards
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use keywords, only: find_keyword, find_parameter, keyword_names, known_keywords, &
-      known_parameter_type, later, not_needed, parameter_names, refusal, refused
+      known_parameter_type, not_needed, parameter_names, refusal, refused
    use text, only: edit_distance, likely_slip, nearest_known, nearest_name, string_type, to_upper
    implicit none
    private
@@ -13,7 +13,7 @@ module keyword_cards
 
 contains
 
-   !> Makes a keyword card of its fields, and reports what is unknown, refused or not built yet.
+   !> Makes a keyword card of its fields, and reports what is unknown or refused.
    subroutine make_keyword_card(fields, report, cards, card)
       type(field_type), intent(in) :: fields(:)         !! fields, the first with the star
       type(deck_report_type), intent(inout) :: report   !! receives errors
@@ -33,8 +33,6 @@ contains
       end if
       card%name = trim(known_keywords(card%known)%name)
       select case (known_keywords(card%known)%status)
-      case (later)
-         call report%error(card%place, '*'//card%name//' is not built yet')
       case (refused)
          call report%error(card%place, '*'//card%name//' is refused: '//refusal(card%name, ''))
       case default
@@ -143,8 +141,6 @@ contains
       else if (known%status == refused) then
          call report%error(field%place, known%name//' is refused on *'//card%name//': '// &
             refusal(card%name, known%name))
-      else if (known%status == later) then
-         call report%error(field%place, known%name//' on *'//card%name//' is not built yet')
       else if (known%needs_value .and. len(parameter%text) == 0) then
          call report%error(field%place, known%name//' needs a value')
       else if (.not. known%takes_value .and. equals <= len(field%text)) then

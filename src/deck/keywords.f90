@@ -1,18 +1,17 @@
-!> The keywords of the dialect: which are built, which come later, which are refused and why, where
-!> each may stand, and which parameters it takes.
+!> The keywords of the dialect: which are understood, which are refused and why, where each may
+!> stand, and which parameters it takes.
 module keywords
    use text, only: append, string_type, to_upper, without_blanks
    implicit none
    private
    public :: known_keyword_type, known_keywords, find_keyword, keyword_names
-   public :: built, not_needed, later, refused
+   public :: built, not_needed, refused
    public :: in_model, in_step, in_both
    public :: known_parameter_type, find_parameter, parameter_names, refusal
 
    integer, parameter :: built = 1        !! understood
    integer, parameter :: not_needed = 2   !! read, and means nothing to this program
-   integer, parameter :: later = 3        !! of the dialect, not built yet
-   integer, parameter :: refused = 4      !! will not be built; refusal gives the reason
+   integer, parameter :: refused = 3      !! will not be built; refusal gives the reason
 
    integer, parameter :: in_model = 1     !! stands before the first *STEP
    integer, parameter :: in_step = 2      !! stands between *STEP and *END STEP
@@ -21,11 +20,10 @@ module keywords
    integer, parameter :: many = huge(1)
 
    !> One keyword. Its parameters are separated by slashes; `=` marks one that needs a value and `?`
-   !> one that may have one; `~` stands before one that is not needed, `+` before one that is not
-   !> built yet, `!` before a refused one.
+   !> one that may have one; `~` stands before one that is not needed, `!` before a refused one.
    type :: known_keyword_type
       character(32) :: name          !! without the star
-      integer :: status              !! built, not_needed, later or refused
+      integer :: status              !! built, not_needed or refused
       integer :: section             !! in_model, in_step or in_both
       integer :: least_data          !! fewest data cards
       integer :: most_data           !! most data cards
@@ -35,7 +33,7 @@ module keywords
    !> One parameter of a keyword.
    type :: known_parameter_type
       character(:), allocatable :: name     !! its name
-      integer :: status = built             !! built, not_needed, later or refused
+      integer :: status = built             !! built, not_needed or refused
       logical :: needs_value = .false.      !! whether a value must follow
       logical :: takes_value = .false.      !! whether a value may follow
    end type known_parameter_type
@@ -243,8 +241,6 @@ contains
       select case (entry(1:1))
       case ('~')
          parameter%status = not_needed
-      case ('+')
-         parameter%status = later
       case ('!')
          parameter%status = refused
       case default
