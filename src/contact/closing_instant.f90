@@ -33,13 +33,14 @@ module closing_instant
    integer, parameter :: free_passes = 10 !! of these, with the pairs holding that are closed
    integer, parameter :: plain_passes = 60 !! of these, going all the way to the new laws
    real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
+   real(dp), parameter :: rounding = 1.0e-10_dp   !! the same where it does not come down to that
    !> Determinant of a pair's stiffness, over that of the pair alone on held bodies, that is none.
    real(dp), parameter :: nothing = 1.0e-12_dp
-   real(dp), parameter :: rounding = 1.0e-10_dp   !! the same where it does not come down to that
 
 contains
 
    !> Contact state at the end of an increment, with the references of the pairs that close in it.
+   !> The system has no laws of an earlier increment (drop_laws).
    !> Error: as solve_contact, or closing laws that do not settle.
    subroutine solve_increment(system, previous, load, state, error)
       type(contact_system_type), intent(inout) :: system  !! the reduced system
@@ -52,7 +53,6 @@ contains
       integer :: k, pass
 
       holds = .false.
-      call drop_laws(system, previous)
       do pass = 1, most_passes
          call solve_contact(system, load, state, error)
          if (allocated(error)) return
@@ -71,21 +71,6 @@ contains
       call set_error(error, status_no_convergence, &
          'the instants at which pairs close do not settle')
    end subroutine solve_increment
-
-   !> Drops the laws of an earlier increment.
-   pure subroutine drop_laws(system, previous)
-      type(contact_system_type), intent(inout) :: system
-      type(contact_state_type), intent(in) :: previous
-      integer :: k
-
-      do k = 1, size(system%closing)
-         if (.not. system%closing(k)%acts) cycle
-         if (previous%status(k) == status_open .and. &
-            abs(system%closing(k)%start - previous%tangential(k)) <= 0.0_dp) cycle
-         system%closing(k) = closing_law_type()
-         call system%forget_factors()
-      end do
-   end subroutine drop_laws
 
    !> Closing laws of the pairs that are closed now and were open at the start of the increment. A
    !> pair that has opened again keeps its law, on which nothing depends: without it the pair might
@@ -110,8 +95,7 @@ contains
          system%tangent > 0
       if (.not. any(closes)) return
       held = system
-      held%closing = closing_law_type()
-      call held%forget_factors()
+      call held%drop_laws()
       held_state = state
       held_state%status = merge(status_stick, status_open, holds)
       call held%factor_set(held_state, error)
@@ -182,10 +166,7 @@ contains
          if (.not. alone) compliance = reshape([stiffness(2, 2), -stiffness(2, 1), &
             -stiffness(1, 2), stiffness(1, 1)], [2, 2])/determinant
       end if
-      ! A pair that closes a ring has no stiffness of its own.
-      if (alone) compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, merge(held%give(k), &
-         1.0_dp/max(held%schur(places(2), places(2)), tiny(1.0_dp)), held%give(k) > 0.0_dp)], &
-         [2, 2])
+      if (alone) compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp/held%alone(k)], [2, 2])
    end subroutine find_compliance
 
    !> The closing law of one pair.

@@ -45,6 +45,7 @@ module contact_system
       real(dp), allocatable :: friction(:)        !! (m) mu [-]
       type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing pairs
       real(dp), allocatable :: give(:) !! (m) of stuck pairs, not zero in rings [length/force]
+      real(dp), allocatable :: alone(:) !! (m) normal stiffness of a pair alone [force/length]
       integer, allocatable :: link(:)             !! (links) places of the links' forces
       real(dp), allocatable :: motion(:, :) !! (tail, q) unsupported rigid motions, orthonormal
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
@@ -71,6 +72,7 @@ module contact_system
       procedure :: slip
       procedure :: factor_set
       procedure :: factor_rows
+      procedure :: drop_laws
       procedure :: forget_factors
    end type contact_system_type
 
@@ -117,15 +119,12 @@ contains
          d(self%tangent(k)) = merge(self%closing(k)%start, state%reference(k), self%closing(k)%acts)
       end do
       residual(:, 1) = load - matmul(self%schur, d)
+      call self%solve_free(residual, unbalanced)
+      d(self%free) = d(self%free) + residual(self%free, 1)
       if (size(self%loose, 2) > 0) then
-         call self%solve_free(residual, unbalanced)
-         d(self%free) = d(self%free) + residual(self%free, 1)
          call check_balance(self, load, d, unbalanced(:, 1), error)
          if (allocated(error)) return
          call move_least(self, state, d)
-      else
-         call self%solve_free(residual)
-         d(self%free) = d(self%free) + residual(self%free, 1)
       end if
       lambda = matmul(self%schur, d) - load
       call check_finite([d, lambda], 'displacements and forces of the contact', &
@@ -235,6 +234,15 @@ contains
       end associate
       call self%lu%factor(rows, singular)
    end subroutine factor_rows
+
+   !> Drops the closing laws, of an earlier increment or another start.
+   pure subroutine drop_laws(self)
+      class(contact_system_type), intent(inout) :: self  !! the reduced system
+
+      if (.not. any(self%closing%acts)) return
+      self%closing = closing_law_type()
+      call self%forget_factors()
+   end subroutine drop_laws
 
    !> Makes the next solution factor anew, because a closing law has changed.
    pure subroutine forget_factors(self)

@@ -13,10 +13,14 @@ module ring_links
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: ring_link_type, node_stiffness, add_links, link_entries, support_forces, ring_give
+   public :: ring_link_type, node_stiffness, stiffness_alone, ring_give
+   public :: add_links, link_entries, support_forces
 
    !> Part of the bodies' compliance at its nodes by which a stuck pair of a ring gives.
    real(dp), parameter :: ring_give = 1.0e-8_dp
+
+   !> Part of the bodies' stiffness at its nodes below which a pair's own is rounding.
+   real(dp), parameter :: held_by_others = 1.0e-6_dp
 
    !> One component of a link: its elongation is coefficient*unknowns + given(base(1)) -
    !> given(base(2)), a base of 0 counting as zero.
@@ -50,6 +54,19 @@ contains
       end do
       stiffness = minval(at_node)
    end function node_stiffness
+
+   !> Stiffness, or conductance, of a pair of a ring alone. That of the pair that closes the ring,
+   !> which only the others hold, is the bodies' at its nodes.
+   pure function stiffness_alone(own, matrix, nodes, components) result(stiffness)
+      real(dp), intent(in) :: own                         !! diagonal entry on the tail
+      type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) of the bodies
+      integer, intent(in) :: nodes(2)                     !! slave and master
+      integer, intent(in) :: components                   !! degrees of freedom of a node
+      real(dp) :: stiffness                               !! in the unit of the matrix
+
+      stiffness = node_stiffness(matrix, nodes, components)
+      if (own >= held_by_others*stiffness) stiffness = own
+   end function stiffness_alone
 
    !> Entries that the links have in the lower triangle.
    pure integer function link_entries(links)

@@ -5,10 +5,10 @@ module pair_reports
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric
    use errors, only: error_type
-   use pair_rows, only: pair_surfaces
    use kinds, only: dp
    use model, only: model_type
    use pair_rings, only: first_repeated
+   use pair_rows, only: pair_surfaces
    use pair_warnings, only: offset_warning, overlap_warning
    use text, only: to_text
    implicit none

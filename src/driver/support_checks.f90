@@ -3,10 +3,10 @@ module support_checks
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use increments, only: simulation_type
-   use pair_rows, only: over_constrained
    use loads, only: loads_type
    use loose_bodies, only: bodies_held_by_nothing, bodies_without_temperature
    use model, only: model_type
+   use pair_rows, only: over_constrained
    use steps, only: solves_heat, solves_mechanics
    use text, only: string_type, to_text
    implicit none

@@ -3,8 +3,8 @@
 module balances
    use contact_states, only: contact_state_type
    use controls, only: thermal_scheme_type
-   use pair_rows, only: pair_row_type
    use kinds, only: dp
+   use pair_rows, only: pair_row_type
    use records, only: status_open, status_slip, status_stick
    implicit none
    private

@@ -14,7 +14,7 @@ module contact_operator
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
    private
-   public :: increment_data_type, temperature_jumps, condensed_load, law_conductance, law_pressure
+   public :: increment_data_type, temperature_jumps, law_conductance, law_pressure
    public :: contact_operator_pass, kept_contact, residual_floor, thermal_forces
 
    !> What stays fixed while the iteration of an increment runs.
@@ -179,11 +179,11 @@ contains
       floor_value = 0.0_dp
       do k = 1, size(omega)
          if (omega(k) <= 0.0_dp .or. operators%pairs%weight(k) <= 0.0_dp) cycle
-         associate (weight => operators%pairs%weight(k), place => operators%contact%normal(k))
+         associate (weight => operators%pairs%weight(k))
             change = few*epsilon(1.0_dp)*max(data%displacement_scale, abs(state%gap(k)), &
                abs(operators%pairs%initial_gap(k) - state%gap(k)))
             if (state%status(k) /= status_open) then
-               change = change*operators%contact%schur(place, place)/weight
+               change = change*operators%contact%alone(k)/weight
             end if
             pressure = state%force(k)/weight
          end associate

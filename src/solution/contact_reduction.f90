@@ -5,7 +5,7 @@ module contact_reduction
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use pair_rows, only: pair_row_type
-   use ring_links, only: node_stiffness, ring_give
+   use ring_links, only: node_stiffness, ring_give, stiffness_alone
    implicit none
    private
    public :: contact_system_of
@@ -67,14 +67,18 @@ contains
       type(field_problem_type), intent(in) :: mechanical
       type(pair_row_type), intent(in) :: pairs
       type(contact_system_type), intent(inout) :: contact
-      integer :: k
+      integer :: k, nodes(2)
 
       associate (map => mechanical%map)
          contact%link = map%tail_index(map%links%force)
          allocate (contact%give(size(pairs%slave)), source=0.0_dp)
+         contact%alone = [(contact%schur(contact%normal(k), contact%normal(k)), &
+            k=1, size(pairs%slave))]
          do k = 1, size(pairs%slave)
-            if (map%in_ring(k)) contact%give(k) = ring_give/node_stiffness( &
-               mechanical%matrix, [pairs%slave(k), pairs%master(k)], 2)
+            if (.not. map%in_ring(k)) cycle
+            nodes = [pairs%slave(k), pairs%master(k)]
+            contact%give(k) = ring_give/node_stiffness(mechanical%matrix, nodes, 2)
+            contact%alone(k) = stiffness_alone(contact%alone(k), mechanical%matrix, nodes, 2)
          end do
       end associate
    end subroutine set_rings

@@ -83,8 +83,7 @@ contains
       before = size(record%iterations)
       turns = 0
       pass%image = pass%omega
-      operators%contact%closing = closing_law_type()
-      call operators%contact%forget_factors()
+      call operators%contact%drop_laws()
       call make_accelerator(controls, graph, accelerator)
       do i = 1, size(passes)
          good = next%contact

@@ -4,7 +4,6 @@ module increment_solution
    use closing_instant, only: solve_increment
    use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
       law_conductance, temperature_jumps, thermal_forces
-   use contact_states, only: closing_law_type
    use errors, only: error_type, status_no_convergence
    use films, only: film_history
    use finite_values, only: check_finite
@@ -61,8 +60,7 @@ contains
       end if
       data%displacement_scale = maxval(abs(previous%displacement))
       next%contact%reference = previous%contact%tangential
-      operators%contact%closing = closing_law_type()
-      call operators%contact%forget_factors()
+      call operators%contact%drop_laws()
       if (.not. solves_heat(step%analysis)) call give_temperatures(operators, loads, previous, next)
       call load_mechanics(operators, loads, model, data, next)
       call check_finite([operators%mechanical%rhs(:, 1), data%welded_load], 'forces', &

@@ -6,8 +6,8 @@ module interface_operators
    use contact_pairs, only: contact_pairs_type
    use contact_reduction, only: contact_system_of
    use contact_system, only: contact_system_type
-   use equation_numbering, only: make_map
    use element_kinds, only: element_node_count
+   use equation_numbering, only: make_map
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
@@ -15,7 +15,7 @@ module interface_operators
    use model, only: model_type
    use pair_rows, only: align_frames, pair_row_type, pair_surfaces, row_of
    use rigid_motions, only: unsupported_motions
-   use ring_links, only: node_stiffness
+   use ring_links, only: stiffness_alone
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
@@ -23,7 +23,6 @@ module interface_operators
    private
    public :: interface_operators_type
 
-   real(dp), parameter :: held_by_others = 1.0e-6_dp !! part of a conductance that is rounding
    real(dp), parameter :: rounding = 1.0e-15_dp  !! of coordinates, in the extent of the model
    real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
@@ -277,10 +276,8 @@ contains
          if (self%jump_place(k) == 0) cycle
          conductance(k) = schur(self%jump_place(k), self%jump_place(k))
          if (.not. self%thermal%map%in_ring(k)) cycle
-         associate (at_nodes => node_stiffness(self%thermal%matrix, [self%pairs%slave(k), &
-            self%pairs%master(k)], 1))
-            if (conductance(k) < held_by_others*at_nodes) conductance(k) = at_nodes
-         end associate
+         conductance(k) = stiffness_alone(conductance(k), self%thermal%matrix, &
+            [self%pairs%slave(k), self%pairs%master(k)], 1)
       end do
    end function conductors
 

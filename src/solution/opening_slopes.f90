@@ -40,8 +40,7 @@ contains
       weight = operators%pairs%weight
       where (weight <= 0.0_dp) weight = maxval(weight)
       do k = 1, size(weight)
-         stiffness(k) = operators%contact%schur(operators%contact%normal(k), &
-            operators%contact%normal(k))
+         stiffness(k) = operators%contact%alone(k)
          graph(k)%law = operators%pairs%law(k)
       end do
       stiffness = max(stiffness, least_stiffness*maxval(stiffness))

@@ -41,7 +41,7 @@ contains
       scales%length = max(data%displacement_scale, maxval(abs(data%previous%gap)))
       do k = 1, size(operators%contact%normal)
          associate (place => operators%contact%normal(k))
-            stiffness = operators%contact%schur(place, place)
+            stiffness = operators%contact%alone(k)
             if (stiffness > 0.0_dp) scales%length = max(scales%length, &
                abs(data%welded_load(place))/stiffness)
          end associate

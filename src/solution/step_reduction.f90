@@ -5,11 +5,11 @@ module step_reduction
    use errors, only: error_type
    use films, only: left_films
    use interface_operators, only: interface_operators_type
-   use pair_rows, only: pair_row_type
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
    use loads, only: loads_type
    use model, only: model_type
+   use pair_rows, only: pair_row_type
    use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
