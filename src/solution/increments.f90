@@ -209,6 +209,7 @@ contains
          next%heat_load = self%loads%heat_load()
          next%film = self%loads%film_matrix()
       end if
+      next%force_load = self%loads%nodal_forces()
       associate (step => model%steps(self%control%step), operators => self%operators)
          if (solves_heat(step%analysis)) then
             call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, &

@@ -9,12 +9,27 @@ module records
    public :: increment_record_type, contact_record_type, iteration_record_type
    public :: field_record_type, work_record_type, attempt_record_type
    public :: add_attempts, note_failure
+   public :: interface_errors_type, estimated_quantities, estimated_names
    public :: status_open, status_slip, status_stick, edges_kept
 
    integer, parameter :: status_open = 0    !! gap, zone I
    integer, parameter :: status_slip = 1    !! closed, slipping or frictionless, zone II
    integer, parameter :: status_stick = 2   !! closed and stuck, zone III
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
+
+   integer, parameter :: estimated_quantities = 6   !! quantities with an estimated error
+   character(13), parameter :: estimated_names(estimated_quantities) = [character(13) :: &
+      'normal_force', 'shear_force', 'heat_rate', 'peak_pressure', 'edge_contact', &
+      'edge_stick']   !! in the order of interface_errors_type
+
+   !> Estimated errors of an interface, each as what would have to be added; NaN where there is
+   !> none.
+   type :: interface_errors_type
+      real(dp) :: value(estimated_quantities)            !! the quantities as computed
+      real(dp) :: discretisation(estimated_quantities)   !! of the mesh
+      real(dp) :: increment(estimated_quantities)        !! of the size of the increments
+      real(dp) :: iteration(estimated_quantities)        !! of the fixed point; a bound
+   end type interface_errors_type
 
    !> State of one contact interface; arrays over its pairs, in the order of contact_pairs_type.
    type :: contact_record_type
@@ -122,6 +137,8 @@ module records
       !> Passes of all attempts in their order; unallocated without coupling.
       type(iteration_record_type), allocatable :: iterations(:)
       type(field_record_type) :: fields                         !! fields
+      !> (interfaces) at the end of a step; else unallocated
+      type(interface_errors_type), allocatable :: errors(:)
       !> One an *EL PRINT of the step; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work                            !! re-factorisation
