@@ -85,7 +85,7 @@ contains
       first = huge(first)
       do i = context%boundaries%count, 1, -1
          associate (request => context%boundaries%items(i))
-            first(min(request%component, 3), nodes_of(request, model)) = request%step
+            first(min(request%component, 3), nodes_of(request, model)) = max(1, request%step)
          end associate
       end do
       card = 0
@@ -94,8 +94,8 @@ contains
             nodes = nodes_of(request, model)
             if (.not. all(context%dropped(nodes)) .or. request%card == card) cycle
             do j = 1, size(nodes)
-               if (all(first(min(request%component, 3), corners(:, nodes(j))) <= request%step)) &
-                  cycle
+               if (all(first(min(request%component, 3), corners(:, nodes(j))) <= &
+                  max(1, request%step))) cycle
                card = request%card
                call report%error(request%place, 'ORDER=1 drops midside node '// &
                   to_text(model%mesh%node_number(nodes(j)))//' and what is prescribed there; '// &
