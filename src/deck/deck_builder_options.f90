@@ -20,7 +20,7 @@ contains
    !> Takes *HEADING, *OPTIONS, *SOLVER and *REFINE.
    subroutine build_options(cards, context, model, report)
       type(cards_type), intent(in) :: cards                !! the cards
-      type(deck_context_type), intent(inout) :: context    !! receives plane, order, levels, load axis
+      type(deck_context_type), intent(inout) :: context    !! receives plane, order, levels, axis
       type(model_type), intent(inout) :: model             !! receives heading, units, solver
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k

@@ -1,6 +1,6 @@
 !> A model on the same mesh with elements of first order: elements lose their midside nodes, and
-!> the model the nodes that only were such. A force or heat on one of these goes half and half to the
-!> corners of its side, as the shape functions of the side without it have it.
+!> the model the nodes that only were such. A force or heat on one of these goes half and half to
+!> the corners of its side, as the shape functions of the side without it have it.
 module order_reduction
    use element_kinds, only: element_corner_count, linear_kind, side_node_count, side_nodes
    use kinds, only: dp
@@ -14,8 +14,8 @@ module order_reduction
 
 contains
 
-   !> Makes all elements of a model linear ones; its bodies must be found anew afterwards. Refinement
-   !> comes before it, so that new corners lie on the curved sides of the deck.
+   !> Makes all elements of a model linear ones; its bodies must be found anew afterwards.
+   !> Refinement comes before it, so that new corners lie on the curved sides of the deck.
    pure subroutine reduce_order(model)
       type(model_type), intent(inout) :: model   !! model with a conforming mesh
       integer :: corners(2, size(model%mesh%node_number))
