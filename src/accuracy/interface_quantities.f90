@@ -1,5 +1,6 @@
 !> The global quantities of an interface whose errors are estimated.
 module interface_quantities
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use axis_limits, only: tractions
    use contact_pairs, only: contact_pairs_type
    use kinds, only: dp
@@ -7,7 +8,12 @@ module interface_quantities
    use zone_edges, only: contact_edges, stick_edges
    implicit none
    private
-   public :: quantities_of
+   public :: quantities_of, edge_resolution
+
+   !> How far edges of zones are known on a mesh, in spacings of the pairs about them: nine tenths of
+   !> those of the published cylinder are no further from the converged edges (docs/accuracy.md).
+   real(dp), parameter :: known_contact_edge = 0.2_dp
+   real(dp), parameter :: known_stick_edge = 0.6_dp
 
 contains
 
@@ -35,5 +41,30 @@ contains
       call stick_edges(pairs%arc_length, pairs%weight, status, pressure, shear, gap, friction, &
          edges, values(6))
    end function quantities_of
+
+   !> How far the edges among the quantities are known from the spacing of the pairs; 0 for the others
+   !> and for zones that end with the interface.
+   pure function edge_resolution(pairs, values) result(resolution)
+      type(contact_pairs_type), intent(in) :: pairs   !! the pairs of the interface
+      real(dp), intent(in) :: values(:)               !! as quantities_of gave them
+      real(dp) :: resolution(size(values))
+
+      resolution = 0.0_dp
+      resolution(5) = known_contact_edge*spacing_at(pairs%arc_length, values(5))
+      resolution(6) = known_stick_edge*spacing_at(pairs%arc_length, values(6))
+   end function edge_resolution
+
+   !> Distance of the pairs on both sides of a place; 0 at or beyond the last pair.
+   pure function spacing_at(s, place) result(spacing)
+      real(dp), intent(in) :: s(:), place
+      real(dp) :: spacing
+      integer :: k
+
+      spacing = 0.0_dp
+      if (ieee_is_nan(place)) return
+      do k = 1, size(s) - 1
+         if (place >= s(k) .and. place < s(k + 1)) spacing = s(k + 1) - s(k)
+      end do
+   end function spacing_at
 
 end module interface_quantities

@@ -41,7 +41,6 @@ module refined_model
       procedure :: prolong_pairs
       procedure :: restrict
       procedure :: prolong_set
-      procedure :: largest_stiffness
       procedure :: conduction_with
    end type refined_model_type
 
@@ -175,23 +174,6 @@ contains
             member(c::components))
       end do
    end function prolong_set
-
-   !> Largest entry of the bodies' stiffness on the diagonal of a pair's nodes.
-   pure function largest_stiffness(self, k) result(largest)
-      class(refined_model_type), intent(in) :: self   !! the refined model, assembled
-      integer, intent(in) :: k                        !! the pair
-      real(dp) :: largest                             !! [force/length]
-      integer :: dof(4), i, j
-
-      associate (s => 2*self%pairs%slave(k), m => 2*self%pairs%master(k), a => self%stiffness)
-         dof = [s - 1, s, m - 1, m]
-         largest = 0.0_dp
-         do i = 1, 4
-            j = a%row_start(dof(i))
-            largest = max(largest, maxval(abs(a%value(j:a%row_start(dof(i) + 1) - 1))))
-         end do
-      end associate
-   end function largest_stiffness
 
    !> Conduction of the bodies and their films.
    pure function conduction_with(self, film) result(matrix)

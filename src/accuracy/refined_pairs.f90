@@ -1,4 +1,4 @@
-!> What happens on the pairs that a division of the elements adds: springs that close or stick them,
+!> What happens on the pairs that a division of the elements adds: what keeps them closed or stuck,
 !> and the states that follow from their forces and gaps.
 module refined_pairs
    use conductance_laws, only: conductance
@@ -7,14 +7,10 @@ module refined_pairs
    use pair_rows, only: pair_row_type
    use records, only: status_open, status_slip, status_stick
    use refined_model, only: refined_model_type
-   use spring_relaxation, only: spring_type
+   use linked_relaxation, only: joint_type
    implicit none
    private
    public :: refined_pairs_type
-
-   !> Stiffness of a closed pair, in that of the bodies at its nodes: its gap is then left open by a
-   !> ten-thousandth of what the bodies would give, far less than an estimate shows.
-   real(dp), parameter :: stiff = 1.0e4_dp
 
    !> State of all pairs of a refined model; those of old ones are taken from the old mesh.
    type :: refined_pairs_type
@@ -27,9 +23,9 @@ module refined_pairs
    contains
       procedure :: begin
       procedure :: take_old
-      procedure :: mechanical_springs
+      procedure :: mechanical_joints
       procedure :: slip_forces
-      procedure :: conducting_springs
+      procedure :: conducting_joints
       procedure :: update
       procedure :: conduct
       procedure :: heat
@@ -76,8 +72,6 @@ contains
             self%force(k) = contact%force(old) + dot_product(on_slave, pairs%normal(:, k))
             self%shear_force(k) = contact%shear_force(old) - &
                dot_product(on_slave, pairs%tangent(:, k))
-            if (self%status(k) == status_open) self%force(k) = 0.0_dp
-            if (self%status(k) == status_open) self%shear_force(k) = 0.0_dp
          end associate
       end do
    end subroutine take_old
@@ -117,94 +111,77 @@ contains
       end do
    end function slip_forces
 
-   !> Springs that close the closed new pairs, and hold the stuck ones where the old mesh has them.
-   pure function mechanical_springs(self, refined, displacement) result(springs)
-      class(refined_pairs_type), intent(in) :: self          !! the pairs
+   !> Joints that keep the closed new pairs closed, and the stuck ones where the old mesh has them.
+   pure function mechanical_joints(self, refined, displacement) result(joints)
+      class(refined_pairs_type), intent(in) :: self      !! the pairs
       type(refined_model_type), intent(in) :: refined    !! the refined model
       real(dp), intent(in) :: displacement(:) !! (2 nodes) field of the old mesh [length]
-      type(spring_type), allocatable :: springs(:)
-      real(dp) :: relative(2), stiffness
-      integer :: dof(4), k, n, of_pair
-
-      allocate (springs(count(self%status /= status_open .and. refined%old_pair == 0) + &
-         count(self%status == status_stick .and. refined%pairs%friction > 0.0_dp .and. &
-         refined%old_pair == 0)))
-      n = 0
-      do k = 1, size(self%status)
-         if (self%status(k) == status_open .or. refined%old_pair(k) > 0) cycle
-         associate (pairs => refined%pairs, s => 2*refined%pairs%slave(k), &
-            m => 2*refined%pairs%master(k))
-            dof = [s - 1, s, m - 1, m]
-            of_pair = merge(2, 1, self%status(k) == status_stick .and. pairs%friction(k) > 0.0_dp)
-            relative = displacement(s - 1:s) - displacement(m - 1:m)
-            n = n + 1
-            stiffness = stiff*refined%largest_stiffness(k)
-            call set_spring(springs(n), dof, pairs%normal(:, k), stiffness, &
-               pairs%initial_gap(k))
-            if (of_pair == 1) cycle
-            n = n + 1
-            call set_spring(springs(n), dof, pairs%tangent(:, k), stiffness, &
-               dot_product(pairs%tangent(:, k), relative))
-         end associate
-      end do
-   end function mechanical_springs
-
-   pure subroutine set_spring(spring, dof, along, stiffness, rest)
-      type(spring_type), intent(inout) :: spring
-      integer, intent(in) :: dof(4)
-      real(dp), intent(in) :: along(2), stiffness, rest
-
-      spring%dof = dof
-      spring%direction = [along, -along]
-      spring%stiffness = stiffness
-      spring%rest = rest
-   end subroutine set_spring
-
-   !> Conductances of the new pairs as springs between their temperatures.
-   pure function conducting_springs(self, refined) result(springs)
-      class(refined_pairs_type), intent(in) :: self          !! the pairs
-      type(refined_model_type), intent(in) :: refined    !! the refined model
-      type(spring_type), allocatable :: springs(:)
-      integer :: k
-
-      allocate (springs(size(self%omega)))
-      do k = 1, size(springs)
-         springs(k)%dof = [refined%pairs%slave(k), refined%pairs%master(k)]
-         springs(k)%direction = [1.0_dp, -1.0_dp]
-         springs(k)%stiffness = self%omega(k)*refined%pairs%weight(k)
-      end do
-   end function conducting_springs
-
-   !> Forces and gaps from displacements that the springs gave, and the states of the new pairs that
-   !> follow: a pair in tension opens, one that overlaps closes.
-   subroutine update(self, refined, springs, displacement)
-      class(refined_pairs_type), intent(inout) :: self       !! the pairs
-      type(refined_model_type), intent(in) :: refined        !! the refined model
-      type(spring_type), intent(in) :: springs(:)            !! as mechanical_springs gave them
-      real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
+      type(joint_type), allocatable :: joints(:)
       real(dp) :: relative(2)
       integer :: k, n
 
+      allocate (joints(count(self%status /= status_open .and. refined%old_pair == 0)))
       n = 0
+      do k = 1, size(self%status)
+         if (self%status(k) == status_open .or. refined%old_pair(k) > 0) cycle
+         n = n + 1
+         associate (pairs => refined%pairs, s => 2*refined%pairs%slave(k), &
+            m => 2*refined%pairs%master(k), joint => joints(n))
+            joint%dof = [s - 1, s, m - 1, m]
+            joint%is_rigid = .true.
+            joint%direction = reshape([pairs%normal(:, k), -pairs%normal(:, k)], [4, 1])
+            joint%rest = [pairs%initial_gap(k)]
+            if (self%status(k) == status_slip) cycle
+            relative = displacement(s - 1:s) - displacement(m - 1:m)
+            joint%direction = reshape([joint%direction, pairs%tangent(:, k), &
+               -pairs%tangent(:, k)], [4, 2])
+            joint%rest = [joint%rest, dot_product(pairs%tangent(:, k), relative)]
+         end associate
+      end do
+   end function mechanical_joints
+
+   !> Conductances of all pairs as springs between their temperatures.
+   pure function conducting_joints(self, refined) result(joints)
+      class(refined_pairs_type), intent(in) :: self      !! the pairs
+      type(refined_model_type), intent(in) :: refined    !! the refined model
+      type(joint_type), allocatable :: joints(:)
+      integer :: k
+
+      allocate (joints(size(self%omega)))
+      do k = 1, size(joints)
+         joints(k)%dof = [refined%pairs%slave(k), refined%pairs%master(k)]
+         joints(k)%direction = reshape([1.0_dp, -1.0_dp], [2, 1])
+         joints(k)%rest = [0.0_dp]
+         joints(k)%stiffness = self%omega(k)*refined%pairs%weight(k)
+      end do
+   end function conducting_joints
+
+   !> Forces and gaps of the new pairs from the displacements that their joints gave, and the states
+   !> that follow: a pair in tension opens, one that overlaps closes.
+   subroutine update(self, refined, displacement, load)
+      class(refined_pairs_type), intent(inout) :: self       !! the pairs
+      type(refined_model_type), intent(in) :: refined        !! the refined model
+      real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
+      real(dp), intent(in) :: load(:) !! (2 nodes) forces that the pairs must hold [force]
+      real(dp) :: relative(2), on_slave(2)
+      integer :: k
+
       do k = 1, size(self%status)
          if (refined%old_pair(k) > 0) cycle
          associate (pairs => refined%pairs, s => 2*refined%pairs%slave(k), &
             m => 2*refined%pairs%master(k))
-            relative = displacement(s - 1:s) - displacement(m - 1:m)
             if (self%status(k) == status_open) then
+               relative = displacement(s - 1:s) - displacement(m - 1:m)
                self%gap(k) = pairs%initial_gap(k) - dot_product(pairs%normal(:, k), relative)
                self%force(k) = 0.0_dp
                self%shear_force(k) = 0.0_dp
             else
-               n = n + 1
+               on_slave = 0.5_dp*(load(m - 1:m) - load(s - 1:s))
                self%gap(k) = 0.0_dp
-               self%force(k) = spring_force(springs(n), displacement)
-               if (self%status(k) == status_stick .and. pairs%friction(k) > 0.0_dp) then
-                  n = n + 1
-                  self%shear_force(k) = -spring_force(springs(n), displacement)
-               else
-                  self%shear_force(k) = self%direction(k)*pairs%friction(k)*self%force(k)
-               end if
+               self%force(k) = -dot_product(pairs%normal(:, k), on_slave)
+               self%shear_force(k) = dot_product(pairs%tangent(:, k), on_slave)
+               if (self%status(k) == status_slip) self%shear_force(k) = &
+                  self%direction(k)*pairs%friction(k)*self%force(k)
             end if
             call next_state(self, k, pairs%friction(k))
          end associate
@@ -232,13 +209,6 @@ contains
       self%force(k) = 0.0_dp
       self%shear_force(k) = 0.0_dp
    end subroutine next_state
-
-   pure real(dp) function spring_force(spring, x)
-      type(spring_type), intent(in) :: spring
-      real(dp), intent(in) :: x(:)
-
-      spring_force = spring%stiffness*(dot_product(spring%direction, x(spring%dof)) - spring%rest)
-   end function spring_force
 
    !> Conductances by the laws, with the pressures that the forces give; a pair that rests on the
    !> old mesh keeps the value found there.

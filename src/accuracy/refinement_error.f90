@@ -15,22 +15,22 @@ module refinement_error
    use interface_operators, only: interface_operators_type
    use interface_quantities, only: quantities_of
    use kinds, only: dp
+   use linked_relaxation, only: joint_type, relax
    use load_courses, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
    use refined_pairs, only: refined_pairs_type
-   use records, only: increment_record_type
+   use records, only: increment_record_type, status_open
    use refined_model, only: refined_model_type
    use solution_state, only: solution_state_type
-   use spring_relaxation, only: relax, spring_type
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: solves_heat, solves_mechanics, step_type
    implicit none
    private
    public :: find_refined_quantities
 
-   integer, parameter :: corrections = 5            !! solutions of the increment
-   integer, parameter :: smoothing_steps = 16        !! steps of conjugate gradients before each
+   integer, parameter :: corrections = 4            !! solutions of the increment
+   integer, parameter :: smoothing_steps = 12        !! steps of conjugate gradients before each
    real(dp), parameter :: tolerance = 1.0e-6_dp     !! of the fixed point; errors are far larger
 
    !> The fields of both meshes as they are corrected.
@@ -86,8 +86,6 @@ contains
          before%omega_before = fields%coarse%omega
          call correct(refined, operators, loads, model, estimate_step, before, next, fields, error)
          if (allocated(error)) return
-         print '(a,i3,9es15.7)', 'F', k, sum(fields%coarse%contact%force), sum(fields%pairs%force), &
- maxval(fields%pairs%force/refined%pairs%weight)
       end do
       call smooth(refined, loads, estimate_step, fields)
       call measure(refined, fields, values)
@@ -99,24 +97,27 @@ contains
       type(loads_type), intent(in) :: loads
       type(step_type), intent(in) :: step
       type(corrected_type), intent(inout) :: fields
-      type(spring_type), allocatable :: springs(:)
+      type(joint_type), allocatable :: joints(:)
+      real(dp), allocatable :: load(:)
       type(sparse_matrix_type) :: conduction
 
       associate (pairs => fields%pairs, u => fields%displacement, t => fields%temperature)
          call pairs%take_old(refined, fields%coarse%contact)
          if (solves_mechanics(step%analysis)) then
-            springs = pairs%mechanical_springs(refined, &
-               refined%prolong(fields%coarse%displacement, 2))
-            call relax(refined%stiffness, springs, mechanical_load(refined, fields) + &
-               pairs%slip_forces(refined), .not. (refined%prolong_set(loads%displacement%active, &
-               2) .or. refined%at_old_pair), smoothing_steps, u)
-            call pairs%update(refined, springs, u)
+            joints = pairs%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, &
+               2))
+            load = mechanical_load(refined, fields)
+            call relax(refined%stiffness, joints, load + pairs%slip_forces(refined), .not. &
+               (refined%prolong_set(loads%displacement%active, 2) .or. refined%at_old_pair), &
+               smoothing_steps, u)
+            call pairs%update(refined, u, load - refined%stiffness%multiply(u))
             call pairs%take_old(refined, fields%coarse%contact)
          end if
          if (solves_heat(step%analysis)) then
             call pairs%conduct(refined, fields%coarse%omega, fields%coarse%resting)
             conduction = refined%conduction_with(refined%loads%film_matrix())
-            call relax(conduction, pairs%conducting_springs(refined), refined%loads%heat_load(), &
+            joints = pairs%conducting_joints(refined)
+            call relax(conduction, joints, refined%loads%heat_load(), &
                .not. refined%prolong_set(loads%temperature%active, 1), smoothing_steps, t)
          end if
       end associate
@@ -213,6 +214,7 @@ contains
       type(corrected_type), intent(in) :: fields
       real(dp), intent(out) :: values(:, :)
       real(dp) :: rates(size(refined%old_pair))
+      logical, allocatable :: closed(:)
       integer :: first, i, last
 
       rates = fields%pairs%heat(refined%pairs, fields%temperature)
@@ -220,9 +222,14 @@ contains
          do i = 1, size(refined%interfaces)
             first = refined%pairs%interface_start(i)
             last = refined%pairs%interface_start(i + 1) - 1
+            closed = pairs%status(first:last) /= status_open
             values(:, i) = quantities_of(refined%interfaces(i), refined%pairs%friction(first), &
                pairs%status(first:last), max(pairs%gap(first:last), 0.0_dp), &
-               pairs%force(first:last), pairs%shear_force(first:last), rates(first:last))
+               merge(pairs%force(first:last), 0.0_dp, closed), &
+               merge(pairs%shear_force(first:last), 0.0_dp, closed), rates(first:last))
+            ! What the old mesh takes for forces of open pairs is held up by the new ones about them.
+            values(1, i) = sum(pairs%force(first:last))
+            values(2, i) = sum(pairs%shear_force(first:last))
          end do
       end associate
    end subroutine measure

@@ -86,8 +86,7 @@ contains
          call output%start(command%folder//'/'//base_name(path), model, pairs, points%node, &
             points%element_points, cards%images, command%quiet, error)
          if (allocated(error)) return
-         call estimator%start(model, simulation, error)
-         if (allocated(error)) return
+         call estimator%start(model, simulation)
          do while (.not. simulation%finished(model))
             call check_signals(simulation%control, error)
             if (allocated(error)) then
@@ -104,17 +103,6 @@ contains
             output%run%smallest_pivot = simulation%sizes%smallest_pivot
             if (allocated(error)) exit
             call estimator%end_increment(model, simulation, record)
-            if (allocated(record%errors)) then
-               block
-                  integer :: q, ii
-                  do ii = 1, size(record%errors)
-                  do q = 1, 6
-                     write (error_unit, '(a,i3,1x,i2,4es16.7)') 'EST', ii, q, record%errors(ii)%value(q), &
-                        record%errors(ii)%discretisation(q), record%errors(ii)%increment(q), record%errors(ii)%iteration(q)
-                  end do
-                  end do
-               end block
-            end if
             call output%accept(record, model, pairs, error)
             if (allocated(error)) return
          end do

@@ -9,7 +9,7 @@ module records
    public :: increment_record_type, contact_record_type, iteration_record_type
    public :: field_record_type, work_record_type, attempt_record_type
    public :: add_attempts, note_failure
-   public :: interface_errors_type, estimated_quantities, estimated_names
+   public :: interface_errors_type, estimated_quantities, estimated_names, is_band
    public :: status_open, status_slip, status_stick, edges_kept
 
    integer, parameter :: status_open = 0    !! gap, zone I
@@ -21,14 +21,18 @@ module records
    character(13), parameter :: estimated_names(estimated_quantities) = [character(13) :: &
       'normal_force', 'shear_force', 'heat_rate', 'peak_pressure', 'edge_contact', &
       'edge_stick']   !! in the order of interface_errors_type
+   logical, parameter :: is_band(estimated_quantities) = [.false., .false., .false., .false., &
+      .true., .true.]   !! whether its errors are bands to both sides
 
-   !> Estimated errors of an interface, each as what would have to be added; NaN where there is
-   !> none.
+   !> Errors of an interface, as estimated: what would have to be added to the quantities, and of
+   !> edges how far they may be off either way. NaN where nothing can be said.
    type :: interface_errors_type
-      real(dp) :: value(estimated_quantities)            !! the quantities as computed
-      real(dp) :: discretisation(estimated_quantities)   !! of the mesh
-      real(dp) :: increment(estimated_quantities)        !! of the size of the increments
-      real(dp) :: iteration(estimated_quantities)        !! of the fixed point; a bound
+      real(dp) :: value(estimated_quantities)       !! the quantities as computed
+      real(dp) :: mesh(estimated_quantities)        !! error of the mesh
+      real(dp) :: increment(estimated_quantities)   !! error of the size of the increments
+      real(dp) :: iteration(estimated_quantities)   !! largest error of the fixed point, >= 0
+   contains
+      procedure :: total => total_error
    end type interface_errors_type
 
    !> State of one contact interface; arrays over its pairs, in the order of contact_pairs_type.
@@ -147,6 +151,16 @@ module records
    end type increment_record_type
 
 contains
+
+   !> All errors together; those of the iteration count with the sign of the others.
+   pure function total_error(self) result(total)
+      class(interface_errors_type), intent(in) :: self   !! errors of an interface
+      real(dp) :: total(estimated_quantities)            !! as the errors of the mesh
+
+      total = self%mesh + self%increment
+      where (is_band) total = abs(self%mesh) + abs(self%increment)
+      total = total + sign(self%iteration, total)
+   end function total_error
 
    !> Puts the attempts at an increment that failed, with their passes and their work, before those
    !> of the last one.

@@ -1,0 +1,89 @@
+!> The estimated errors at the end of a step in the listing: those of the mesh, of the increments and
+!> of the iteration beside each other.
+module listing_errors
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use kinds, only: dp
+   use listing_text, only: column
+   use records, only: estimated_names, estimated_quantities, interface_errors_type, is_band
+   implicit none
+   private
+   public :: print_errors
+
+   character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'increments', &
+      'iteration']
+
+contains
+
+   !> Prints the errors of an interface. What has no value, or no part in the deck, is left out.
+   subroutine print_errors(unit, name, errors)
+      integer, intent(in) :: unit                          !! unit of the listing
+      character(*), intent(in) :: name                     !! name of the interface
+      type(interface_errors_type), intent(in) :: errors    !! its errors
+      real(dp) :: total(estimated_quantities)
+      integer :: q
+
+      total = errors%total()
+      write (unit, '(/, 3a)') '   ESTIMATED ERRORS OF ', name, &
+         ': what is missing to the exact value (+-: to either side)'
+      write (unit, '(3x, a14, a14, a13, 2a14, a12, a11, a14)') '', 'value', 'mesh', 'increments', &
+         'iteration', 'together', '%', 'largest part'
+      do q = 1, estimated_quantities
+         associate (value => errors%value(q))
+            if (ieee_is_nan(value)) cycle
+            if (abs(value) <= 0.0_dp .and. ieee_is_nan(total(q))) cycle
+            if (abs(value) <= 0.0_dp .and. .not. abs(total(q)) > 0.0_dp) cycle
+            write (unit, '(3x, a14, a14, a3, a10, a14, a14, a12, a11, a14)') spaced( &
+               estimated_names(q)), column(value, 14, 6), merge(' +-', '   ', is_band(q)), &
+               shown(errors%mesh(q), 10), shown(errors%increment(q), 14), &
+               shown(errors%iteration(q), 14), shown(total(q), 12), percent(total(q), value), &
+               largest_part(errors, q)
+         end associate
+      end do
+   end subroutine print_errors
+
+   !> A name with blanks for its underlines.
+   pure function spaced(name) result(words)
+      character(*), intent(in) :: name
+      character(len(name)) :: words
+      integer :: i
+
+      words = name
+      do i = 1, len(name)
+         if (name(i:i) == '_') words(i:i) = ' '
+      end do
+   end function spaced
+
+   function shown(value, width) result(string)
+      real(dp), intent(in) :: value
+      integer, intent(in) :: width
+      character(width) :: string
+
+      string = repeat(' ', width - 1)//'-'
+      if (.not. ieee_is_nan(value)) string = column(value, width, 2)
+   end function shown
+
+   function percent(error, value) result(string)
+      real(dp), intent(in) :: error, value
+      character(11) :: string
+
+      string = repeat(' ', 10)//'-'
+      if (ieee_is_nan(error) .or. abs(value) <= 0.0_dp) return
+      string = column(100.0_dp*error/abs(value), 11, 2)
+   end function percent
+
+   !> Which error is the largest.
+   pure function largest_part(errors, q) result(name)
+      type(interface_errors_type), intent(in) :: errors
+      integer, intent(in) :: q
+      character(10) :: name
+      real(dp) :: parts(3)
+      integer :: k
+
+      parts = [errors%mesh(q), errors%increment(q), errors%iteration(q)]
+      name = ''
+      if (any(ieee_is_nan(parts))) return
+      k = maxloc(abs(parts), dim=1)
+      if (abs(parts(k)) > 0.0_dp) name = kinds_of_error(k)
+   end function largest_part
+
+end module listing_errors
