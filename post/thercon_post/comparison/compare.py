@@ -38,9 +38,13 @@ def compare(a, b, options):
             if not shared or first.history != second.history:
                 continue
             work = history_blocks if first.history else frame_blocks
-            blocks += work(first, second, shared, a.states | b.states, options)
-            met |= {name for name, _ in shared}
-    check_overlap(a, b, names, blocks, options)
+            found = work(first, second, shared, a.states | b.states, options)
+            if found is not None:
+                blocks += found
+                met |= {name for name, _ in shared}
+    check_overlap(a, b, [name for name in names if name in met or options.only], blocks, options)
+    if not blocks:
+        raise UserError(f"{a.label} and {b.label} have no keys or coordinates in common")
     return blocks
 
 
@@ -119,7 +123,10 @@ def history_blocks(first, second, shared, states, options):
 
 
 def frame_blocks(first, second, shared, states, options):
-    """Return one block for each quantity and time of tables with rows."""
+    """Return one block for each quantity and time of tables with rows.
+
+    None where the tables have no keys or coordinates in common by which rows could meet.
+    """
     a_numbers, b_numbers = range(len(first.frames)), range(len(second.frames))
     axis = match.axis_for(first.axes, second.axes, options.axis)
     pairs, lost = paired_frames(first, second, axis, options)
@@ -128,7 +135,7 @@ def frame_blocks(first, second, shared, states, options):
         a, b = selected(first.frame(a_numbers[i]), options.contact), second.frame(b_numbers[j])
         way = match.method_for(a, b, options.by)
         if way is None:
-            return []
+            return None
         last = rows_of(way, a, b, options, last)
         rows, keys = last[0], [name for name in (*KEYS, *COORDINATES) if name in a]
         columns = {name: np.ma.getdata(a[name]) for name in keys}
