@@ -5,7 +5,7 @@ import numpy as np
 from ..errors import UserError, nearest_name
 from . import match
 from .judge import Block
-from .series import AXES, COORDINATES, KEYS
+from .series import AXES, COORDINATES, KEYS, alias
 
 # What says how a run went, not what it found: compared only when it is asked for.
 NOT_COMPARED = (
@@ -33,7 +33,7 @@ def compare(a, b, options):
     blocks, met = [], set()
     for first in a.series:
         for second in b.series:
-            shared = [(n, alias(n, second)) for n in names if n in first.quantities]
+            shared = [(n, alias(n, second.quantities)) for n in names if n in first.quantities]
             shared = [(name, other) for name, other in shared if other]
             if not shared or first.history != second.history:
                 continue
@@ -60,22 +60,11 @@ def wanted(a, b, only):
             if name not in source.names():
                 hint = nearest_name(name, source.names())
                 raise UserError(f"{side} {source.label} has no quantity '{name}'{hint}")
-    shared = [n for n in a.names() if any(alias(n, series) for series in b.series)]
+    shared = [n for n in a.names() if any(alias(n, series.quantities) for series in b.series)]
     if only:
         return [name for name in only if name in shared]
     shared = [name for name in shared if name not in NOT_COMPARED]
     return [name for name in shared if name != "closed" or "status" not in shared]
-
-
-def alias(name, series):
-    """Return the name that a quantity of A has in a series of B; None where it is not there.
-
-    `normal_force` also stands for `normal_force@FACE` where there is no other one.
-    """
-    if name in series.quantities:
-        return name
-    places = [each for each in series.quantities if each.partition("@")[0] == name]
-    return places[0] if len(places) == 1 and "@" not in name else None
 
 
 def check_overlap(a, b, names, blocks, options):

@@ -1,12 +1,12 @@
 """--map: quantities, keys and units of B as A has them."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..errors import UserError
-from .series import AXES, COORDINATES, KEYS, Series
+from .series import AXES, COORDINATES, KEYS, Series, alias
 
 NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[Ee][-+]?\d+)?"
 FORM = re.compile(
@@ -53,29 +53,29 @@ def read_mappings(texts):
 
 def apply(source, mappings):
     """Map the series of a source; return the mappings that something was found for."""
-    used = [each for each in mappings if any(has(series, each.other) for series in source.series)]
-    source.series = [mapped(series, used) for series in source.series]
-    return used
+    found = [each for each in mappings if any(column(one, each.other) for one in source.series)]
+    source.series = [mapped(series, found) for series in source.series]
+    return found
 
 
-def has(series, name):
-    """Whether a series has a column."""
-    if name in series.quantities or name in series.axes:
-        return True
+def column(series, name):
+    """Return the column of a series that a name stands for; None where there is none."""
+    names = [*series.quantities, *series.axes]
     if name in (*KEYS, *COORDINATES, *AXES):
-        return len(series.frames) > 0 and name in series.frame(0)
-    return False
+        names += list(series.frame(0))
+    return alias(name, names)
 
 
 def mapped(series, mappings):
     """Return a series with mappings applied to its columns; what is mapped loses its old name."""
-    mappings = [each for each in mappings if has(series, each.other)]
+    found = [(each, column(series, each.other)) for each in mappings]
+    mappings = [replace(each, other=other) for each, other in found if other]
     if not mappings:
         return series
     axes = rename(series.axes, mappings)
     frames = [lambda k=k: rename(series.frame(k), mappings) for k in range(len(series.frames))]
-    names = list(rename(dict.fromkeys(series.quantities, 0), mappings))
-    names = [name for name in names if name not in (*KEYS, *COORDINATES, *AXES)]
+    places = (*KEYS, *COORDINATES, *AXES)
+    names = [n for n in rename(dict.fromkeys(series.quantities, 0), mappings) if n not in places]
     history = series.history
     if not history and not axes and any(each.name in AXES for each in mappings):
         history = not any(name in frames[0]() for name in (*KEYS, *COORDINATES))

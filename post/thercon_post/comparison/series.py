@@ -34,6 +34,17 @@ class Series:
         return columns() if callable(columns) else columns
 
 
+def alias(name, names):
+    """Return `name` as it stands among names; None where it is not there.
+
+    `normal_force` also stands for `normal_force@FACE` where there is no other one.
+    """
+    if name in names:
+        return name
+    places = [each for each in names if each.partition("@")[0] == name]
+    return places[0] if len(places) == 1 and "@" not in name else None
+
+
 @dataclass
 class Source:
     """One file: its series, and what its reader has to say about it."""
