@@ -1,4 +1,4 @@
-"""How the programs of this folder start: with the packages of build/venv, or saying what is missing."""
+"""How the programs of this folder start: in build/venv, or saying what is missing."""
 
 import os
 import sys

@@ -1,9 +1,9 @@
 """The series of a CalculiX .frd file (ASCII).
 
-Read here, for the readers on PyPI lose what a comparison needs: pyvista-frd-reader 0.3.1 gives zeros
-for nodes that a block does not have (*NODE FILE, NSET=), ANYfileio 0.3.2 only the last time, without
-temperatures; ccx2paraview 3.2.0 is a converter that writes files. Debian has none. The format is that
-of the manual of cgx, "Result Format": records by the number in their first columns.
+Read here, for the readers on PyPI lose what a comparison needs: pyvista-frd-reader 0.3.1 gives
+zeros for nodes that a block does not have (*NODE FILE, NSET=), ANYfileio 0.3.2 only the last time,
+without temperatures; ccx2paraview 3.2.0 is a converter that writes files. Debian has none. The
+format is that of the manual of cgx, "Result Format": records by their first columns.
 """
 
 import re
@@ -60,9 +60,11 @@ class Reader:
             number += 1
 
     def take_points(self, number):
-        """Read the nodes behind the record `number`; return the number of their last record."""
+        """Read the nodes behind the record `number`; return the number behind their last record."""
         if self.lines[number].split()[-1] not in ("0", "1"):
-            raise UserError(f"{self.path}: is binary; *NODE FILE and *EL FILE write ASCII, OUTPUT not")
+            raise UserError(
+                f"{self.path}: is binary; *NODE FILE and *EL FILE write ASCII, OUTPUT not"
+            )
         self.key = slice(3, 13 if self.lines[number].split()[-1] == "1" else 8)
         number += 1
         while self.record(number).startswith(" -1"):
@@ -72,7 +74,7 @@ class Reader:
         return number
 
     def take_block(self, number):
-        """Read one block, whose name stands in the record `number`; return that of its last record."""
+        """Read the block named in the record `number`; return the number behind its last record."""
         name = self.lines[number].split()[1]
         number, components = number + 1, 0
         while self.record(number).startswith(" -5"):

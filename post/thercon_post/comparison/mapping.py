@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import UserError
-from .series import AXES, COORDINATES, KEYS, Series, alias
+from .series import AXES, COORDINATES, KEYS, Series, alias, split
 
 NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[Ee][-+]?\d+)?"
 FORM = re.compile(
     rf"^\s*(?P<name>[^\s=*]+)\s*=\s*(?P<sign>[-+]?)\s*(?:(?P<factor>{NUMBER})\s*\*\s*)?"
-    rf"(?P<minus>-?)\s*(?P<other>[A-Za-z_][^\s=*]*)(?:\s+(?P<shift>[-+])\s*(?P<offset>{NUMBER}))?\s*$"
+    r"(?P<minus>-?)\s*(?P<other>[A-Za-z_][^\s=*]*)"
+    rf"(?:\s+(?P<shift>[-+])\s*(?P<offset>{NUMBER}))?\s*$"
 )
 
 
@@ -72,14 +73,13 @@ def mapped(series, mappings):
     mappings = [replace(each, other=other) for each, other in found if other]
     if not mappings:
         return series
+    if series.history or not series.axes:  # keys, or the time, may only now have their names
+        return split(rename(series.frame(0), mappings))
     axes = rename(series.axes, mappings)
     frames = [lambda k=k: rename(series.frame(k), mappings) for k in range(len(series.frames))]
     places = (*KEYS, *COORDINATES, *AXES)
     names = [n for n in rename(dict.fromkeys(series.quantities, 0), mappings) if n not in places]
-    history = series.history
-    if not history and not axes and any(each.name in AXES for each in mappings):
-        history = not any(name in frames[0]() for name in (*KEYS, *COORDINATES))
-    return Series(names, frames, axes, history)
+    return Series(names, frames, axes)
 
 
 def rename(columns, mappings):

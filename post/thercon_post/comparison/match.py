@@ -42,7 +42,11 @@ def method_for(a, b, wanted):
     """
     keys = [name for name in shared_keys(a, b) if name != "contact"]
     places = {name for name in COORDINATES if name in a and name in b}
-    able = {"key": bool(keys), "coordinate": {"x", "y"} <= places, "curve": bool(places & {"x", "s"})}
+    able = {
+        "key": bool(keys),
+        "coordinate": {"x", "y"} <= places,
+        "curve": bool(places & {"x", "s"}),
+    }
     if wanted:
         return wanted if able[wanted] else None
     return next((name for name in METHODS if able[name]), None)

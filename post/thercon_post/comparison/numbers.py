@@ -8,7 +8,9 @@ BARE_EXPONENT = re.compile(r"^([-+]?(?:\d+\.?\d*|\.\d+))([-+]\d+)$")
 # A blank in place of the plus sign of an exponent (0.123E 05), as old libraries print it.
 BLANK_SIGN = re.compile(r"([EeDdQq]) (?=\d)")
 
-NUMBER = re.compile(r"^[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[Ee][-+]?\d+)?|nan(?:\(.*\))?|inf(?:inity)?)$", re.I)
+NUMBER = re.compile(
+    r"^[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[Ee][-+]?\d+)?|nan(?:\(.*\))?|inf(?:inity)?)$", re.I
+)
 
 
 def fortran_number(text):

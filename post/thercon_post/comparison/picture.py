@@ -140,7 +140,9 @@ class Panel:
             shown = self.axes.scatter(x, y, c=difference, edgecolors=style.GREY, **looks)
             bar = self.axes.figure.colorbar(shown, ax=self.axes, fraction=0.05)
             bar.set_label(self.units.label("A - B", unit(self.quantity)))
-            self.axes.set_aspect("equal")
+            across, up = np.ptp(x), np.ptp(y)
+            if max(across, up) < 6.0 * min(across, up):
+                self.axes.set_aspect("equal")
             self.axes.set_xlabel(self.units.label("$x$", "length"))
             self.axes.set_ylabel(self.units.label("$y$", "length"))
             self.drawn.add(self.quantity, label, block.at, "x, y: a - b", x, difference, y)
@@ -201,7 +203,9 @@ def near(first, second):
 
 def unit(quantity):
     """Return the kind of unit of a quantity, None where it has none here."""
-    return next((kind for kind, names in UNITS.items() if quantity.partition("@")[0] in names), None)
+    return next(
+        (kind for kind, names in UNITS.items() if quantity.partition("@")[0] in names), None
+    )
 
 
 def add_legend(figure, a, compared):

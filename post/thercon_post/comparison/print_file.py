@@ -195,4 +195,6 @@ class Reader:
             "lost": "rows left out, for their key overflowed (stars)",
             "stray": "lines inside tables are no rows and were passed over",
         }
-        return [f"{self.counts[k]} {words[k]}; first {self.first[k]}" for k in words if self.counts[k]]
+        return [
+            f"{self.counts[k]} {words[k]}; first {self.first[k]}" for k in words if self.counts[k]
+        ]

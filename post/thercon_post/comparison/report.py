@@ -45,7 +45,9 @@ def table(blocks, all_keys):
     widths = [max(len(each[k]) for each in rows) for k in range(len(HEADING))]
     lines = []
     for each in rows:
-        words = [w.ljust(n) if k in left else w.rjust(n) for k, (w, n) in enumerate(zip(each, widths))]
+        words = [
+            w.ljust(n) if k in left else w.rjust(n) for k, (w, n) in enumerate(zip(each, widths))
+        ]
         lines.append("  ".join(words).rstrip())
     return lines
 
@@ -82,7 +84,9 @@ def place(block, k):
         words.append(f"{block.axis} {block.columns[block.axis][k]:g}")
     elif not keys.startswith("row "):
         words.append(keys)
-    inside = [f"{name}={block.columns[name][k]:.4g}" for name in ("x", "y") if name in block.columns]
+    inside = [
+        f"{name}={block.columns[name][k]:.4g}" for name in ("x", "y") if name in block.columns
+    ]
     return " ".join([*words, *inside])
 
 
@@ -109,7 +113,11 @@ def remarks(blocks, a, b, only=None):
     bases = {name.partition("@")[0] for name in met}
     for side, source in (("A", a), ("B", b)):
         alone = [n for n in source.names() if n not in met and n.partition("@")[0] not in bases]
-        lines += [f"  only in {side}, or not compared unless asked for: {', '.join(alone)}"] if alone else []
+        lines += (
+            [f"  only in {side}, or not compared unless asked for: {', '.join(alone)}"]
+            if alone
+            else []
+        )
     return lines
 
 

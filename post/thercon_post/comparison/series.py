@@ -65,10 +65,12 @@ class Source:
 def masked(values):
     """Return values as numbers with a mask: None is what is missing."""
     mask = [value is None for value in values]
-    return np.ma.array([0.0 if value is None else value for value in values], mask=mask, dtype=float)
+    return np.ma.array(
+        [0.0 if value is None else value for value in values], mask=mask, dtype=float
+    )
 
 
-def split(columns, history=False):
+def split(columns):
     """Return the series of a long table {column: values}: a frame for each time, or load.
 
     A table without keys and coordinates, but with time or load, is a history.
@@ -76,7 +78,7 @@ def split(columns, history=False):
     axes = [name for name in AXES if name in columns]
     places = [name for name in (*KEYS, *COORDINATES) if name in columns]
     quantities = [name for name in columns if name not in (*axes, *places)]
-    if axes and (history or not places):
+    if axes and not places:
         return Series(quantities, [columns], history=True)
     if not axes:
         return Series(quantities, [columns])
