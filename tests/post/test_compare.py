@@ -109,6 +109,16 @@ def test_places_with_two_points_are_left_out_and_counted(compare, result, tmp_pa
     assert compare(result, legacy, "--all-keys")[0] == 1
 
 
+def test_two_rows_of_a_at_one_place_are_ambiguous_too(compare, tmp_path):
+    two = {"node": [1, 2, 3], "x": [0.0, 0.0, 1.0], "y": [0.0, 0.0, 1.0], "T": [5.0, 6.0, 7.0]}
+    first = write_csv(tmp_path / "case.csv", two)
+    one = {"x": [1.0, 0.0], "y": [1.0, 0.0], "T": [7.0, 5.0]}
+    status, said, _ = compare(first, write_csv(tmp_path / "b.csv", one))
+    assert status == 0
+    assert line_of(said, "T")["rows"] == 1
+    assert "2 rows at places with several points left out" in said
+
+
 def test_missing_keys_are_counted_on_both_sides(compare, result, tmp_path):
     columns = pairs_table(result, [8])
     columns["node"][[0, 5]] = 7001, 7002

@@ -8,7 +8,7 @@ from .series import AXES
 
 SUMMARY = """Compares result A with each B: another result, a CSV file, a CalculiX .frd or .dat
 file, or a print file with fixed columns that a template describes. Rows are matched by key (time,
-node, contact), by coordinate, or along a curve, never by line. What only one side has is counted."""
+node, contact), by coordinate, or along a curve, never by line. What only one has is counted."""
 
 EPILOG = """A row is within tolerance where |a - b| <= ABS + REL |b| + BLOCK max |b|; the maximum is
 over the rows of one quantity at one time, or over a history. B is the reference. States (status,
@@ -18,7 +18,7 @@ Quantities of a result: /history and the sums and edges of /contact, with @CONTA
 where there are several contacts; the states of pairs; U1 U2 NT S11 S22 S33 S12 MISES HFL1 HFL2 of
 nodes. CalculiX files have the same names, RF1 RF2 RFL (sums as RF2@SET), CSHEAR1, CSLIP1, COPEN,
 and contact_area, normal_force and shear_force_size of *CONTACT PRINT. Axisymmetric RF and RFL of
-CalculiX are 1/180 of the whole: --map heat_in=180*RFL@TOP. docs/compare.md says how a template looks.
+CalculiX are 1/180 of the whole: --map heat_in=180*RFL@TOP. Templates: see docs/compare.md.
 
 exit status: 0 all within tolerance; 1 something is not; 2 wrong usage, a file that cannot be read,
 or files that have nothing in common."""
