@@ -1,6 +1,7 @@
 """How the programs of this folder start: in build/venv, or saying what is missing."""
 
 import os
+import signal
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -18,6 +19,7 @@ def run(script, module, failed):
     script = Path(script).resolve()
     if PYTHON.exists() and Path(sys.executable) != PYTHON:
         os.execv(PYTHON, [str(PYTHON), str(script), *sys.argv[1:]])
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # end quietly where `| head` has read enough
     try:
         main = import_module(f"thercon_post.{module}").main
     except ModuleNotFoundError as missing:

@@ -242,6 +242,17 @@ def test_a_profile_on_other_abscissae_is_interpolated(compare, result, tmp_path)
     assert (line["by"], line["rows"], line["not_in_b"]) == ("curve", inside, 21 - inside)
 
 
+def test_a_face_without_growing_x_is_a_curve_over_s(compare, refused, result):
+    with h5py.File(result, "r+") as file:
+        file["contact/CYLINDER/x"][()] = 4.0
+    status, said, _ = compare(result, result, "--by", "curve", "--block", 0)
+    assert status == 0
+    assert (line_of(said, "pressure")["by"], line_of(said, "pressure")["rows"]) == ("curve", 15 * 21)
+    assert "NT" not in [line.split()[0] for line in said.splitlines()]  # a plane is no curve
+    said = refused(result, result, "--by", "curve", "--along", "x")
+    assert "B has several rows at x = 4: no curve over x" in said
+
+
 def test_a_digitised_history_is_compared_along_the_load(compare, result, tmp_path):
     loads = np.linspace(100.0, 800.0, 400)
     columns = {"load": loads, "edge_contact": edge_of_contact(loads)}

@@ -120,11 +120,20 @@ def rows_of(way, a, b, options, last):
     elif way == "coordinate":
         rows = match.by_coordinate(a, b, options.within)
     else:
-        along = options.along or ("x" if "x" in a and "x" in b else "s")
+        along = options.along or abscissa(a, b)
         if along not in a or along not in b:
             raise UserError(f"--along {along}: one of the files has no {along}")
         rows = match.along_curve(a, b, along)
     return rows, (a, b)
+
+
+def abscissa(a, b):
+    """Return the abscissa of curves: x where both have it and A has it once a contact, else s."""
+    if "x" not in a or "x" not in b:
+        return "s"
+    contacts = a["contact"] if "contact" in a else np.zeros(len(a["x"]), dtype=int)
+    rows = set(zip(contacts.tolist(), np.ma.getdata(a["x"]).tolist()))
+    return "s" if "s" in a and "s" in b and len(rows) < len(a["x"]) else "x"
 
 
 def same_rows(old, new):

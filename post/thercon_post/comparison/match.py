@@ -45,7 +45,8 @@ def method_for(a, b, wanted):
     able = {
         "key": bool(keys),
         "coordinate": {"x", "y"} <= places,
-        "curve": bool(places & {"x", "s"}),
+        # Rows that both have x and y without s are points of a plane, not of a curve.
+        "curve": bool(places & {"x", "s"}) and ("s" in a or "s" in b or "y" not in places),
     }
     if wanted:
         return wanted if able[wanted] else None
@@ -164,6 +165,12 @@ def along_curve(a, b, along):
         nodes = np.ma.getdata(b[along]).astype(float)[theirs]
         order = np.argsort(nodes, kind="stable")
         theirs, nodes = theirs[order], nodes[order]
+        twice = np.flatnonzero(np.diff(nodes) == 0.0)
+        if twice.size:
+            raise UserError(
+                f"B has several rows at {along} = {nodes[twice[0]]:g}: no curve over {along} "
+                "(--along s, --axis time, or another --by)"
+            )
         inside = between(at, nodes)
         first.append(mine[inside])
         left.append(mine[~inside])

@@ -93,7 +93,11 @@ def add_choice(group):
     group.add_argument(
         "--within", type=float, metavar="DISTANCE", help="same place (default: 1e-6 of the model)"
     )
-    group.add_argument("--along", choices=("x", "s"), help="abscissa of profiles (default: x)")
+    group.add_argument(
+        "--along",
+        choices=("x", "s"),
+        help="abscissa of profiles (default: x, or s where x does not grow along the face)",
+    )
 
 
 def add_tolerances(group):

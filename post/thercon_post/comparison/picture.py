@@ -2,6 +2,7 @@
 
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from .. import style
 from ..style import plt
@@ -40,10 +41,13 @@ def draw(a, compared, options):
 
 
 def panels_of(compared, options):
-    """Return [(quantity, contact or None)]: those of --draw, else as many as there is room for."""
+    """Return [(quantity, contact or None)]: those of --draw, else what differs most."""
     panels = []
     for _, blocks in compared:
-        for quantity, group in quantities(blocks).items():
+        groups = quantities(blocks)
+        if len(groups) > MOST_PANELS:
+            groups = dict(sorted(groups.items(), key=lambda each: agreement(each[1])))
+        for quantity, group in groups.items():
             if options.draw and quantity not in options.draw:
                 continue
             contacts = [None]
@@ -54,6 +58,12 @@ def panels_of(compared, options):
     if options.draw:
         panels.sort(key=lambda each: options.draw.index(each[0]))
     return panels[:MOST_PANELS]
+
+
+def agreement(group):
+    """Return what sorts quantities: beyond tolerance first, then by the largest difference."""
+    shares = [np.max(b.difference, initial=0.0) / (b.largest or 1.0) for b in group]
+    return all(block.passed for block in group), -max(shares)
 
 
 class Drawn:
@@ -119,7 +129,7 @@ class Panel:
             rows = self.rows(block)
             at = block.columns[name][rows]
             x, y = block.curve if block.curve else (at, block.b[rows])
-            self.line(at, block.a[rows], shade, number)
+            self.line(at, block.a[rows], shade, number, steps=block.state)
             self.marks(x, y, style.SERIES[1 + number % 5], number)
             self.drawn.add(self.quantity, self.a.label, block.at, name, at, block.a[rows])
             self.drawn.add(self.quantity, label, block.at, name, x, y)
@@ -171,10 +181,13 @@ class Panel:
             return np.ones(block.rows, dtype=bool)
         return block.columns["contact"] == self.contact
 
-    def line(self, x, y, colour, number):
-        """Draw a curve of A, once whatever it is compared with."""
+    def line(self, x, y, colour, number, steps=False):
+        """Draw a curve of A, once whatever it is compared with; states go in steps."""
+        if steps:
+            self.axes.yaxis.set_major_locator(MaxNLocator(integer=True))
         if number == 0 or not self.axes.lines:
-            self.axes.plot(x, y, color=colour, zorder=3)
+            form = "steps-mid" if steps else "default"
+            self.axes.plot(x, y, color=colour, zorder=3, drawstyle=form)
 
     def marks(self, x, y, colour, number):
         """Draw points of B."""
