@@ -247,7 +247,8 @@ def test_a_face_without_growing_x_is_a_curve_over_s(compare, refused, result):
         file["contact/CYLINDER/x"][()] = 4.0
     status, said, _ = compare(result, result, "--by", "curve", "--block", 0)
     assert status == 0
-    assert (line_of(said, "pressure")["by"], line_of(said, "pressure")["rows"]) == ("curve", 15 * 21)
+    line = line_of(said, "pressure")
+    assert (line["by"], line["rows"]) == ("curve", 15 * 21)
     assert "NT" not in [line.split()[0] for line in said.splitlines()]  # a plane is no curve
     said = refused(result, result, "--by", "curve", "--along", "x")
     assert "B has several rows at x = 4: no curve over x" in said

@@ -163,7 +163,7 @@ def make_block(name, other, rows, a, b, columns, states):
         "",
         None,
         None,
-        {key: column[first] for key, column in columns.items()},
+        picked(columns, first),
         values[first],
         there,
         int((~padding[rows.not_in_a]).sum()),
@@ -174,6 +174,14 @@ def make_block(name, other, rows, a, b, columns, states):
     )
     block.rows_met = len(first)
     return block
+
+
+def picked(columns, rows):
+    """Return rows of columns; the columns themselves, not copies, where these are all rows."""
+    count = len(next(iter(columns.values()), rows))
+    if np.array_equal(rows, np.arange(count)):
+        return columns
+    return {key: column[rows] for key, column in columns.items()}
 
 
 def along(values, curve, state):

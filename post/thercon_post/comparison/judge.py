@@ -68,7 +68,8 @@ class Block:
         """Fill in `difference`, `limit`, `outside` and `passed`; rows with a missing value go."""
         there = ~(np.ma.getmaskarray(self.a) | np.ma.getmaskarray(self.b))
         self.missing += int((~there).sum())
-        self.columns = {name: values[there] for name, values in self.columns.items()}
+        if not there.all():
+            self.columns = {name: values[there] for name, values in self.columns.items()}
         self.a = np.ma.getdata(self.a)[there].astype(float)
         self.b = np.ma.getdata(self.b)[there].astype(float)
         both_nan = np.isnan(self.a) & np.isnan(self.b)
