@@ -17,6 +17,8 @@ module doubled_increments
    private
    public :: doubled_increments_type
 
+   real(dp), parameter :: tolerance = 1.0e-7_dp   !! of the fixed point; errors are far larger
+
    !> Where the second run stands.
    type :: doubled_increments_type
       logical :: is_led = .false.              !! whether the path of the run matters at all
@@ -69,6 +71,7 @@ contains
       if (self%waiting < 2 .and. .not. ends_step) return
       doubled = step
       doubled%start = start_type()
+      doubled%fixed_point%tolerance = max(tolerance, step%fixed_point%tolerance)
       next = self%state
       next%increment_size = time - self%time
       next%heat_load = accepted%heat_load

@@ -49,7 +49,7 @@ contains
       type(simulation_type), intent(in) :: simulation     !! the run, started
       type(error_type), allocatable :: error
 
-      self%is_on = size(model%contacts) > 0
+      self%is_on = model%estimates_errors .and. size(model%contacts) > 0
       if (.not. self%is_on) return
       self%why_not = ''
       call self%refined%prepare(model, simulation%operators%pairs, error)
