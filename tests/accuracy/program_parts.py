@@ -59,7 +59,7 @@ PARTS = {
                                   "loose_motions"},
     "films": {"films", "loads:film_matrix", "loads:integrate_films"},
     "refinement": {"load_refinement", "mesh_division", "refinement"},
-    "tables that are printed": {"element_points", "listing_prints",
+    "printed tables": {"element_points", "listing_prints",
                                 "listing_tables:print_contact_table"},
     "checks of the deck": {"deck_builder_verify", "verification", "verify_places",
                            "verify_values"},
