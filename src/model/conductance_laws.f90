@@ -127,10 +127,19 @@ contains
    elemental logical function is_constant(law)
       type(conductance_law_type), intent(in) :: law !! the law
 
-      is_constant = abs(law_jump(law)) <= 0.0_dp .and. law%open_kind /= law_gas
-      if (law%open_kind == law_clearance) is_constant = is_constant .and. is_level(law%open_omega)
-      if (law%closed_kind == law_power) is_constant = is_constant .and. law%power_c1 <= 0.0_dp
-      if (law%closed_kind == law_pressure) is_constant = is_constant .and. is_level(law%closed_omega)
+      is_constant = .false.
+      if (abs(law_jump(law)) > 0.0_dp .or. law%open_kind == law_gas) return
+      if (law%open_kind == law_clearance) then
+         if (.not. is_level(law%open_omega)) return
+      end if
+      select case (law%closed_kind)
+      case (law_power)
+         is_constant = law%power_c1 <= 0.0_dp
+      case (law_pressure)
+         is_constant = is_level(law%closed_omega)
+      case default
+         is_constant = .true.
+      end select
    end function is_constant
 
    pure logical function is_level(values)

@@ -54,7 +54,9 @@ contains
             'heat and temperatures', status_no_convergence, error)
          if (allocated(error)) return
          call warn_of_imbalance(operators, loads, data, previous, next, record)
-         if (.not. operators%is_coupled) call conduct(operators, previous, data, next, record)
+         if (size(next%omega) > 0 .and. .not. operators%is_coupled) then
+            call conduct(operators, previous, data, next, record)
+         end if
       end if
       if (.not. solves_mechanics(step%analysis)) return
       data%displacement_scale = maxval(abs(previous%displacement))

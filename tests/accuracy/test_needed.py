@@ -5,6 +5,7 @@ import resource
 import shutil
 import statistics
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import report  # isort: skip, it makes the modules below known
@@ -23,7 +24,8 @@ together from start to end of the process, are medians. Without heat the top is 
 """
 ALLOWED = 0.02   # of all instructions, for a part that is off
 RUNS = 5         # of which CPU seconds are the median
-SIZES = ((0, 45), (2, 3))   # uniform refinements, increments
+# Uniform refinements, increments, and the decks: of the finer mesh those in which most is off.
+SIZES = ((0, 20, CASES), (2, 2, tuple(CASES[k] for k in (0, 3, 6))))
 MEASURED = pytest.mark.skipif(
     os.environ.get("THERCON_BUILD_TYPE", "Release") != "Release" or not shutil.which("valgrind"),
     reason="instructions are those of a release build under valgrind")
@@ -51,14 +53,25 @@ def cpu_seconds(deck):
     return statistics.median(taken)
 
 
-def measured(case, folder, levels, increments):
-    """Run the deck of a case under callgrind and without it."""
-    deck = write_deck(case, folder / "deck.inp", levels, increments)
-    profiled = profile("run", "--quiet", deck, "--out", folder, path=folder / "callgrind.out")
-    result = deck.with_suffix(".vtkhdf")
+def measured(cases, folder, levels, increments):
+    """Run the decks of cases under callgrind, side by side, then without it, one by one."""
+    decks = [write_deck(case, folder / f"deck-{levels}-{k}.inp", levels, increments)
+             for k, case in enumerate(cases)]
+
+    def profiled(deck):
+        return profile("run", "--quiet", deck, "--out", folder, path=deck.with_suffix(".out"))
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        profiles = list(pool.map(profiled, decks))
+    return [of_result(case, profile, deck)
+            for case, profile, deck in zip(cases, profiles, decks, strict=True)]
+
+
+def of_result(case, profiled, deck):
+    """Return what a deck that was run under callgrind costs without it, and its sizes."""
+    seconds, result = cpu_seconds(deck), deck.with_suffix(".vtkhdf")
     with h5py.File(result) as file:
-        return Measured(case, profiled, cpu_seconds(deck), dict(file["run"].attrs),
-                        result.stat().st_size)
+        return Measured(case, profiled, seconds, dict(file["run"].attrs), result.stat().st_size)
 
 
 def costs(runs, levels, increments):
@@ -84,13 +97,13 @@ def off(groups):
     """Return the table of what parts take where they are off, at most, and where they are on."""
     table = report.Table(
         "Parts that are off",
-        ["part", *(f"off, LEVELS={levels}" for levels, _ in SIZES), "on", "verdict"], text="""
+        ["part", *(f"off, LEVELS={levels}" for levels, *_ in SIZES), "on", "verdict"], text="""
 Largest part of a run's instructions over all decks above in which a part is off, or on: those spent in lines of modules and
 procedures that exist for that part only (`tests/accuracy/program_parts.py`), inlined ones too, and in whatever these call.""".strip())
     for part, names in PARTS.items():
         shares = {is_on: [[run.profile.share(names) for run in runs
                            if (part in run.case.on or (part == "refinement" and levels > 0)) is is_on]
-                          for (levels, _), runs in zip(SIZES, groups, strict=True)]
+                          for (levels, *_), runs in zip(SIZES, groups, strict=True)]
                   for is_on in (False, True)}
         largest = max(max(of_size, default=0.0) for of_size in shares[False])
         table.rows.append([part, *map(per_cent, shares[False]), per_cent(sum(shares[True], [])),
@@ -98,26 +111,26 @@ procedures that exist for that part only (`tests/accuracy/program_parts.py`), in
     return table
 
 
-def outputs(folder, plain):
-    """Return the table of a coupled run by what it writes, beside one that writes all fields."""
-    table = report.Table("Output of the coupled deck", [
-        "LEVELS", "increments", "output", "million instructions", "CPU s", "kB of the result file"])
-    for run, (levels, increments) in zip(plain, SIZES, strict=True):
-        runs = {"fields of all increments": run}
-        for name, cards in (("fields of the last increment only", FIELDS),
-                            ("fields of all increments, *CONTACT PRINT", TABLES)):
-            runs[name] = measured(replace(COUPLED, output=tuple(cards)), folder, levels, increments)
-        for name, run in runs.items():
-            table.rows.append([levels, increments, name, run.profile.total / 1e6, run.seconds,
-                               run.bytes // 1000])
+def outputs(runs, levels, increments):
+    """Return the table of what the output of the coupled deck costs."""
+    table = report.Table(
+        f"Output of the coupled deck, *REFINE, LEVELS={levels}, {increments} increments",
+        ["output", "million instructions", "CPU s", "kB of the result file"])
+    names = ("fields of all increments", "fields of the last increment only",
+             "fields of all increments, *CONTACT PRINT")
+    for name, run in zip(names, runs, strict=True):
+        table.rows.append([name, run.profile.total / 1e6, run.seconds, run.bytes // 1000])
     return table
 
 
 def tables(folder):
     """Run all decks and return the tables of the theme."""
-    groups = [[measured(case, folder, *size) for case in CASES] for size in SIZES]
-    return [*(costs(runs, *size) for runs, size in zip(groups, SIZES, strict=True)),
-            off(groups), outputs(folder, [runs[-1] for runs in groups])]
+    levels, increments, _ = SIZES[0]
+    written = [replace(COUPLED, output=tuple(cards)) for cards in (FIELDS, TABLES)]
+    groups = [measured(cases, folder, *size) for *size, cases in SIZES]
+    more = measured(written, folder, levels, increments)
+    return [*(costs(runs, *size) for runs, (*size, _) in zip(groups, SIZES, strict=True)),
+            off(groups), outputs([groups[0][-1], *more], levels, increments)]
 
 
 @MEASURED
