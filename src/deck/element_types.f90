@@ -23,17 +23,21 @@ contains
       integer, intent(out) :: plane              !! plane_strain, ...; plane_strain after an error
       character(:), allocatable, intent(out) :: message   !! what is wrong, or empty
       type(string_type) :: names(size(plane_names)*size(kind_names))
+      character(:), allocatable :: solid_name
       integer :: i, k, n
 
       kind = quad8
       plane = plane_strain
       message = ''
       n = 0
+      ! Abaqus' names of elements that conduct heat; CalculiX takes those of rings too.
+      solid_name = name
+      if (index(name, 'DCAX') == 1) solid_name = name(2:)
       do i = 1, size(plane_names)
          do k = 1, size(kind_names)
             n = n + 1
             names(n)%value = trim(plane_names(i)//kind_names(k))
-            if (name /= names(n)%value) cycle
+            if (solid_name /= names(n)%value) cycle
             kind = element_kinds_named(k)
             plane = planes(i)
             return
@@ -41,9 +45,12 @@ contains
       end do
       if (any(plane_names//'4R' == name)) then
          message = 'element type '//name// &
-            ' is refused: linear elements with reduced integration need hourglass control'
+            ' is refused: linear elements with reduced integration need hourglass control; take '// &
+            name(:4)
       else if (index(name, 'C3D') == 1) then
          message = 'element type '//name//' is refused: models are two-dimensional'
+      else if (index(name, 'DC2D') == 1) then
+         message = 'element type '//name//' is refused; take CPE'//name(5:)
       else
          message = 'unknown element type '//name//nearest_known(name, names)
       end if

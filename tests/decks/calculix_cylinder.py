@@ -6,10 +6,10 @@ PENALTY = 1.0e5   # of CalculiX, MPa/cm; its stick slope is the same
 FIRST = 0.018     # degrees of a first step that settles the penalty at the initial touch
 
 
-def graded(count, length, share):
-    """Return count + 1 positions from 0 to length; share is the first interval by the mean one."""
+def graded(count, length, share, power):
+    """Return count + 1 positions from 0 to length, dense at 0 with about share of the mean there."""
     places = [k / count for k in range(count + 1)]
-    return [length * (share * s + (1.0 - share) * s * s) for s in places]
+    return [length * (share * s + (1.0 - share) * s**power) for s in places]
 
 
 def body(name, first, first_element, heights, face, turned):
@@ -54,7 +54,7 @@ def body(name, first, first_element, heights, face, turned):
 
 def cylinder(count, last=900.0, increment=20.0, output="20"):
     """Return the cards for CalculiX with count elements along the contact, heated to last."""
-    heights = {"x": graded(count, 30.0, 0.4), "y": graded(count, 1.0, 0.15)}
+    heights = {"x": graded(count, 30.0, 0.15, 3), "y": graded(count, 1.0, 0.2, 3)}
     upper, node, element = body("upper", 1, 1, heights, lambda x: x * x / 200.0, turned=False)
     lower, _, _ = body("lower", node, element, heights, lambda x: 0.0 * x, turned=True)
     materials = []
