@@ -88,7 +88,7 @@ module keywords
       known_keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
       known_keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS='), &
       known_keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &
-      known_keyword_type('CONTROLS', not_needed, in_both, 0, many, 'PARAMETERS=/RESET'), &
+      known_keyword_type('CONTROLS', not_needed, in_both, 0, many, 'PARAMETERS=/FIELD=/RESET'), &
       known_keyword_type('EQUATION', refused, in_model, 0, many, ''), &
       known_keyword_type('MPC', refused, in_model, 0, many, ''), &
       known_keyword_type('RIGID BODY', refused, in_model, 0, many, '')]
