@@ -14,7 +14,7 @@ module foreign_keywords
 
    !> One keyword.
    type :: foreign_keyword_type
-      character(32) :: name = ''         !! without the star
+      character(36) :: name = ''         !! without the star
       integer :: status = 0              !! one of the four above; 0 for none
       character(20) :: stands_for = ''   !! keyword of this program in whose place it stands
       character(100) :: reason = ''      !! why it is passed over or refused, and what to do
@@ -23,7 +23,7 @@ module foreign_keywords
    character(*), parameter :: linear = &
       'materials are linear: *ELASTIC, *EXPANSION, *CONDUCTIVITY; leave it out'
    character(*), parameter :: analyses = &
-      'steps are *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT, both STEADY STATE'
+      'steps are *STATIC, or STEADY STATE *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'
    character(*), parameter :: plane = &
       'elements are plane: CPE, CPS or CAX, with *SOLID SECTION'
    character(*), parameter :: held = &

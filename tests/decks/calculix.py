@@ -68,7 +68,7 @@ def read_dat(path):
             key = tuple(map(int, fields[:rows]))
             for table, value in zip(tables, fields[rows:], strict=False):
                 table[key] = float(value)
-    return found
+    return {key: table for key, table in found.items() if table}
 
 
 def thercon(deck):
