@@ -24,6 +24,13 @@ ORTHOTROPIC = [
 STIFFNESSES = [card.replace("ENGINEERING CONSTANTS", "ORTHO").replace(
     "1200., 500., 800., .3, .2, .25, 260., 240.", "1200., 200., 600., 150., 180., 900., 260., 240.")
     for card in ORTHOTROPIC]
+GRAIN = ORTHOTROPIC.index("*ORIENTATION, NAME=GRAIN")
+TURNED = [*ORTHOTROPIC[:GRAIN + 2], "3, 25.", *ORTHOTROPIC[GRAIN + 2:]]
+ROUND = [*ORTHOTROPIC[:GRAIN], "*ORIENTATION, NAME=GRAIN, SYSTEM=CYLINDRICAL",
+         "0., -1., 0., 0., -1., 1.", *ORTHOTROPIC[GRAIN + 2:]]
+ANISOTROPIC = [*ORTHOTROPIC[:1], "*ELASTIC, TYPE=ANISO",
+               "1200., 200., 600., 150., 180., 900., 60., 30.",
+               "20., 260., 0., 0., 0., 0., 240., 0.", "0., 0., 0., 0., 230.", *ORTHOTROPIC[4:]]
 COUPLED = "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT"
 CONDUCTION = "*HEAT TRANSFER, STEADY STATE, DIRECT"
 
@@ -42,18 +49,27 @@ def step(analysis, *cards, options=""):
     return ["*STEP" + options, *analysis.splitlines(), *cards, "*END STEP"]
 
 
-@pytest.mark.parametrize("section", [ORTHOTROPIC, STIFFNESSES], ids=["constants", "stiffnesses"])
-@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CPE6"])
-def test_orthotropic_solids_with_axes_of_their_own(tmp_path, kind, section):
+@pytest.mark.parametrize(("kind", "section"), [
+    ("CPE8", ORTHOTROPIC), ("CPE8R", ORTHOTROPIC), ("CPE6", ORTHOTROPIC), ("CPE8R", STIFFNESSES),
+    ("CPE8R", TURNED), ("CPE8R", ROUND), ("CPE8R", ANISOTROPIC)])
+def test_solids_with_axes_of_their_own(tmp_path, kind, section):
     """Values are printed along these axes."""
     assert_within(compared(tmp_path, grained(kind, section), HELD, step(
         "*STATIC", "*TEMPERATURE", "BODY, 90.", "*DLOAD", "BODY, P2, 3.",
         "BODY, GRAV, 9.81, 0., -2., 0.", *MECHANICS)), DIGITS)
 
 
-@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CPE6", "CPS8"])
-def test_orthotropic_conductors_with_axes_of_their_own(tmp_path, kind):
-    assert_within(compared(tmp_path, grained(kind), step(
+def test_an_orthotropic_ring(tmp_path):
+    """The third axis is the circumference."""
+    assert_within(compared(tmp_path, grained("CAX8"), HELD, step(
+        "*STATIC", "*TEMPERATURE", "BODY, 90.", "*DLOAD", "BODY, P2, 3.", *MECHANICS), rings=True),
+        WEDGE)
+
+
+@pytest.mark.parametrize(("kind", "section"), [
+    ("CPE8", ORTHOTROPIC), ("CPE8R", ROUND), ("CPE6", TURNED), ("CPS8", ORTHOTROPIC)])
+def test_orthotropic_conductors_with_axes_of_their_own(tmp_path, kind, section):
+    assert_within(compared(tmp_path, grained(kind, section), step(
         CONDUCTION, "*BOUNDARY", "BODY.BOTTOM, 11, 11, 100.", "*DFLUX", "BODY, BF, 6.",
         "BODY, S2, 5.", *HEAT)), DIGITS)
 
@@ -184,3 +200,18 @@ def test_linear_steps_of_calculix_have_one_increment(tmp_path):
                  step("*STATIC\n0.25, 1.", "*DLOAD", "BODY, P2, 3.", *MECHANICS))
     assert {time for time, _, _ in calculix(deck)} == {1.0}
     assert {time for time, _, _ in thercon(deck)} == {0.25, 0.5, 0.75, 1.0}
+
+
+def test_two_blocks_pressed_together_with_friction(tmp_path):
+    """CalculiX's penalty gives by p/K, 1e-4 of the blocks' shortening, and along the faces by ten
+    times that per stress."""
+    blocks = [*mesh("BODY", [1.0, 1.75, 2.5], [0.0, 0.5, 1.0]), *material("BODY", (1000.0, 0.3)),
+              *mesh("BASE", [1.0, 1.75, 2.5], [-1.0, -0.5, 0.0], first=101),
+              *material("BASE", (3000.0, 0.2))]
+    contact = ["*SURFACE INTERACTION, NAME=FACES",
+               "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", "1.E7", "*FRICTION", "0.3, 1.E6",
+               "*CONTACT PAIR, INTERACTION=FACES, TYPE=SURFACE TO SURFACE", "BODY.BOTTOM, BASE.TOP"]
+    assert_within(compared(
+        tmp_path, blocks, contact, "*BOUNDARY", "BASE.BOTTOM, 1, 2", "BODY.LEFT, 1",
+        step("*STATIC, DIRECT\n0.25, 1.", "*DSLOAD", "BODY.TOP, P, 5.",
+             "*NODE PRINT, NSET=BODY", "U", "*EL PRINT, ELSET=BODY", "S")), 2e-3)
