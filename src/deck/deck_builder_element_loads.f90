@@ -233,7 +233,7 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: valid
-      real(dp) :: point(3), direction(3), speed
+      real(dp) :: point(3), direction(3), values(4)
       integer :: i
 
       call need_field(data, 3, 'speed squared', report, request%value, valid)
@@ -248,11 +248,11 @@ contains
          call report%error(field_place(data, 7), 'the direction is zero')
       else if (norm2(direction(:2)) <= 0.0_dp) then
          request%kind = load_centrifugal
-         speed = request%value
+         values(1:2) = request%value
+         values(3:4) = -request%value*point(:2)
          do i = 1, 4
             request%component = i
-            request%value = speed
-            if (i > 2) request%value = -speed*point(i - 2)
+            request%value = values(i)
             call context%loads%add(request)
          end do
       else if (norm2(direction([1, 3])) > 0.0_dp) then

@@ -162,19 +162,32 @@ contains
       else
          call context%note('*'//card%name//' without data: one increment, period 1')
       end if
-      if (step%max_increments < 1) return
-      if (step%period > (step%max_increments + increment_rounding)*step%first_increment) then
-         if (step%direct) then
-            call report%error(card%place, 'the step takes more increments than the '// &
-               to_text(step%max_increments)//' of INC= on *STEP; give a larger INC= or increment')
-         else
-            step%first_increment = step%period/step%max_increments
-            call report%warning(card%place, 'the step takes more increments than the '// &
-               to_text(step%max_increments)//' of INC= on *STEP; the first one is lengthened to '// &
-               to_text(step%first_increment)//', as CalculiX lengthens those behind it')
-         end if
-      end if
+      call fit_increments(card, report, step)
    end subroutine build_analysis
+
+   !> INC= holds for increments that are all as long as the first; CalculiX lengthens those behind it,
+   !> up to the largest. Where the card gives that, the first may be longer.
+   subroutine fit_increments(card, report, step)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: step
+      character(:), allocatable :: too_many
+      real(dp) :: needed
+
+      if (step%max_increments < 1) return
+      needed = step%period/(step%max_increments + increment_rounding)
+      if (needed <= step%first_increment) return
+      too_many = 'the step takes more increments than the '//to_text(step%max_increments)// &
+         ' of INC= on *STEP; '
+      needed = step%period/step%max_increments
+      if (step%direct .or. needed > step%largest_increment) then
+         call report%error(card%place, too_many//'give a larger INC= or a longer first increment')
+      else
+         step%first_increment = needed
+         call report%warning(card%place, too_many//'the first one is lengthened to '// &
+            to_text(needed)//', as CalculiX lengthens those behind it')
+      end if
+   end subroutine fit_increments
 
    !> First increment, period, smallest and largest increment.
    subroutine build_increments(data, context, report, step)
@@ -207,9 +220,11 @@ contains
          step%first_increment = 1.0_dp
          step%period = 1.0_dp
       else if (step%first_increment > step%period) then
-         call report%error(field_place(data, 1), 'the first increment is longer than the period; give a shorter one')
+         call report%error(field_place(data, 1), 'the first increment is longer than the '// &
+            'period; give a shorter one')
       else if (step%smallest_increment > step%first_increment) then
-         call report%error(field_place(data, 3), 'the smallest increment is longer than the first; give a shorter one')
+         call report%error(field_place(data, 3), 'the smallest increment is longer than the '// &
+            'first; give a shorter one')
       else if (step%largest_increment < step%first_increment) then
          step%first_increment = step%largest_increment
          step%smallest_increment = min(step%smallest_increment, step%first_increment)
