@@ -7,12 +7,10 @@ module card_lines
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use element_kinds, only: element_node_count
-   use element_types, only: take_element_type
-   use keyword_cards, only: make_keyword_card
-   use keywords, only: built, find_keyword, find_parameter, known_keywords, &
-      known_parameter_type, parameter_names
-   use text, only: read_integer, to_text, to_upper
+   use element_types, only: element_type_fields
+   use keyword_cards, only: is_parameter, make_keyword_card
+   use keywords, only: built, known_keywords
+   use text, only: read_integer, to_text
    implicit none
    private
    public :: card_lines_type, default_width
@@ -47,6 +45,7 @@ contains
       type(cards_type), intent(inout) :: cards             !! receives the card that it completes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
+      logical :: continues
 
       if (is_blank(line)) return
       if (is_comment(line)) return
@@ -58,7 +57,9 @@ contains
       end if
       if (allocated(self%pending)) then
          call split_fields(line, image, report, fields)
-         if (self%pending_keyword .and. .not. is_parameter(self%pending(1), fields(1))) then
+         continues = .not. self%pending_keyword
+         if (.not. continues) continues = is_parameter(self%pending(1)%text, fields(1)%text)
+         if (.not. continues) then
             call self%finish(cards, report)
          else
             call append_fields(self%pending, fields)
@@ -70,7 +71,7 @@ contains
       call take_data_line(self, line, image, cards, report)
    end subroutine take_line
 
-   !> Ends a card that waits for its continuation. A comma at the end of a keyword card may have none.
+   !> Ends a card that waits for its continuation, which a keyword card need not have.
    subroutine finish(self, cards, report)
       class(card_lines_type), intent(inout) :: self        !! what is open
       type(cards_type), intent(inout) :: cards             !! receives the card
@@ -90,24 +91,6 @@ contains
          call take_data(self, fields, place%image, cards, report)
       end if
    end subroutine finish
-
-   !> Whether the first field of a line behind a keyword card that ends in a comma is a parameter of
-   !> it; else the line is data, as in CalculiX.
-   logical function is_parameter(keyword, field)
-      type(field_type), intent(in) :: keyword, field
-      type(known_parameter_type) :: parameter
-      integer :: known
-
-      known = find_keyword(keyword%text(2:))
-      if (known == 0) then
-         is_parameter = index(field%text, '=') > 0
-      else if (size(parameter_names(known)) == 0) then
-         is_parameter = .false.
-      else
-         parameter = find_parameter(known, field%text)
-         is_parameter = len(parameter%name) > 0 .or. index(field%text, '=') > 0
-      end if
-   end function is_parameter
 
    !> Takes the fields of a card that may continue.
    subroutine take_fields(self, fields, keyword, image, cards, report)
@@ -150,7 +133,8 @@ contains
          return
       end if
       if (card%name == 'OPTIONS') call take_width(self, card, report)
-      if (card%name == 'ELEMENT') self%element_fields = fields_of(parameter_text(card, 'TYPE'))
+      if (card%name == 'ELEMENT') self%element_fields = &
+         element_type_fields(parameter_text(card, 'TYPE'))
       self%keyword = card%name
       if (allocated(self%refusal_of_data)) deallocate(self%refusal_of_data)
       if (allocated(card%refusal_of_data)) self%refusal_of_data = card%refusal_of_data
@@ -158,17 +142,6 @@ contains
       if (card%known > 0) self%skips_data = known_keywords(card%known)%status /= built
       call add_keyword(cards, card)
    end subroutine take_keyword
-
-   !> Fields of the data card of an element type; 0 for one that is not known.
-   pure integer function fields_of(type_name)
-      character(*), intent(in) :: type_name
-      character(:), allocatable :: message
-      integer :: kind, plane
-
-      call take_element_type(to_upper(type_name), kind, plane, message)
-      fields_of = 0
-      if (len(message) == 0) fields_of = element_node_count(kind) + 1
-   end function fields_of
 
    subroutine take_include(self, card, report)
       type(card_lines_type), intent(inout) :: self
@@ -242,8 +215,8 @@ contains
       end if
    end subroutine take_data_line
 
-   !> Whether a line has just the nodes that the element before it lacks: in CalculiX a card may go on
-   !> without a comma at its end.
+   !> Whether a line has just the nodes that the element before it lacks: in CalculiX a card may go
+   !> on without a comma at its end.
    pure logical function completes_element(self, fields, cards)
       type(card_lines_type), intent(in) :: self
       type(field_type), intent(in) :: fields(:)

@@ -60,8 +60,8 @@ contains
       call context%node_index%build(mesh%node_number)
    end subroutine build_nodes
 
-   !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what stands behind z is
-   !> the direction of a normal in Abaqus.
+   !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what stands behind z
+   !> is the direction of a normal in Abaqus.
    subroutine build_node(data, context, report, number, coordinates, z)
       type(data_card_type), intent(in) :: data
       type(deck_context_type), intent(inout) :: context

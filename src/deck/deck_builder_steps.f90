@@ -165,8 +165,8 @@ contains
       call fit_increments(card, report, step)
    end subroutine build_analysis
 
-   !> INC= holds for increments that are all as long as the first; CalculiX lengthens those behind it,
-   !> up to the largest. Where the card gives that, the first may be longer.
+   !> INC= holds for increments that are all as long as the first; CalculiX lengthens those behind
+   !> it, up to the largest. Where the card gives that, the first may be longer.
    subroutine fit_increments(card, report, step)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report

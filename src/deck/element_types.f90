@@ -1,11 +1,11 @@
 !> Element types of the dialect: which are built, which are refused.
 module element_types
-   use element_kinds, only: axisymmetric, plane_strain, plane_stress, quad4, quad8, quad8_reduced, &
-      triangle3, triangle6
-   use text, only: nearest_known, string_type
+   use element_kinds, only: axisymmetric, element_node_count, plane_strain, plane_stress, quad4, &
+      quad8, quad8_reduced, triangle3, triangle6
+   use text, only: nearest_known, string_type, to_upper
    implicit none
    private
-   public :: take_element_type
+   public :: take_element_type, element_type_fields
 
    character(3), parameter :: plane_names(3) = ['CPE', 'CPS', 'CAX']
    integer, parameter :: planes(3) = [plane_strain, plane_stress, axisymmetric]
@@ -45,8 +45,8 @@ contains
       end do
       if (any(plane_names//'4R' == name)) then
          message = 'element type '//name// &
-            ' is refused: linear elements with reduced integration need hourglass control; take '// &
-            name(:4)
+            ' is refused: linear elements with reduced integration need hourglass control; '// &
+            'take '//name(:4)
       else if (index(name, 'C3D') == 1) then
          message = 'element type '//name//' is refused: models are two-dimensional'
       else if (index(name, 'DC2D') == 1) then
@@ -55,5 +55,16 @@ contains
          message = 'unknown element type '//name//nearest_known(name, names)
       end if
    end subroutine take_element_type
+
+   !> Fields of the data card of an element type; 0 for a type that cannot be used.
+   pure integer function element_type_fields(name)
+      character(*), intent(in) :: name   !! TYPE= as written
+      character(:), allocatable :: message
+      integer :: kind, plane
+
+      call take_element_type(to_upper(name), kind, plane, message)
+      element_type_fields = 0
+      if (len(message) == 0) element_type_fields = element_node_count(kind) + 1
+   end function element_type_fields
 
 end module element_types

@@ -11,7 +11,7 @@ module keyword_cards
    use text, only: edit_distance, likely_slip, nearest_known, nearest_name, string_type, to_upper
    implicit none
    private
-   public :: make_keyword_card
+   public :: make_keyword_card, is_parameter
 
 contains
 
@@ -41,6 +41,22 @@ contains
          call take_parameters(fields(2:), report, cards, card)
       end select
    end subroutine make_keyword_card
+
+   !> Whether the first field of a line behind a keyword card that ends in a comma is a parameter of
+   !> it; else the line is data, as in CalculiX.
+   pure logical function is_parameter(keyword, field)
+      character(*), intent(in) :: keyword   !! the keyword with its star
+      character(*), intent(in) :: field     !! the first field of the line
+      type(known_parameter_type) :: parameter
+      integer :: known
+
+      known = find_keyword(keyword(2:))
+      is_parameter = index(field, '=') > 0
+      if (known == 0) return
+      parameter = find_parameter(known, field)
+      is_parameter = size(parameter_names(known)) > 0 .and. &
+         (is_parameter .or. len(parameter%name) > 0)
+   end function is_parameter
 
    !> A keyword of CalculiX or Abaqus that is passed over or refused, or one that nobody knows.
    subroutine take_foreign_keyword(name, report, cards, card)

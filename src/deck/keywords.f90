@@ -126,7 +126,8 @@ module keywords
       known_keyword_type('NODE OUTPUT', built, in_step, 0, many, file_parameters), &
       known_keyword_type('ELEMENT OUTPUT', built, in_step, 0, many, file_parameters), &
       known_keyword_type('CONTACT OUTPUT', built, in_step, 0, many, file_parameters), &
-      known_keyword_type('RESTART', not_needed, in_both, 0, 0, '!READ/STEP=/WRITE/FREQUENCY=/OVERLAY'), &
+      known_keyword_type('RESTART', not_needed, in_both, 0, 0, &
+      '!READ/STEP=/WRITE/FREQUENCY=/OVERLAY'), &
       known_keyword_type('NODE PRINT', built, in_step, 1, many, &
       'NSET=/FREQUENCY=/TOTALS=/~GLOBAL=/~FREQUENCYF=/!TIME POINTS='), &
       known_keyword_type('EL PRINT', built, in_step, 1, many, &

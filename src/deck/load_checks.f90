@@ -8,9 +8,8 @@ module load_checks
    use load_requests, only: request_type
    use model, only: model_type
    use steps, only: analysis_static, centrifugal_round, dof_temperature, load_body_heat, &
-      load_centrifugal, &
-      load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
-      load_pressure, load_temperature, solves_heat, solves_mechanics
+      load_centrifugal, load_face_heat, load_film_coefficient, load_force, load_gravity, &
+      load_nodal_heat, load_pressure, load_temperature, solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
    private

@@ -17,8 +17,8 @@ module property_constants
 
 contains
 
-   !> Takes TYPE= of a property: how many constants it has. CalculiX reads the first letters only, so
-   !> longer words stand in decks for it.
+   !> Takes TYPE= of a property: how many constants it has. CalculiX reads the first letters only,
+   !> so longer words stand in decks for it.
    subroutine choose_symmetry(card, choices, report, symmetry)
       type(keyword_card_type), intent(in) :: card              !! the property
       character(*), intent(in) :: choices                      !! words, separated by slashes

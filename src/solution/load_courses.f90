@@ -55,9 +55,9 @@ contains
       self%on_total_time = amplitudes%total_time
    end subroutine prepare
 
-   !> Starts a step: loads stay at their last value unless given anew, but for those that an amplitude
-   !> on total time moves on; as in CalculiX one on step time ends with its step. A load that is not
-   !> given has the present value, from which it ramps once it is.
+   !> Starts a step: loads stay at their last value unless given anew, but for those that an
+   !> amplitude on total time moves on; as in CalculiX one on step time ends with its step. A load
+   !> that is not given has the present value, from which it ramps once it is.
    pure subroutine begin_step(self, present_value)
       class(load_course_type), intent(inout) :: self !! the loads
       real(dp), intent(in) :: present_value(:)       !! (n) values of loads that are not given

@@ -44,6 +44,7 @@ BOTH = ["*NODE PRINT, NSET=BODY", "U, RF, NT, RFL", "*EL PRINT, ELSET=BODY", "S,
 
 def calculix(deck):
     """Run CalculiX on a deck; return its tables by (time, quantity, set): values by row."""
+    assert shutil.which("ccx"), "needs CalculiX: apt-get install calculix-ccx"
     folder = deck.parent / "ccx"   # both programs write .sta and .cvg
     shutil.copytree(deck.parent, folder, dirs_exist_ok=True, ignore=lambda *_: ["ccx"])
     process = subprocess.run(["ccx", deck.stem], cwd=folder, capture_output=True, text=True,
