@@ -135,18 +135,15 @@ def test_forces_and_supports_along_amplitudes(tmp_path):
 
 @pytest.mark.parametrize("curve", ["", ", AMPLITUDE=TENT", ", AMPLITUDE=LONG"])
 def test_loads_in_increments_of_coupled_steps(tmp_path, curve):
-    """Ramps, amplitudes, what stays behind them, and what ends; temperatures and forces at once.
-
-    *CFLUX ends with *CLOAD, for in CalculiX the OP=NEW of *CLOAD ends both.
-    """
+    """Ramps, amplitudes, what stays behind them, and what ends, *CFLUX with the OP=NEW of *CLOAD;
+    temperatures and forces at once."""
     found = compared(
         tmp_path, CURVES, SMALL_STRAINS, HELD,
         step(f"{COUPLED}\n0.25, 1.", f"*BOUNDARY{curve}", "BODY.BOTTOM, 11, 11, 100.",
              f"*CLOAD{curve}", "14, 1, 5.", f"*DFLUX{curve}", "2, S3, 4.", f"*DLOAD{curve}",
              "2, P2, 2.", *BOTH),
         step(f"{COUPLED}\n0.25, 1.", "*CFLUX", "3, 11, 2."),
-        step(f"{COUPLED}\n0.25, 0.5", "*CLOAD, OP=NEW", "*CFLUX, OP=NEW", "*DFLUX, OP=NEW",
-             "*DLOAD, OP=NEW"),
+        step(f"{COUPLED}\n0.25, 0.5", "*CLOAD, OP=NEW", "*DFLUX, OP=NEW", "*DLOAD, OP=NEW"),
         step(f"{COUPLED}\n0.25, 0.5", "*BOUNDARY, OP=NEW", "BODY.BOTTOM, 2, 2", "1, 1",
              "BODY.TOP, 11, 11, 30."))
     assert_within(found, DIGITS)
