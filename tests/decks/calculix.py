@@ -11,23 +11,16 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 
 import numpy as np
 from blocks import write
-from deck_runs import run
+from deck_runs import DECKS, run
 
-# Tables of CalculiX's .dat: how the heading begins, numbers that name a row, columns of the plane.
-TABLES = {
-    "displacements": (1, ["U1", "U2"]),
-    "temperatures": (1, ["NT"]),
-    "forces": (1, ["RF1", "RF2"]),
-    "heat generation": (1, ["RFL"]),
-    "total force": (0, ["RF1", "RF2"]),
-    "total heat generation": (0, ["RFL"]),
-    "stresses": (2, ["S11", "S22", "S33", "S12"]),
-    "heat flux": (2, ["HFL1", "HFL2"]),
-}
-HEADING = re.compile(r" (\D+?) (?:\(.*\) )?for set ?(\S+) and time +(\S+)")
+sys.path.insert(0, str(DECKS.parents[1] / "post"))
+
+from thercon_post.comparison.print_file import read_calculix_dat  # noqa: E402
+from thercon_post.comparison.series import KEYS  # noqa: E402
 
 # Numbers that name a row of thercon's listing.
 ROW = {"NODES": 1, "INTEGRATION POINTS": 2, "TOTALS": 0}
@@ -43,7 +36,10 @@ BOTH = ["*NODE PRINT, NSET=BODY", "U, RF, NT, RFL", "*EL PRINT, ELSET=BODY", "S,
 
 
 def calculix(deck):
-    """Run CalculiX on a deck; return its tables by (time, quantity, set): values by row."""
+    """Run CalculiX on a deck; return its tables by (time, quantity): values by row.
+
+    The sum of RF1 over a set is a quantity of its own, RF1@SET, with one row.
+    """
     assert shutil.which("ccx"), "needs CalculiX: apt-get install calculix-ccx"
     folder = deck.parent / "ccx"   # both programs write .sta and .cvg
     shutil.copytree(deck.parent, folder, dirs_exist_ok=True, ignore=lambda *_: ["ccx"])
@@ -55,21 +51,19 @@ def calculix(deck):
 
 
 def read_dat(path):
-    """Return the tables of a .dat file by (time, quantity, set)."""
-    found, rows, tables = {}, 0, []
-    for line in path.read_text().splitlines():
-        heading = HEADING.match(line)
-        if heading:
-            title, name, time = heading.groups()
-            rows, names = TABLES.get(title, (0, []))
-            tables = [found.setdefault((round(float(time), 6), column, name), {})
-                      for column in names]
-        elif line.strip() and tables:
-            fields = line.split()
-            key = tuple(map(int, fields[:rows]))
-            for table, value in zip(tables, fields[rows:], strict=False):
-                table[key] = float(value)
-    return {key: table for key, table in found.items() if table}
+    """Return the tables of a .dat file by (time, quantity)."""
+    found = {}
+    source = read_calculix_dat(path)
+    assert not source.notes, source.notes
+    for series in source.series:
+        for number in range(len(series.frames)):
+            frame = series.frame(number)
+            keys = [frame[name].astype(int) for name in KEYS if name in frame]
+            for quantity in series.quantities:
+                for i, (time, value) in enumerate(zip(frame["time"], frame[quantity], strict=True)):
+                    table = found.setdefault((round(float(time), 6), quantity), {})
+                    table[tuple(int(key[i]) for key in keys)] = float(value)
+    return found
 
 
 def thercon(deck):
@@ -80,7 +74,7 @@ def thercon(deck):
 
 
 def read_listing(path):
-    """Return the tables of a listing by (time, quantity, set)."""
+    """Return the tables of a listing by (time, quantity)."""
     found, time, rows, columns, name = {}, None, 0, None, ""
     for line in path.read_text().split("INCREMENTS\n", 1)[1].splitlines():
         title = re.fullmatch(r"   (NODES|TOTALS|INTEGRATION POINTS) OF (\S+)", line)
@@ -88,7 +82,8 @@ def read_listing(path):
         if begins:
             time, columns = round(float(begins[1].rstrip(",")), 6), None
         elif title:
-            rows, columns, name = ROW[title[1]], [], title[2]
+            rows, columns = ROW[title[1]], []
+            name = f"@{title[2]}" if rows == 0 else ""
         elif not line.strip():
             columns = None
         elif columns == []:
@@ -97,8 +92,13 @@ def read_listing(path):
             key = tuple(int(v) for v in line.split()[:rows])
             for column, value in zip(columns, line.split(), strict=False):
                 if column not in ("node", "element", "point", "x", "y"):
-                    found.setdefault((time, column, name), {})[key] = float(value)
+                    found.setdefault((time, column + name), {})[key] = float(value)
     return found
+
+
+def kind_of(quantity):
+    """Return what a quantity is a component or a sum of."""
+    return quantity.partition("@")[0].rstrip("0123456789")
 
 
 def ring(tables):
@@ -106,28 +106,30 @@ def ring(tables):
 
     Radial forces are left out: those of its wedge lack what the sides of the wedge exert.
     """
-    return {key: {row: 180 * v for row, v in table.items()} if key[1] in ("RF2", "RFL") else table
-            for key, table in tables.items() if key[1] != "RF1"}
+    factor = {"RF2": 180.0, "RFL": 180.0}
+    return {(time, quantity): {row: factor.get(quantity.partition("@")[0], 1.0) * v
+                               for row, v in table.items()}
+            for (time, quantity), table in tables.items() if not quantity.startswith("RF1")}
 
 
 def differences(theirs, ours):
     """Return for each quantity of CalculiX the largest difference, by the largest value that its
-    kind (displacements, stresses, ...) has, over all sets, rows and the times that CalculiX has."""
+    kind (displacements, stresses, ...) has, over all rows and the times that CalculiX has."""
     scale, worst = {}, {}
-    for (_, quantity, _), table in theirs.items():
-        kind = quantity.rstrip("0123456789")
+    for (_, quantity), table in theirs.items():
+        kind = kind_of(quantity)
         scale[kind] = max(scale.get(kind, 0.0), *map(abs, table.values()))
     missing = sorted(theirs.keys() - ours.keys())
     assert theirs, "CalculiX printed no table"
     assert not missing, missing
     for key, table in theirs.items():
+        quantity = key[1]
         rows = sorted(table.keys() & ours[key].keys())
         # CalculiX has more points, in further layers, or fewer: one in a three-node triangle.
         assert {row[:1] for row in rows} == {row[:1] for row in table}, key
-        assert key[1][0] in "SH" or len(rows) == len(table) == len(ours[key]), key
+        assert kind_of(quantity) in ("S", "HFL") or len(rows) == len(table) == len(ours[key]), key
         off = max(abs(table[row] - ours[key][row]) for row in rows)
-        kind = key[1].rstrip("0123456789")
-        worst[key[1]] = max(worst.get(key[1], 0.0), off / (scale[kind] or 1.0))
+        worst[quantity] = max(worst.get(quantity, 0.0), off / (scale[kind_of(quantity)] or 1.0))
     return worst
 
 

@@ -139,6 +139,6 @@ def test_radial_forces_of_a_wedge_are_not_those_of_the_ring(tmp_path):
     deck = write(tmp_path / "deck.inp", [
         *body("CAX8"), "*BOUNDARY", "BODY.LEFT, 1, 1", "1, 2, 2", "*STEP", "*STATIC", "*DSLOAD",
         "BODY.RIGHT, P, 3.", "*NODE PRINT, NSET=BODY.LEFT, TOTALS=ONLY", "RF", "*END STEP"])
-    theirs, = calculix(deck)[1.0, "RF1", "BODY.LEFT"].values()
-    ours, = thercon(deck)[1.0, "RF1", "BODY.LEFT"].values()
+    theirs, = calculix(deck)[1.0, "RF1@BODY.LEFT"].values()
+    ours, = thercon(deck)[1.0, "RF1@BODY.LEFT"].values()
     assert not math.isclose(180 * theirs, ours, rel_tol=0.01)
