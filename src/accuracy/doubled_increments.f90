@@ -1,5 +1,6 @@
 !> The run once more with increments of twice the size, on the pairs alone: it is led beside the run
-!> and takes one increment where the run has taken two.
+!> and takes one increment where the run has taken two. Of an odd number of increments in a step it
+!> takes the first alone, for the last one tells most.
 module doubled_increments
    use controls, only: start_type
    use errors, only: error_type
@@ -17,6 +18,7 @@ module doubled_increments
    private
    public :: doubled_increments_type
 
+   real(dp), parameter :: almost_none = 1.0e-6_dp   !! of an increment: belongs to the one before
    real(dp), parameter :: tolerance = 1.0e-7_dp   !! of the fixed point; errors are far larger
 
    !> Where the second run stands.
@@ -26,6 +28,8 @@ module doubled_increments
       type(solution_state_type) :: state       !! its state
       real(dp) :: time = 0.0_dp                !! total time of it [time]
       integer :: waiting = 0                   !! increments of the run since then
+      integer :: step = 0                      !! step of the last of these
+      logical :: has_doubled = .false.         !! whether it has taken two for one yet
    contains
       procedure :: start
       procedure :: follow
@@ -52,12 +56,12 @@ contains
 
    !> Takes note of an accepted increment; at every second one, and at the end of a step, the second
    !> run moves on to its end.
-   subroutine follow(self, model, operators, loads, step, accepted, time, ends_step)
+   subroutine follow(self, model, operators, loads, number, accepted, time, ends_step)
       class(doubled_increments_type), intent(inout) :: self      !! the second run
       type(model_type), intent(in) :: model                      !! the model
       type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end of the increment
-      type(step_type), intent(in) :: step                        !! the step
+      integer, intent(in) :: number                              !! number of the step
       type(solution_state_type), intent(in) :: accepted          !! the run's state there
       real(dp), intent(in) :: time                               !! total time there [time]
       logical, intent(in) :: ends_step                           !! whether the step ends there
@@ -67,29 +71,40 @@ contains
       type(increment_record_type) :: record
 
       if (.not. self%is_led .or. self%is_lost) return
+      if (number /= self%step) self%waiting = modulo(planned_increments(model%steps(number)), 2)
+      self%step = number
       self%waiting = self%waiting + 1
       if (self%waiting < 2 .and. .not. ends_step) return
-      doubled = step
+      self%has_doubled = self%has_doubled .or. time - self%time > 1.5_dp*accepted%increment_size
+      doubled = model%steps(number)
       doubled%start = start_type()
-      doubled%fixed_point%tolerance = max(tolerance, step%fixed_point%tolerance)
+      doubled%fixed_point%tolerance = max(tolerance, &
+         doubled%fixed_point%tolerance)
       next = self%state
       next%increment_size = time - self%time
       next%heat_load = accepted%heat_load
       next%film = accepted%film
       next%force_load = accepted%force_load
-      if (solves_heat(step%analysis)) then
-         call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, error)
+      if (solves_heat(doubled%analysis)) then
+         call operators%set_film(left_films(doubled%scheme, self%state%film, next%film), model, error)
       end if
       if (.not. allocated(error)) call solve_pairs(operators, loads, model, doubled, self%state, &
          next, record, error)
       self%is_lost = allocated(error)
       if (self%is_lost) return
-      if (has_memory(step%scheme) .or. .not. solves_mechanics(step%analysis)) then
-         call recover_fields(operators, loads, model, step, next)
+      if (has_memory(doubled%scheme) .or. .not. solves_mechanics(doubled%analysis)) then
+         call recover_fields(operators, loads, model, doubled, next)
       end if
       self%state = next
       self%time = time
       self%waiting = 0
    end subroutine follow
+
+   !> Increments of a step without cut-backs and landings.
+   pure integer function planned_increments(step)
+      type(step_type), intent(in) :: step
+
+      planned_increments = ceiling(step%period/step%first_increment - almost_none)
+   end function planned_increments
 
 end module doubled_increments

@@ -4,15 +4,17 @@ module error_estimator
    use doubled_increments, only: doubled_increments_type
    use errors, only: error_type
    use increments, only: simulation_type
-   use interface_quantities, only: edge_resolution, quantities_of
+   use interface_quantities, only: edge_resolution, quantities_of_state
    use kinds, only: dp
    use load_courses, only: step_clock_type
    use model, only: model_type
    use records, only: estimated_quantities, increment_record_type, interface_errors_type, &
       is_band
    use refined_model, only: refined_model_type
-   use refinement_error, only: find_refined_quantities
+   use refinement_error, only: find_change_by_refinement
+   use scheme_properties, only: is_explicit
    use solution_state, only: solution_state_type
+   use steps, only: step_type
    use text, only: append
    implicit none
    private
@@ -81,17 +83,16 @@ contains
          end associate
       end if
       self%step = record%step
-      associate (step => model%steps(self%step))
-         call self%doubled%follow(model, simulation%operators, simulation%loads, step, &
-            simulation%state, record%time, record%last_of_step)
-      end associate
+      call self%doubled%follow(model, simulation%operators, simulation%loads, self%step, &
+         simulation%state, record%time, record%last_of_step)
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
       allocate (values(estimated_quantities, size(record%contacts)))
-      call find_values(simulation, simulation%state, values)
+      call quantities_of_state(simulation%operators, simulation%state, carrying_conductance( &
+         model%steps(self%step), simulation%state), values)
       call store(values, record%errors)
       if (self%why_not == '') call estimate_mesh(self, model, simulation, values, record)
-      call estimate_increments(self, simulation, values, record)
+      call estimate_increments(self, model, simulation, values, record)
       call estimate_iteration(values, record)
       if (self%why_not /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
          'estimated on one with elements of half the size: '//self%why_not)
@@ -110,27 +111,17 @@ contains
       end do
    end subroutine store
 
-   !> The quantities of a state.
-   subroutine find_values(simulation, state, values)
-      type(simulation_type), intent(in) :: simulation
+   !> The conductances by which heat crosses in a state.
+   pure function carrying_conductance(step, state) result(omega)
+      type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: state
-      real(dp), intent(out) :: values(:, :)
-      integer :: first, i, last
+      real(dp) :: omega(size(state%omega))
 
-      associate (pairs => simulation%operators%pairs)
-         do i = 1, size(values, 2)
-            first = pairs%interface_start(i)
-            last = pairs%interface_start(i + 1) - 1
-            values(:, i) = quantities_of(simulation%operators%interfaces(i), &
-               pairs%friction(first), state%contact%status(first:last), &
-               state%contact%gap(first:last), state%contact%force(first:last), &
-               state%contact%shear_force(first:last), pairs%weight(first:last)* &
-               state%omega(first:last)*state%jump(first:last))
-         end do
-      end associate
-   end subroutine find_values
+      omega = state%omega
+      if (is_explicit(step%scheme)) omega = state%omega_start
+   end function carrying_conductance
 
-   !> Errors of the mesh, from the refined one.
+   !> Errors of the mesh, from the change that a refined one makes.
    subroutine estimate_mesh(self, model, simulation, values, record)
       type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -139,22 +130,22 @@ contains
       type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable :: error
       type(step_clock_type) :: clock
-      real(dp) :: on_refined(size(values, 1), size(values, 2))
+      real(dp) :: change(size(values, 1), size(values, 2))
       integer :: i
 
       clock%total_time = record%time
       clock%period = model%steps(self%step)%period
       clock%step_time = clock%period
       clock%ramped = model%steps(self%step)%ramped
-      call find_refined_quantities(self%refined, simulation%operators, simulation%loads, model, &
-         model%steps(self%step), clock, self%before, simulation%state, on_refined, error)
+      call find_change_by_refinement(self%refined, simulation%operators, simulation%loads, model, &
+         model%steps(self%step), clock, self%before, simulation%state, change, error)
       if (allocated(error)) then
          call append(record%notes, 'the errors of the mesh cannot be estimated: '//error%message)
          return
       end if
       do i = 1, size(record%errors)
          associate (mesh => record%errors(i)%mesh)
-            mesh = of_halved_elements*(on_refined(:, i) - values(:, i))
+            mesh = of_halved_elements*change(:, i)
             where (is_band) mesh = abs(mesh) + edge_resolution( &
                simulation%operators%interfaces(i), values(:, i))
          end associate
@@ -162,8 +153,9 @@ contains
    end subroutine estimate_mesh
 
    !> Errors of the increments, from those of twice the size.
-   subroutine estimate_increments(self, simulation, values, record)
+   subroutine estimate_increments(self, model, simulation, values, record)
       type(error_estimator_type), intent(in) :: self
+      type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       real(dp), intent(in) :: values(:, :)
       type(increment_record_type), intent(inout) :: record
@@ -172,7 +164,10 @@ contains
 
       if (.not. self%doubled%is_led) return
       doubled = ieee_value(1.0_dp, ieee_quiet_nan)
-      if (.not. self%doubled%is_lost) call find_values(simulation, self%doubled%state, doubled)
+      if (self%doubled%has_doubled .and. .not. self%doubled%is_lost) then
+         call quantities_of_state(simulation%operators, self%doubled%state, carrying_conductance( &
+            model%steps(self%step), self%doubled%state), doubled)
+      end if
       do i = 1, size(record%errors)
          record%errors(i)%increment = of_doubled_increments*(values(:, i) - doubled(:, i))
       end do

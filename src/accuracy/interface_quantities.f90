@@ -3,12 +3,14 @@ module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use axis_limits, only: tractions
    use contact_pairs, only: contact_pairs_type
+   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use records, only: edges_kept, estimated_quantities
+   use solution_state, only: solution_state_type
    use zone_edges, only: contact_edges, stick_edges
    implicit none
    private
-   public :: quantities_of, edge_resolution
+   public :: quantities_of, quantities_of_state, edge_resolution
 
    !> How far edges of zones are known on a mesh, in spacings of the pairs about them: nine tenths of
    !> those of the published cylinder are no further from the converged edges (docs/accuracy.md).
@@ -41,6 +43,26 @@ contains
       call stick_edges(pairs%arc_length, pairs%weight, status, pressure, shear, gap, friction, &
          edges, values(6))
    end function quantities_of
+
+   !> The quantities of all interfaces in a state, with the conductances by which heat crosses.
+   subroutine quantities_of_state(operators, state, omega, values)
+      type(interface_operators_type), intent(in) :: operators   !! the bodies
+      type(solution_state_type), intent(in) :: state            !! the state
+      real(dp), intent(in) :: omega(:)                          !! (m) [power/(l^2 temperature)]
+      real(dp), intent(out) :: values(:, :)                     !! (quantities, interfaces)
+      integer :: first, i, last
+
+      associate (pairs => operators%pairs, contact => state%contact)
+         do i = 1, size(values, 2)
+            first = pairs%interface_start(i)
+            last = pairs%interface_start(i + 1) - 1
+            values(:, i) = quantities_of(operators%interfaces(i), pairs%friction(first), &
+               contact%status(first:last), contact%gap(first:last), contact%force(first:last), &
+               contact%shear_force(first:last), pairs%weight(first:last)*omega(first:last)* &
+               state%jump(first:last))
+         end do
+      end associate
+   end subroutine quantities_of_state
 
    !> How far the edges among the quantities are known from the spacing of the pairs; 0 for the others
    !> and for zones that end with the interface.

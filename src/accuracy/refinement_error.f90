@@ -13,7 +13,7 @@ module refinement_error
    use errors, only: error_type
    use increment_solution, only: recover_fields, solve_pairs
    use interface_operators, only: interface_operators_type
-   use interface_quantities, only: quantities_of
+   use interface_quantities, only: quantities_of, quantities_of_state
    use kinds, only: dp
    use linked_relaxation, only: joint_type, relax
    use load_courses, only: step_clock_type
@@ -22,12 +22,13 @@ module refinement_error
    use refined_pairs, only: refined_pairs_type
    use records, only: increment_record_type, status_open
    use refined_model, only: refined_model_type
+   use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: solves_heat, solves_mechanics, step_type
    implicit none
    private
-   public :: find_refined_quantities
+   public :: find_change_by_refinement
 
    integer, parameter :: corrections = 4            !! solutions of the increment
    integer, parameter :: smoothing_steps = 12        !! steps of conjugate gradients before each
@@ -43,10 +44,11 @@ module refinement_error
 
 contains
 
-   !> Quantities of the interfaces on the refined mesh, at the end of an increment.
+   !> What quantities of the interfaces change by on the refined mesh, at the end of an increment, in
+   !> the equilibrium of heat there.
    !> Error: the increment has no solution under one of the corrections.
-   subroutine find_refined_quantities(refined, operators, loads, model, step, clock, previous, &
-      next, values, error)
+   subroutine find_change_by_refinement(refined, operators, loads, model, step, clock, previous, &
+      next, change, error)
       type(refined_model_type), intent(inout) :: refined         !! the refined model
       type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
@@ -55,9 +57,11 @@ contains
       type(step_clock_type), intent(in) :: clock                 !! the end of the increment
       type(solution_state_type), intent(in) :: previous          !! state at its start
       type(solution_state_type), intent(in) :: next              !! state at its end
-      real(dp), intent(out) :: values(:, :)                      !! (quantities, interfaces)
+      real(dp), intent(out) :: change(:, :)                      !! (quantities, interfaces)
       type(error_type), allocatable, intent(out) :: error        !! see above
       type(corrected_type) :: fields
+      type(increment_record_type) :: record
+      real(dp) :: values(size(change, 1), size(change, 2))
       type(solution_state_type) :: before
       type(step_type) :: estimate_step
       integer :: k
@@ -69,14 +73,20 @@ contains
       estimate_step%start = start_type()
       estimate_step%fixed_point%tolerance = max(tolerance, step%fixed_point%tolerance)
       fields%coarse = next
-      fields%displacement = refined%prolong(next%displacement, 2)
-      fields%temperature = refined%prolong(next%temperature, 1)
-      call fields%pairs%begin(refined, next%contact)
-      call fields%pairs%take_old(refined, next%contact)
       if (solves_heat(step%analysis)) then
          call operators%set_film(next%film, model, error)
          if (allocated(error)) return
       end if
+      if (solves_heat(step%analysis) .and. has_memory(step%scheme)) then
+         call solve_pairs(operators, loads, model, estimate_step, previous, fields%coarse, record, &
+            error)
+         if (allocated(error)) return
+         call recover_fields(operators, loads, model, estimate_step, fields%coarse)
+      end if
+      call quantities_of_state(operators, fields%coarse, fields%coarse%omega, values)
+      fields%displacement = refined%prolong(fields%coarse%displacement, 2)
+      fields%temperature = refined%prolong(fields%coarse%temperature, 1)
+      call fields%pairs%begin(refined, fields%coarse%contact)
       before = previous
       do k = 1, corrections
          call smooth(refined, loads, estimate_step, fields)
@@ -88,8 +98,9 @@ contains
          if (allocated(error)) return
       end do
       call smooth(refined, loads, estimate_step, fields)
-      call measure(refined, fields, values)
-   end subroutine find_refined_quantities
+      call measure(refined, fields, change)
+      change = change - values
+   end subroutine find_change_by_refinement
 
    !> Smooths displacements and temperatures of the new mesh.
    subroutine smooth(refined, loads, step, fields)

@@ -3,7 +3,7 @@
 module listing
    use contact_pairs, only: contact_pairs_type, never_approached
    use errors, only: error_type, set_error, status_internal
-   use listing_errors, only: print_errors
+   use listing_interface_errors, only: print_errors
    use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
    use listing_prints, only: is_due, print_requested

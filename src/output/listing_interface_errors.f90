@@ -1,6 +1,6 @@
-!> The estimated errors at the end of a step in the listing: those of the mesh, of the increments and
-!> of the iteration beside each other.
-module listing_errors
+!> The estimated errors of an interface in the listing: those of the mesh, of the increments and of
+!> the iteration beside each other.
+module listing_interface_errors
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use kinds, only: dp
    use listing_text, only: column
@@ -86,4 +86,4 @@ contains
       if (abs(parts(k)) > 0.0_dp) name = kinds_of_error(k)
    end function largest_part
 
-end module listing_errors
+end module listing_interface_errors
