@@ -1,0 +1,113 @@
+!> Stated errors of the rows of a trade: the distance from the reference and what that is uncertain
+!> by, relative to the largest value of the quantity over all instants.
+module trade_errors
+   use kinds, only: dp
+   use trade_quantities, only: edge_contact, figure_count, is_there, &
+      temperature
+   use trade_reference, only: reference_type
+   use trade_rows, only: trade_type
+   implicit none
+   private
+   public :: state_errors
+
+   real(dp), parameter :: idle = 0.01_dp     !! part of the largest contact below which one is idle
+   real(dp), parameter :: nothing = 1.0e-12_dp   !! part of the largest temperature: no range
+   real(dp), parameter :: whole = 1.0_dp     !! error of what is there and should not, or the reverse
+
+contains
+
+   !> States the errors of all rows that were solved, and the uncertainty of the reference.
+   pure subroutine state_errors(reference, initial_temperature, trade)
+      type(reference_type), intent(in) :: reference    !! what rows are measured against
+      real(dp), intent(in) :: initial_temperature(:)   !! of the nodes of the deck [temperature]
+      type(trade_type), intent(inout) :: trade         !! receives the errors
+      real(dp), allocatable :: scales(:, :)
+      real(dp) :: range
+      integer :: q, i
+
+      if (.not. reference%is_known) return
+      scales = scales_of(reference)
+      do q = 1, figure_count
+         trade%is_known(q) = any(scales(q, :) > 0.0_dp)
+         if (.not. trade%is_known(q)) cycle
+         trade%uncertainty(q) = 0.0_dp
+         if (reference%is_contradictory(q)) trade%uncertainty(q) = whole
+         do i = 1, size(scales, 2)
+            if (scales(q, i) > 0.0_dp) trade%uncertainty(q) = max(trade%uncertainty(q), &
+               reference%uncertainty(q, i)/scales(q, i))
+         end do
+      end do
+      range = temperature_range(reference, initial_temperature)
+      trade%is_known(temperature) = range > 0.0_dp
+      if (range > 0.0_dp) trade%uncertainty(temperature) = reference%temperature_uncertainty/range
+      do i = 1, trade%count
+         associate (row => trade%rows(i))
+            if (row%status /= 0) cycle
+            do q = 1, figure_count
+               if (.not. trade%is_known(q)) cycle
+               row%errors(q) = trade%uncertainty(q) + distance(reference%figures(q, :, :), &
+                  row%values%figures(q, :, :), scales(q, :))
+            end do
+            if (trade%is_known(temperature)) row%errors(temperature) = &
+               trade%uncertainty(temperature) + maxval(abs(row%values%temperatures - &
+               reference%temperatures))/range
+            row%worst = maxval(row%errors)
+         end associate
+      end do
+   end subroutine state_errors
+
+   !> Largest distance over the interfaces and instants.
+   pure real(dp) function distance(expected, found, scale)
+      real(dp), intent(in) :: expected(:, :), found(:, :)   !! (pairs, instants)
+      real(dp), intent(in) :: scale(:)                      !! (pairs)
+      integer :: i, t
+
+      distance = 0.0_dp
+      do t = 1, size(expected, 2)
+         do i = 1, size(expected, 1)
+            if (scale(i) <= 0.0_dp) cycle
+            if (is_there(expected(i, t)) .neqv. is_there(found(i, t))) then
+               distance = max(distance, whole)
+            else if (is_there(expected(i, t))) then
+               distance = max(distance, abs(found(i, t) - expected(i, t))/scale(i))
+            end if
+         end do
+      end do
+   end function distance
+
+   !> What errors are relative to: the largest value over the instants, for edges the largest length
+   !> of the contact. A contact pair with less than a hundredth of the largest one is measured by
+   !> that hundredth. 0 where there is nothing to measure.
+   pure function scales_of(reference) result(scales)
+      type(reference_type), intent(in) :: reference
+      real(dp) :: scales(figure_count, size(reference%length))
+      integer :: q, i
+
+      scales = 0.0_dp
+      do q = 1, figure_count
+         do i = 1, size(scales, 2)
+            associate (values => reference%figures(q, i, :))
+               if (.not. any(is_there(values))) cycle
+               scales(q, i) = maxval(abs(values), mask=is_there(values))
+            end associate
+            if (q >= edge_contact) scales(q, i) = reference%length(i)
+         end do
+         if (q < edge_contact) where (scales(q, :) > 0.0_dp) scales(q, :) = &
+            max(scales(q, :), idle*maxval(scales(q, :)))
+      end do
+   end function scales_of
+
+   !> Range of all temperatures, the initial ones included; 0 where that is rounding.
+   pure real(dp) function temperature_range(reference, initial) result(range)
+      type(reference_type), intent(in) :: reference
+      real(dp), intent(in) :: initial(:)
+      real(dp) :: ends(2)
+
+      range = 0.0_dp
+      if (size(reference%temperatures) == 0) return
+      ends = [min(minval(reference%temperatures), minval(initial)), &
+         max(maxval(reference%temperatures), maxval(initial))]
+      if (ends(2) - ends(1) > nothing*maxval(abs(ends))) range = ends(2) - ends(1)
+   end function temperature_range
+
+end module trade_errors

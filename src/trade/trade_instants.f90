@@ -1,0 +1,94 @@
+!> Instants at which rows with other increments are compared.
+module trade_instants
+   use kinds, only: dp
+   use model, only: model_type
+   use variations, only: varied_increment
+   implicit none
+   private
+   public :: common_instants, instant_at
+
+   real(dp), parameter :: same = 1.0e-6_dp   !! of an increment: instants nearer than this are one
+   integer, parameter :: parts = 4           !! of a step at whose ends rows are compared
+
+contains
+
+   !> Instants that every row meets: ends of steps, and ends of the longest increments nearest to
+   !> the quarters of a step, which all halves of these increments meet too. Where increments are not
+   !> fixed they also land on corners of amplitudes and times of *VERIFY.
+   pure function common_instants(model, longest) result(times)
+      type(model_type), intent(in) :: model      !! the model as the deck is written
+      real(dp), intent(in) :: longest            !! largest factor on the increments
+      real(dp), allocatable :: times(:)          !! total times, ascending [time]
+      real(dp) :: start, increment
+      integer :: s, i, quarter
+
+      allocate (times(0))
+      start = 0.0_dp
+      do s = 1, size(model%steps)
+         associate (step => model%steps(s))
+            increment = varied_increment(step%first_increment, step%period, longest)
+            do quarter = 1, parts - 1
+               i = nint(quarter*step%period/(parts*increment))
+               call add(i*increment)
+            end do
+            if (.not. step%direct) then
+               do i = 1, size(model%verifications)
+                  if (.not. model%verifications(i)%at_last) call add(model%verifications(i)%when &
+                     - start)
+               end do
+               do i = 1, size(model%amplitudes)
+                  call add_corners(model%amplitudes(i)%times - merge(start, 0.0_dp, &
+                     model%amplitudes(i)%total_time))
+               end do
+            end if
+            start = start + step%period
+            times = [times, start]
+         end associate
+      end do
+      call sort(times)
+   contains
+      pure subroutine add(step_time)
+         real(dp), intent(in) :: step_time
+
+         if (step_time < same*increment) return
+         if (step_time > model%steps(s)%period - same*increment) return
+         if (any(abs(times - (start + step_time)) < same*increment)) return
+         times = [times, start + step_time]
+      end subroutine add
+
+      pure subroutine add_corners(corners)
+         real(dp), intent(in) :: corners(:)
+         integer :: k
+
+         do k = 1, size(corners)
+            call add(corners(k))
+         end do
+      end subroutine add_corners
+   end function common_instants
+
+   pure subroutine sort(times)
+      real(dp), intent(inout) :: times(:)
+      real(dp) :: time
+      integer :: i, k
+
+      do i = 2, size(times)
+         time = times(i)
+         do k = i - 1, 1, -1
+            if (times(k) <= time) exit
+            times(k + 1) = times(k)
+         end do
+         times(k + 1) = time
+      end do
+   end subroutine sort
+
+   !> Which of some instants a time is; 0 for none.
+   pure integer function instant_at(times, time)
+      real(dp), intent(in) :: times(:)   !! instants [time]
+      real(dp), intent(in) :: time       !! a total time [time]
+
+      do instant_at = size(times), 1, -1
+         if (abs(times(instant_at) - time) <= 1.0e-9_dp*times(size(times))) return
+      end do
+   end function instant_at
+
+end module trade_instants
