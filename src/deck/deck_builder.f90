@@ -18,6 +18,7 @@ module deck_builder
    use deck_builder_steps, only: build_steps
    use deck_builder_surfaces, only: build_surfaces
    use deck_builder_verify, only: build_verifications, check_heat_quantities
+   use deck_builder_order, only: apply_order, find_dropped
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -43,7 +44,7 @@ contains
       !> What is to be other than the cards say, once they are found sound
       type(variation_type), intent(in), optional :: variation
       type(deck_context_type) :: context
-      integer :: i, deck_nodes, errors, order
+      integer :: i, deck_nodes, errors
 
       if (size(cards%keywords) == 0) return
       if (allocated(cards%notes)) then
@@ -55,6 +56,7 @@ contains
       call build_options(cards, context, model, report)
       call build_nodes(cards, context, model%mesh, report)
       call build_elements(cards, context, model%mesh, report)
+      call find_dropped(context, model%mesh)
       errors = report%error_count()
       call build_sets('node', cards, context%node_index, report, model%mesh%node_sets)
       call build_sets('element', cards, context%element_index, report, model%mesh%element_sets)
@@ -72,8 +74,8 @@ contains
       call build_load_axis(context, model, report)
       call check_model(context, model, report)
       if (.not. report%has_errors()) then
-         order = 2
-         if (present(variation)) call apply_variation(variation, order, context%levels, model)
+         if (present(variation)) call apply_variation(variation, context%order, context%levels, &
+            model)
          call drop_idle_heat(context, model)
          call check_heat_quantities(model, report)
          call apply_loads(context, model, report)
@@ -82,6 +84,7 @@ contains
          call refine(model, context%levels)
          call apply_temperatures(context, deck_nodes, .false., model)
          call apply_boundaries(context, model)
+         call apply_order(context, model, report)
          call find_bodies(model%mesh)
          call note_defaults(cards, context, model)
       end if
