@@ -13,11 +13,10 @@ module deck_trade
    use recommendation, only: judge_rows
    use sorting, only: unique_sorted
    use system_calls, only: make_folder
-   use text, only: append, to_text
    use trade_errors, only: state_errors
    use trade_file, only: write_trade
    use trade_instants, only: common_instants
-   use trade_limits, only: check_affordable
+   use trade_limits, only: check_affordable, note_left_out
    use trade_measurement, only: measurement_type
    use trade_plan, only: add_level, add_singles, longest_factor, make_room, most_levels
    use trade_reference, only: find_reference, reference_type
@@ -122,7 +121,7 @@ contains
          if (.not. trade%rows(i)%is_default) call check_affordable(trade, i, command%limit, &
             command%jobs, reason)
          if (len(reason) > 0) then
-            call append(trade%left_out, reason)
+            call note_left_out(trade%rows(i), reason, trade%left_out)
          else
             kept = kept + 1
             if (kept < i) trade%rows(kept) = trade%rows(i)

@@ -9,10 +9,12 @@ module extrapolation
    real(dp), parameter :: slowest = 1.25_dp       !! ratio of differences; below it none is trusted
    real(dp), parameter :: fastest = 8.0_dp        !! ratio that is believed at most: third order
    real(dp), parameter :: doubtful = 5.0_dp       !! ratio of two differences alone: chance, perhaps
-   real(dp), parameter :: alike = 2.0_dp          !! ratios of a regular sequence differ by less
-   real(dp), parameter :: safety = 1.5_dp         !! on the difference of irregular sequences
+   real(dp), parameter :: faster = 1.1_dp         !! a ratio that grows more: terms that cancel
+   real(dp), parameter :: slower = 2.0_dp         !! one that falls more: none is steady
+   real(dp), parameter :: safety = 2.0_dp         !! on the differences of irregular sequences
+   real(dp), parameter :: safety_of_three = 3.0_dp   !! the same on those of three values alone
    real(dp), parameter :: safety_of_two = 2.0_dp  !! on the difference of two values
-   real(dp), parameter :: drift = 8.0_dp          !! on the differences of what does not settle
+   real(dp), parameter :: drift = 4.0_dp          !! 1/(slowest - 1), on what settles no faster
 
    !> The limit of a sequence.
    type :: limit_type
@@ -26,10 +28,12 @@ contains
    !> The limit of values with steps h, h/2, h/4, ... Where the last differences fall by a steady
    !> ratio, Richardson's extrapolation with that ratio, uncertain by all that it adds and by half
    !> the last difference. Where they do not, the last value, uncertain by what the others say if
-   !> errors fall at least as h does.
-   pure function extrapolate(values) result(limit)
-      real(dp), intent(in) :: values(:)   !! (n) from the coarsest to the finest, at least one
-      type(limit_type) :: limit           !! their limit
+   !> errors fall at least as h does; a position that is known to a part of h, with scatter, is always
+   !> judged so.
+   pure function extrapolate(values, is_position) result(limit)
+      real(dp), intent(in) :: values(:)     !! (n) from the coarsest to the finest, at least one
+      logical, intent(in) :: is_position    !! whether their errors are parts of h
+      type(limit_type) :: limit             !! their limit
       real(dp) :: differences(size(values) - 1), ratio, added
       integer :: n
 
@@ -45,7 +49,8 @@ contains
          limit%uncertainty = safety_of_two*abs(differences(1))
          return
       end if
-      ratio = steady_ratio(differences)
+      ratio = 0.0_dp
+      if (.not. is_position) ratio = steady_ratio(differences)
       if (ratio > 0.0_dp) then
          added = differences(n - 1)/(min(ratio, fastest) - 1.0_dp)
          limit%value = values(n) + added
@@ -53,6 +58,8 @@ contains
          if (n == 3) limit%uncertainty = max(abs(added), abs(differences(2)))
       else
          limit%uncertainty = irregular_uncertainty(values)
+         if (.not. is_position) limit%uncertainty = max(limit%uncertainty, &
+            drift_of(differences(n - 2), differences(n - 1)))
       end if
    end function extrapolate
 
@@ -73,28 +80,31 @@ contains
       ratios(1) = ratios(2)
       if (n > 2) ratios(1) = differences(n - 2)/differences(n - 1)
       if (n == 2 .and. ratios(2) > doubtful) return
-      if (maxval(min(ratios, fastest)) > alike*minval(ratios)) return
+      if (ratios(2) > faster*ratios(1) .or. ratios(1) > slower*ratios(2)) return
       ratio = minval(ratios)
    end function steady_ratio
 
    !> If errors fall at least as the steps do, that of the last value is at most |v_k - v_n|/(2^(n-k)
-   !> - 1) for any k; one of these may vanish by chance, the largest hardly does. Where the last
-   !> differences grow, or fall too slowly for that, many times the largest.
+   !> - 1) for any k; one of these may vanish by chance, the largest hardly does.
    pure real(dp) function irregular_uncertainty(values) result(uncertainty)
       real(dp), intent(in) :: values(:)
-      real(dp) :: last, before
       integer :: k, n
 
       n = size(values)
       uncertainty = 0.0_dp
       do k = 1, n - 1
-         uncertainty = max(uncertainty, safety*abs(values(k) - values(n))/(2.0_dp**(n - k) - 1.0_dp))
+         uncertainty = max(uncertainty, abs(values(k) - values(n))/(2.0_dp**(n - k) - 1.0_dp))
       end do
-      last = values(n) - values(n - 1)
-      before = values(n - 1) - values(n - 2)
-      if (abs(before) < slowest*abs(last) .and. (before > 0.0_dp .eqv. last > 0.0_dp)) then
-         uncertainty = max(uncertainty, drift*abs(last))
-      end if
+      uncertainty = merge(safety_of_three, safety, n == 3)*uncertainty
    end function irregular_uncertainty
+
+   !> What may be left where two differences of one sign fall too slowly to be trusted, or grow.
+   pure real(dp) function drift_of(before, last)
+      real(dp), intent(in) :: before, last
+
+      drift_of = 0.0_dp
+      if (abs(before) < slowest*abs(last) .and. (before > 0.0_dp .eqv. last > 0.0_dp)) &
+         drift_of = drift*abs(last)
+   end function drift_of
 
 end module extrapolation

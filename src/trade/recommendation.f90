@@ -6,18 +6,22 @@ module recommendation
    use trade_rows, only: trade_type, wish_count, wishes
    implicit none
    private
-   public :: judge_rows, are_optimal
+   public :: judge_rows, are_optimal, rounded
+
+   real(dp), parameter :: negligible = 1.0e-6_dp   !! errors below it are alike
 
 contains
 
-   !> Marks the rows that are Pareto-optimal by CPU seconds and worst error, and recommends one for
-   !> each wish: the cheapest that meets it in all quantities that can be known so well.
+   !> Marks the rows that are Pareto-optimal by CPU seconds and worst error, both with two digits, and
+   !> errors below the least that a person wishes as that one; recommends one for each wish: the cheapest that meets it
+   !> in all quantities that can be known so well.
    pure subroutine judge_rows(trade)
       type(trade_type), intent(inout) :: trade   !! the trade, with the errors of its rows
       integer :: wish
 
       associate (rows => trade%rows(:trade%count))
-         rows%is_optimal = are_optimal(rows%cpu_seconds, rows%worst, &
+         rows%is_optimal = are_optimal(rounded(rows%cpu_seconds), &
+            rounded(max(rows%worst, negligible)), &
             rows%status == 0 .and. is_there(rows%worst))
       end associate
       do wish = 1, wish_count
@@ -97,8 +101,8 @@ contains
    end subroutine remark
 
    !> A number with two digits.
-   pure real(dp) function rounded(number)
-      real(dp), intent(in) :: number
+   elemental real(dp) function rounded(number)
+      real(dp), intent(in) :: number   !! any number
       real(dp) :: unit
 
       rounded = number

@@ -1,13 +1,13 @@
 !> What a row would cost, from the rows before it, and whether that is affordable.
 module trade_limits
    use kinds, only: dp
-   use text, only: to_text
+   use text, only: append, string_type, to_text
    use trade_plan, only: find_row
    use trade_rows, only: trade_row_type, trade_type
    use trade_table, only: elements_of, factor_text
    implicit none
    private
-   public :: check_affordable
+   public :: check_affordable, note_left_out
 
    !> From one level to the next the bodies' factors take 16 times the operations and 8 times the
    !> memory at most; small rows, which mostly start up, take less.
@@ -30,23 +30,33 @@ contains
       reason = ''
       call predict(trade, trade%rows(row), seconds, bytes)
       if (seconds < 0.0_dp) then
-         reason = describe(trade%rows(row))//' was left out on the mesh before'
+         reason = 'not on the mesh before'
       else if (seconds > limit) then
-         reason = describe(trade%rows(row))//' would take about '//to_text(nint(seconds))// &
-            ' s of CPU, more than --limit '//to_text(nint(limit))
+         reason = 'about '//to_text(nint(seconds))//' s'
       else if (bytes > part_of_memory*free_bytes()/jobs) then
-         reason = describe(trade%rows(row))//' would take about '//to_text(nint(bytes/1.0e6_dp))// &
-            ' MB of memory'
+         reason = 'about '//to_text(nint(bytes/1.0e6_dp))//' MB'
       end if
    end subroutine check_affordable
 
-   pure function describe(row) result(words)
-      type(trade_row_type), intent(in) :: row
-      character(:), allocatable :: words
+   !> Notes that a row was left out; rows that differ in their increments share a line.
+   pure subroutine note_left_out(row, reason, lines)
+      type(trade_row_type), intent(in) :: row                        !! the row
+      character(*), intent(in) :: reason                             !! why
+      type(string_type), allocatable, intent(inout) :: lines(:)      !! receives it
+      character(:), allocatable :: mesh, words
 
-      words = elements_of(row)//' x '//to_text(2**row%level)//', increments '// &
-         trim(factor_text(row%variation%increments))
-   end function describe
+      mesh = elements_of(row)//' x '//to_text(2**row%level)//' with increments '
+      words = trim(factor_text(row%variation%increments))//' ('//reason//')'
+      if (size(lines) > 0) then
+         associate (last => lines(size(lines)))
+            if (index(last%value, mesh) == 1) then
+               last%value = last%value//', '//words
+               return
+            end if
+         end associate
+      end if
+      call append(lines, mesh//words)
+   end subroutine note_left_out
 
    !> What a row would cost: what it did on the level before, times what that grew by there; 0 on the
    !> first level, below 0 where the level before has no such row.

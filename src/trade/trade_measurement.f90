@@ -17,7 +17,7 @@ module trade_measurement
    public :: measurement_type, median
 
    !> Runs of a row by the CPU seconds of its first: times of a moment scatter most.
-   real(dp), parameter :: moments(3) = [0.1_dp, 1.0_dp, 10.0_dp]   !! [s]
+   real(dp), parameter :: moments(3) = [0.1_dp, 1.0_dp, 5.0_dp]   !! [s]
    integer, parameter :: runs_within(4) = [7, 5, 3, 1]             !! up to each, and beyond
    real(dp), parameter :: patience = 5.0_dp       !! a row may take so many times the limit
    real(dp), parameter :: least_patience = 20.0_dp !! and this [s]

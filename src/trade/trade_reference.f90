@@ -4,7 +4,7 @@ module trade_reference
    use extrapolation, only: extrapolate, limit_type
    use kinds, only: dp
    use trade_plan, only: factors, find_row
-   use trade_quantities, only: figure_count, is_there, quantity_count
+   use trade_quantities, only: edge_contact, figure_count, is_there, quantity_count
    use trade_rows, only: trade_type
    implicit none
    private
@@ -57,14 +57,15 @@ contains
       do t = 1, size(reference%figures, 3)
          do i = 1, size(reference%figures, 2)
             do q = 1, figure_count
-               call find_limit(figures_of(trade, rows, q, i, t), limit, differs)
+               call find_limit(figures_of(trade, rows, q, i, t), q >= edge_contact, limit, &
+                  differs)
                reference%figures(q, i, t) = limit%value
                reference%uncertainty(q, i) = max(reference%uncertainty(q, i), limit%uncertainty)
                reference%is_contradictory(q) = reference%is_contradictory(q) .or. differs
             end do
          end do
          do i = 1, size(reference%temperatures, 1)
-            call find_limit(temperatures_of(trade, rows, i, t), limit, differs)
+            call find_limit(temperatures_of(trade, rows, i, t), .false., limit, differs)
             reference%temperatures(i, t) = limit%value
             reference%temperature_uncertainty = max(reference%temperature_uncertainty, &
                limit%uncertainty)
@@ -72,8 +73,9 @@ contains
       end do
    contains
       !> The limit of one number: rows of the sequences, then the three single ones.
-      pure subroutine find_limit(values, limit, differs)
+      pure subroutine find_limit(values, is_position, limit, differs)
          real(dp), intent(in) :: values(:)
+         logical, intent(in) :: is_position
          type(limit_type), intent(out) :: limit
          logical, intent(out) :: differs
          type(limit_type) :: finer
@@ -84,9 +86,9 @@ contains
          limit%value = values(m)
          differs = any(is_there(values) .neqv. is_there(values(m)))
          if (differs .or. .not. is_there(values(m))) return
-         limit = extrapolate(values(:m))
+         limit = extrapolate(values(:m), is_position)
          if (m == 1) limit%uncertainty = 2.0_dp*abs(values(1) - values(m + n + 1))
-         finer = extrapolate(values(m + 1:m + n))
+         finer = extrapolate(values(m + 1:m + n), is_position)
          limit%value = limit%value + (finer%value - values(m + rows%base))
          limit%uncertainty = limit%uncertainty + finer%uncertainty + &
             abs(values(m + n + 2) - values(m + n + 3))

@@ -1,6 +1,7 @@
 !> The table of a trade as a person reads it.
 module trade_table
    use kinds, only: dp
+   use recommendation, only: rounded
    use text, only: to_text
    use trade_quantities, only: is_there, quantity_count, quantity_heads
    use trade_rows, only: trade_row_type, trade_type, wish_count, wishes
@@ -38,7 +39,7 @@ contains
          ' as it is written'
       call print_instants(unit, trade)
       do i = 1, size(trade%left_out)
-         write (unit, '(2a)') 'left out: ', trade%left_out(i)%value
+         write (unit, '(2a)') 'left out by --limit or memory: ', trade%left_out(i)%value
       end do
       write (unit, '(a)') ''
       do i = 1, wish_count
@@ -103,10 +104,10 @@ contains
             write (unit, '(2a)') 'no row; ', remark
             return
          end if
-         write (unit, '(a, i0, 6a, f0.3, a)') 'row ', i, ' (', elements_of(rows(i)), ' x ', &
+         write (unit, '(a, i0, 8a)') 'row ', i, ' (', elements_of(rows(i)), ' x ', &
             to_text(2**rows(i)%level), ', increments ', &
             trim(factor_text(rows(i)%variation%increments))//comma(rows(i)%varied)//'), ', &
-            rows(i)%cpu_seconds, ' s of CPU'
+            to_text(rounded(rows(i)%cpu_seconds)), ' s of CPU'
          if (len(remark) > 0) write (unit, '(7x, 2a)') 'but not for ', remark
       end associate
    end subroutine print_wish
