@@ -178,38 +178,38 @@ contains
       else if (ended%signal /= 0) then
          row%status = status_internal
          row%reason = describe_end(ended)
-      else if (ended%status == status_deck) then
-         row%status = status_deck
-         row%reason = first_error(messages_path(self, place))
       else
          call row%values%load(values_path(self, place), row%status, row%reason, error)
          if (.not. allocated(error)) return
-         row%status = max(ended%status, status_internal)
-         row%reason = first_error(messages_path(self, place))
-         if (len(row%reason) == 0) row%reason = error%message
+         row%status = max(ended%status, status_deck)
+         row%reason = line_with(': error: ', messages_path(self, place))
+         if (len(row%reason) > 0) return
+         row%status = status_internal
+         row%reason = 'ended with status '//to_text(ended%status)//': '// &
+            line_with('', messages_path(self, place))
       end if
    end subroutine take_outcome
 
-   !> The first error that a child printed, without its place.
-   function first_error(path) result(reason)
-      character(*), intent(in) :: path
-      character(:), allocatable :: reason
+   !> What stands behind a mark in the first line that a child printed with it.
+   function line_with(mark, path) result(words)
+      character(*), intent(in) :: mark, path
+      character(:), allocatable :: words
       character(500) :: line
       integer :: unit, io, at
 
-      reason = ''
+      words = ''
       open (newunit=unit, file=path, action='read', status='old', iostat=io)
       if (io /= 0) return
       do
          read (unit, '(a)', iostat=io) line
          if (io /= 0) exit
-         at = index(line, ': error: ')
-         if (at == 0) cycle
-         reason = trim(line(at + len(': error: '):))
+         at = index(line, mark)
+         if (at == 0 .or. len_trim(line) == 0) cycle
+         words = trim(line(at + len(mark):))
          exit
       end do
       close (unit)
-   end function first_error
+   end function line_with
 
    pure function messages_path(self, place) result(path)
       class(measurement_type), intent(in) :: self
