@@ -1,5 +1,5 @@
 !> Stated errors of the rows of a trade: the distance from the reference and what that is uncertain
-!> by, relative to the largest value of the quantity over all instants.
+!> by, relative to the value at the instant, or to a part of the largest where that is more.
 module trade_errors
    use kinds, only: dp
    use trade_quantities, only: edge_contact, figure_count, is_there, &
@@ -12,6 +12,7 @@ module trade_errors
 
    real(dp), parameter :: idle = 0.01_dp     !! part of the largest contact below which one is idle
    real(dp), parameter :: nothing = 1.0e-12_dp   !! part of the largest temperature: no range
+   real(dp), parameter :: early = 0.25_dp    !! part of the largest value over time that one counts as
    real(dp), parameter :: whole = 1.0_dp     !! error of what is there and should not, or the reverse
 
 contains
@@ -21,21 +22,19 @@ contains
       type(reference_type), intent(in) :: reference    !! what rows are measured against
       real(dp), intent(in) :: initial_temperature(:)   !! of the nodes of the deck [temperature]
       type(trade_type), intent(inout) :: trade         !! receives the errors
-      real(dp), allocatable :: scales(:, :)
+      real(dp), allocatable :: scales(:, :, :)
       real(dp) :: range
       integer :: q, i
 
       if (.not. reference%is_known) return
       scales = scales_of(reference)
       do q = 1, figure_count
-         trade%is_known(q) = any(scales(q, :) > 0.0_dp)
+         trade%is_known(q) = any(scales(q, :, :) > 0.0_dp)
          if (.not. trade%is_known(q)) cycle
-         trade%uncertainty(q) = 0.0_dp
+         trade%uncertainty(q) = maxval(reference%uncertainty(q, :, :)/ &
+            merge(scales(q, :, :), 1.0_dp, scales(q, :, :) > 0.0_dp), &
+            mask=scales(q, :, :) > 0.0_dp)
          if (reference%is_contradictory(q)) trade%uncertainty(q) = whole
-         do i = 1, size(scales, 2)
-            if (scales(q, i) > 0.0_dp) trade%uncertainty(q) = max(trade%uncertainty(q), &
-               reference%uncertainty(q, i)/scales(q, i))
-         end do
       end do
       range = temperature_range(reference, initial_temperature)
       trade%is_known(temperature) = range > 0.0_dp
@@ -46,7 +45,7 @@ contains
             do q = 1, figure_count
                if (.not. trade%is_known(q)) cycle
                row%errors(q) = trade%uncertainty(q) + distance(reference%figures(q, :, :), &
-                  row%values%figures(q, :, :), scales(q, :))
+                  row%values%figures(q, :, :), scales(q, :, :))
             end do
             if (trade%is_known(temperature)) row%errors(temperature) = &
                trade%uncertainty(temperature) + maxval(abs(row%values%temperatures - &
@@ -58,42 +57,43 @@ contains
 
    !> Largest distance over the interfaces and instants.
    pure real(dp) function distance(expected, found, scale)
-      real(dp), intent(in) :: expected(:, :), found(:, :)   !! (pairs, instants)
-      real(dp), intent(in) :: scale(:)                      !! (pairs)
+      real(dp), intent(in) :: expected(:, :), found(:, :), scale(:, :)   !! (pairs, instants)
       integer :: i, t
 
       distance = 0.0_dp
       do t = 1, size(expected, 2)
          do i = 1, size(expected, 1)
-            if (scale(i) <= 0.0_dp) cycle
+            if (scale(i, t) <= 0.0_dp) cycle
             if (is_there(expected(i, t)) .neqv. is_there(found(i, t))) then
                distance = max(distance, whole)
             else if (is_there(expected(i, t))) then
-               distance = max(distance, abs(found(i, t) - expected(i, t))/scale(i))
+               distance = max(distance, abs(found(i, t) - expected(i, t))/scale(i, t))
             end if
          end do
       end do
    end function distance
 
-   !> What errors are relative to: the largest value over the instants, for edges the largest length
-   !> of the contact. A contact pair with less than a hundredth of the largest one is measured by
-   !> that hundredth. 0 where there is nothing to measure.
+   !> What errors are relative to: the value at the instant, for edges the length of the contact; a
+   !> quarter of the largest over time where that is more, and a hundredth of the largest of all
+   !> contact pairs. 0 where there is nothing to measure.
    pure function scales_of(reference) result(scales)
       type(reference_type), intent(in) :: reference
-      real(dp) :: scales(figure_count, size(reference%length))
+      real(dp), allocatable :: scales(:, :, :)
       integer :: q, i
 
-      scales = 0.0_dp
+      allocate (scales, mold=reference%figures)
       do q = 1, figure_count
+         if (q >= edge_contact) then
+            scales(q, :, :) = reference%length
+            if (.not. any(is_there(reference%figures(q, :, :)))) scales(q, :, :) = 0.0_dp
+         else
+            scales(q, :, :) = merge(abs(reference%figures(q, :, :)), 0.0_dp, &
+               is_there(reference%figures(q, :, :)))
+         end if
          do i = 1, size(scales, 2)
-            associate (values => reference%figures(q, i, :))
-               if (.not. any(is_there(values))) cycle
-               scales(q, i) = maxval(abs(values), mask=is_there(values))
-            end associate
-            if (q >= edge_contact) scales(q, i) = reference%length(i)
+            scales(q, i, :) = max(scales(q, i, :), early*maxval(scales(q, i, :)))
          end do
-         if (q < edge_contact) where (scales(q, :) > 0.0_dp) scales(q, :) = &
-            max(scales(q, :), idle*maxval(scales(q, :)))
+         scales(q, :, :) = max(scales(q, :, :), idle*maxval(scales(q, :, :)))
       end do
    end function scales_of
 

@@ -8,27 +8,30 @@ module trade_instants
    public :: common_instants, instant_at
 
    real(dp), parameter :: same = 1.0e-6_dp   !! of an increment: instants nearer than this are one
-   integer, parameter :: parts = 4           !! of a step at whose ends rows are compared
+   integer, parameter :: few = 4                  !! longest increments of a step, of which all count
+   integer, parameter :: most_instants = 60  !! over all steps, but at least two and the end in each
 
 contains
 
-   !> Instants that every row meets: ends of steps, and ends of the longest increments nearest to
-   !> the quarters of a step, which all halves of these increments meet too. Where increments are not
-   !> fixed they also land on corners of amplitudes and times of *VERIFY.
+   !> Instants that every row meets: ends of the longest increments, which all halves of these meet
+   !> too, every n-th of them where a step has many, and the end of the step. The first one is the
+   !> coarsest part of a path and left out, unless there are few. Where increments are not fixed they
+   !> also land on corners of amplitudes and times of *VERIFY.
    pure function common_instants(model, longest) result(times)
       type(model_type), intent(in) :: model      !! the model as the deck is written
       real(dp), intent(in) :: longest            !! largest factor on the increments
       real(dp), allocatable :: times(:)          !! total times, ascending [time]
       real(dp) :: start, increment
-      integer :: s, i, quarter
+      integer :: s, i, count, most
 
       allocate (times(0))
       start = 0.0_dp
+      most = max(most_instants/size(model%steps), 2)
       do s = 1, size(model%steps)
          associate (step => model%steps(s))
             increment = varied_increment(step%first_increment, step%period, longest)
-            do quarter = 1, parts - 1
-               i = nint(quarter*step%period/(parts*increment))
+            count = floor(step%period/increment + same)
+            do i = merge(2, 1, count >= few), count, 1 + (count - 1)/most
                call add(i*increment)
             end do
             if (.not. step%direct) then

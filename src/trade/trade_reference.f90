@@ -25,8 +25,8 @@ module trade_reference
       logical :: is_known = .false.                    !! whether there is one
       real(dp), allocatable :: figures(:, :, :)        !! (figures, pairs, instants), or absent
       real(dp), allocatable :: temperatures(:, :)      !! (nodes, instants)
-      real(dp), allocatable :: length(:)               !! (pairs) largest closed length [length]
-      real(dp), allocatable :: uncertainty(:, :)       !! (figures, pairs) largest, in their units
+      real(dp), allocatable :: length(:, :)            !! (pairs, instants) closed length [length]
+      real(dp), allocatable :: uncertainty(:, :, :)    !! (figures, pairs, instants), as figures
       real(dp) :: temperature_uncertainty = 0.0_dp     !! largest of nodes and instants [temp.]
       logical :: is_contradictory(quantity_count) = .false.   !! some rows have it, others not
    end type reference_type
@@ -51,16 +51,16 @@ contains
       associate (finest => trade%rows(rows%meshes(size(rows%meshes)))%values)
          reference%figures = finest%figures
          reference%temperatures = finest%temperatures
-         reference%length = maxval(finest%length, dim=2)
+         reference%length = finest%length
       end associate
-      allocate (reference%uncertainty(figure_count, size(reference%length)), source=0.0_dp)
+      allocate (reference%uncertainty, mold=reference%figures)
       do t = 1, size(reference%figures, 3)
          do i = 1, size(reference%figures, 2)
             do q = 1, figure_count
                call find_limit(figures_of(trade, rows, q, i, t), q >= edge_contact, limit, &
                   differs)
                reference%figures(q, i, t) = limit%value
-               reference%uncertainty(q, i) = max(reference%uncertainty(q, i), limit%uncertainty)
+               reference%uncertainty(q, i, t) = limit%uncertainty
                reference%is_contradictory(q) = reference%is_contradictory(q) .or. differs
             end do
          end do
