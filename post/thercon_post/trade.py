@@ -55,6 +55,11 @@ class Trade:
 def draw(path, options):
     """Draw a table; return the files written."""
     trade = Trade(path)
+    return style.write(figure_of(trade), None, options.out, f"{trade.name}.trade")
+
+
+def figure_of(trade):
+    """Return the figure of a trade: a panel a quantity."""
     panels = trade.panels()
     rows = -(-len(panels) // COLUMNS)
     figure, axes = plt.subplots(
@@ -72,7 +77,7 @@ def draw(path, options):
     for line in axes:
         line[0].set_ylabel("error, %")
     figure.legend(handles=legend(trade), loc="outside lower center", ncols=5)
-    return style.write(figure, None, options.out, f"{trade.name}.trade")
+    return figure
 
 
 def draw_panel(axes, trade, name):

@@ -130,8 +130,8 @@ contains
       trade%count = kept
    end subroutine keep_affordable
 
-   !> Numbers of the nodes whose temperatures are compared: corners of the deck's own elements, which
-   !> all rows have; some of them where they are many.
+   !> Numbers of the nodes whose temperatures are compared: corners of the deck's own elements,
+   !> which all rows have; some of them where they are many.
    pure function compared_nodes(model) result(numbers)
       type(model_type), intent(in) :: model
       integer, allocatable :: numbers(:)

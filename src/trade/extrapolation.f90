@@ -28,8 +28,8 @@ contains
    !> The limit of values with steps h, h/2, h/4, ... Where the last differences fall by a steady
    !> ratio, Richardson's extrapolation with that ratio, uncertain by all that it adds and by half
    !> the last difference. Where they do not, the last value, uncertain by what the others say if
-   !> errors fall at least as h does; a position that is known to a part of h, with scatter, is always
-   !> judged so.
+   !> errors fall at least as h does; a position that is known to a part of h, with scatter, is
+   !> always judged so.
    pure function extrapolate(values, is_position) result(limit)
       real(dp), intent(in) :: values(:)     !! (n) from the coarsest to the finest, at least one
       logical, intent(in) :: is_position    !! whether their errors are parts of h
@@ -84,8 +84,8 @@ contains
       ratio = minval(ratios)
    end function steady_ratio
 
-   !> If errors fall at least as the steps do, that of the last value is at most |v_k - v_n|/(2^(n-k)
-   !> - 1) for any k; one of these may vanish by chance, the largest hardly does.
+   !> If errors fall at least as the steps do, that of the last value is at most
+   !> |v_k - v_n|/(2^(n-k) - 1) for any k; one of these may vanish by chance, the largest hardly does.
    pure real(dp) function irregular_uncertainty(values) result(uncertainty)
       real(dp), intent(in) :: values(:)
       integer :: k, n
@@ -103,8 +103,9 @@ contains
       real(dp), intent(in) :: before, last
 
       drift_of = 0.0_dp
-      if (abs(before) < slowest*abs(last) .and. (before > 0.0_dp .eqv. last > 0.0_dp)) &
+      if (abs(before) < slowest*abs(last) .and. (before > 0.0_dp .eqv. last > 0.0_dp)) then
          drift_of = drift*abs(last)
+      end if
    end function drift_of
 
 end module extrapolation

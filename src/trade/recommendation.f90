@@ -12,9 +12,9 @@ module recommendation
 
 contains
 
-   !> Marks the rows that are Pareto-optimal by CPU seconds and worst error, both with two digits, and
-   !> errors below the least that a person wishes as that one; recommends one for each wish: the cheapest that meets it
-   !> in all quantities that can be known so well.
+   !> Marks the rows that are Pareto-optimal by CPU seconds and worst error, both with two digits,
+   !> negligible errors as one; recommends one row for each wish, the cheapest that meets it in all
+   !> quantities that can be known so well.
    pure subroutine judge_rows(trade)
       type(trade_type), intent(inout) :: trade   !! the trade, with the errors of its rows
       integer :: wish

@@ -12,8 +12,8 @@ module trade_errors
 
    real(dp), parameter :: idle = 0.01_dp     !! part of the largest contact below which one is idle
    real(dp), parameter :: nothing = 1.0e-12_dp   !! part of the largest temperature: no range
-   real(dp), parameter :: early = 0.25_dp    !! part of the largest value over time that one counts as
-   real(dp), parameter :: whole = 1.0_dp     !! error of what is there and should not, or the reverse
+   real(dp), parameter :: early = 0.25_dp    !! part of the largest value: least scale over time
+   real(dp), parameter :: whole = 1.0_dp     !! error of what should not be there, or should
 
 contains
 

@@ -23,34 +23,43 @@ contains
       character(*), intent(in) :: path                     !! the file
       type(trade_type), intent(in) :: trade                !! the trade
       type(error_type), allocatable, intent(out) :: error  !! see above
-      integer :: unit, io, i, q
+      integer :: unit, status, i
 
-      open (newunit=unit, file=path, status='replace', action='write', iostat=io)
-      if (io == 0) then
-         write (unit, '(a)', advance='no', iostat=io) first_columns
-         do q = 1, quantity_count
-            write (unit, '(2a)', advance='no', iostat=io) ',error_', trim(quantity_names(q))
-         end do
-         write (unit, '(a)', advance='no', iostat=io) ',error_worst,pareto'
-         do i = 1, wish_count
-            write (unit, '(2a)', advance='no', iostat=io) ',recommended_', trim(wish_names(i))
-         end do
-         write (unit, '(a)', iostat=io) ''
+      open (newunit=unit, file=path, status='replace', action='write', iostat=status)
+      if (status == 0) then
+         write (unit, '(a)', iostat=status) heading()
          do i = 1, trade%count
-            if (io == 0) call write_row(unit, i, trade%rows(i), trade, io)
+            if (status /= 0) exit
+            write (unit, '(a)', iostat=status) row_text(i, trade%rows(i), trade)
          end do
-         if (io == 0) call write_reference(unit, trade, io)
-         close (unit, iostat=i)
-         io = max(abs(io), abs(i))
+         if (status == 0) write (unit, '(a)', iostat=status) reference_text(trade)
+         if (status == 0) then
+            close (unit, iostat=status)
+         else
+            close (unit)
+         end if
       end if
-      if (io /= 0) call set_error(error, status_internal, 'cannot write "'//path//'"')
+      if (status /= 0) call set_error(error, status_internal, 'cannot write "'//path//'"')
    end subroutine write_trade
 
-   subroutine write_row(unit, number, row, trade, io)
-      integer, intent(in) :: unit, number
+   pure function heading() result(line)
+      character(:), allocatable :: line
+      integer :: i
+
+      line = first_columns
+      do i = 1, quantity_count
+         line = line//',error_'//trim(quantity_names(i))
+      end do
+      line = line//',error_worst,pareto'
+      do i = 1, wish_count
+         line = line//',recommended_'//trim(wish_names(i))
+      end do
+   end function heading
+
+   pure function row_text(number, row, trade) result(line)
+      integer, intent(in) :: number
       type(trade_row_type), intent(in) :: row
       type(trade_type), intent(in) :: trade
-      integer, intent(out) :: io
       character(:), allocatable :: line
       integer :: i
 
@@ -69,18 +78,15 @@ contains
             line = line//quoted('but not for '//trade%remarks(i)%value)
          end if
       end do
-      write (unit, '(a)', iostat=io) line
-   end subroutine write_row
+   end function row_text
 
-   subroutine write_reference(unit, trade, io)
-      integer, intent(in) :: unit
+   pure function reference_text(trade) result(line)
       type(trade_type), intent(in) :: trade
-      integer, intent(out) :: io
+      character(:), allocatable :: line
 
-      write (unit, '(a)', iostat=io) 'reference'//repeat(',', 12)// &
-         errors_text(trade%uncertainty)//','//number_or_empty(maxval(trade%uncertainty))// &
-         repeat(',', wish_count + 1)
-   end subroutine write_reference
+      line = 'reference'//repeat(',', 12)//errors_text(trade%uncertainty)//','// &
+         number_or_empty(maxval(trade%uncertainty))//repeat(',', wish_count + 1)
+   end function reference_text
 
    pure function errors_text(errors) result(text)
       real(dp), intent(in) :: errors(:)

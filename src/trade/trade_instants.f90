@@ -8,14 +8,14 @@ module trade_instants
    public :: common_instants, instant_at
 
    real(dp), parameter :: same = 1.0e-6_dp   !! of an increment: instants nearer than this are one
-   integer, parameter :: few = 4                  !! longest increments of a step, of which all count
-   integer, parameter :: most_instants = 60  !! over all steps, but at least two and the end in each
+   integer, parameter :: few = 4             !! longest increments of a step: fewer all count
+   integer, parameter :: most_instants = 60  !! of all steps, but at least three in each
 
 contains
 
    !> Instants that every row meets: ends of the longest increments, which all halves of these meet
    !> too, every n-th of them where a step has many, and the end of the step. The first one is the
-   !> coarsest part of a path and left out, unless there are few. Where increments are not fixed they
+   !> coarsest part of a path and left out, unless there are few. Increments that are not fixed
    !> also land on corners of amplitudes and times of *VERIFY.
    pure function common_instants(model, longest) result(times)
       type(model_type), intent(in) :: model      !! the model as the deck is written

@@ -58,8 +58,8 @@ contains
       call append(lines, mesh//words)
    end subroutine note_left_out
 
-   !> What a row would cost: what it did on the level before, times what that grew by there; 0 on the
-   !> first level, below 0 where the level before has no such row.
+   !> What a row would cost: what it did on the level before, times what that grew by there; 0 on
+   !> the first level, below 0 where the level before has no such row.
    pure subroutine predict(trade, row, seconds, bytes)
       type(trade_type), intent(in) :: trade
       type(trade_row_type), intent(in) :: row

@@ -1,5 +1,5 @@
-!> Which rows a trade has: the grid over mesh, increments and elements, level by level, and one thing
-!> at a time around the deck as it is written.
+!> Which rows a trade has: the grid over mesh, increments and elements, level by level, and one
+!> thing at a time around the deck as it is written.
 module trade_plan
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
       method_names, solver_mumps, solver_skyline, thermal_scheme_type

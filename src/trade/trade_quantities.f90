@@ -117,13 +117,15 @@ contains
       open (newunit=unit, file=path, access='stream', form='unformatted', status='replace', &
          action='write', iostat=io)
       if (io /= 0) return
-      write (unit, iostat=io) status, len(reason), reason
-      write (unit, iostat=io) self%increments, self%passes, allocated(self%figures)
-      if (allocated(self%figures)) then
-         write (unit, iostat=io) shape(self%figures), size(self%temperatures, 1)
-         write (unit, iostat=io) self%figures, self%length, self%temperatures
+      write (unit, iostat=io) status, len(reason), reason, self%increments, self%passes, &
+         allocated(self%figures)
+      if (io == 0 .and. allocated(self%figures)) write (unit, iostat=io) shape(self%figures), &
+         size(self%temperatures, 1), self%figures, self%length, self%temperatures
+      if (io == 0) then
+         close (unit)
+      else
+         close (unit, status='delete')
       end if
-      close (unit, iostat=io)
    end subroutine save_values
 
    !> Reads what save_values wrote, and removes the file.

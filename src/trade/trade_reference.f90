@@ -119,7 +119,7 @@ contains
       end associate
    end function temperatures_of
 
-   !> Rows whose values make a limit; in place of one that there is not stands one that adds nothing.
+   !> Rows whose values make a limit; in place of one that is missing stands one that adds nothing.
    pure function all_rows(rows) result(list)
       type(sequences_type), intent(in) :: rows
       integer, allocatable :: list(:)
@@ -146,8 +146,9 @@ contains
          order = max(order, trade%rows(i)%order)
       end do
       do i = 1, trade%count
-         if (is_grid_row(trade, i) .and. trade%rows(i)%order == order) &
+         if (is_grid_row(trade, i) .and. trade%rows(i)%order == order) then
             finest = max(finest, trade%rows(i)%level)
+         end if
       end do
       if (finest < 0) return
       do f = size(factors), 1, -1
@@ -165,8 +166,9 @@ contains
          if (size(rows%increments) >= 3) exit
       end do
       do i = 1, size(rows%increments)
-         if (abs(trade%rows(rows%increments(i))%variation%increments - factors(f)) <= 0.0_dp) &
+         if (abs(trade%rows(rows%increments(i))%variation%increments - factors(f)) <= 0.0_dp) then
             rows%base = i
+         end if
       end do
       if (order > 1) rows%linear = find_row(trade, 1, finest, factors(f))
       if (.not. is_grid_row(trade, rows%linear)) rows%linear = 0

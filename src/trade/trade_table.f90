@@ -1,7 +1,6 @@
 !> The table of a trade as a person reads it.
 module trade_table
    use kinds, only: dp
-   use recommendation, only: rounded
    use text, only: to_text
    use trade_quantities, only: is_there, quantity_count, quantity_heads
    use trade_rows, only: trade_row_type, trade_type, wish_count, wishes
@@ -107,10 +106,19 @@ contains
          write (unit, '(a, i0, 8a)') 'row ', i, ' (', elements_of(rows(i)), ' x ', &
             to_text(2**rows(i)%level), ', increments ', &
             trim(factor_text(rows(i)%variation%increments))//comma(rows(i)%varied)//'), ', &
-            to_text(rounded(rows(i)%cpu_seconds)), ' s of CPU'
+            seconds_text(rows(i)%cpu_seconds), ' s of CPU'
          if (len(remark) > 0) write (unit, '(7x, 2a)') 'but not for ', remark
       end associate
    end subroutine print_wish
+
+   pure function seconds_text(seconds) result(text)
+      real(dp), intent(in) :: seconds
+      character(:), allocatable :: text
+      character(12) :: buffer
+
+      write (buffer, '(f12.3)') seconds
+      text = trim(adjustl(buffer))
+   end function seconds_text
 
    pure function comma(words) result(text)
       character(*), intent(in) :: words
