@@ -85,7 +85,7 @@ contains
    end function steady_ratio
 
    !> If errors fall at least as the steps do, that of the last value is at most
-   !> |v_k - v_n|/(2^(n-k) - 1) for any k; one of these may vanish by chance, the largest hardly does.
+   !> |v_k - v_n|/(2^(n-k) - 1) for any k; one of these may vanish by chance, the largest hardly.
    pure real(dp) function irregular_uncertainty(values) result(uncertainty)
       real(dp), intent(in) :: values(:)
       integer :: k, n

@@ -66,8 +66,8 @@ contains
       line = to_text(number)//','//flag(row%is_default)//','//elements_of(row)//','// &
          to_text(row%level)//','//to_text(row%variation%increments)//','//row%varied//','// &
          to_text(row%status)//','//quoted(row%reason)//','//to_text(row%values%increments)//','// &
-         to_text(row%values%passes)//','//to_text(size(row%cpu))//','//digits(row%cpu_seconds)// &
-         ','//digits(row%peak_bytes/1.0e6_dp)//errors_text(row%errors)//','// &
+         to_text(row%values%passes)//','//to_text(size(row%cpu))//','//scientific(row%cpu_seconds)// &
+         ','//scientific(row%peak_bytes/1.0e6_dp)//errors_text(row%errors)//','// &
          number_or_empty(row%worst)//','//flag(row%is_optimal)
       do i = 1, wish_count
          line = line//','
@@ -104,17 +104,17 @@ contains
       character(:), allocatable :: text
 
       text = ''
-      if (is_there(number)) text = digits(number)
+      if (is_there(number)) text = scientific(number)
    end function number_or_empty
 
-   pure function digits(number) result(text)
+   pure function scientific(number) result(text)
       real(dp), intent(in) :: number
       character(:), allocatable :: text
       character(16) :: buffer
 
       write (buffer, '(es12.5)') number
       text = trim(adjustl(buffer))
-   end function digits
+   end function scientific
 
    pure character(1) function flag(holds)
       logical, intent(in) :: holds

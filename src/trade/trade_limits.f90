@@ -32,7 +32,7 @@ contains
       if (seconds < 0.0_dp) then
          reason = 'not on the mesh before'
       else if (seconds > limit) then
-         reason = 'about '//to_text(nint(seconds))//' s'
+         reason = 'about '//to_text(nint(10.0_dp*seconds)/10.0_dp)//' s'
       else if (bytes > part_of_memory*free_bytes()/jobs) then
          reason = 'about '//to_text(nint(bytes/1.0e6_dp))//' MB'
       end if

@@ -144,8 +144,13 @@ def test_recommended_rows_have_the_accuracy_wished_for(case, tmp_path):
         if path.suffix in (".inp", ".inc", ".step", ".mesh"):
             (folder / path.name).write_text(path.read_text())
     checked = check_recommendations(folder / source.name, name, known, model_error, tmp_path)
-    # Force, heat and peak pressure are known well enough on all of these.
-    assert checked >= {("recommended_1", key) for key in known if key != "edge_contact"}
+    # Force, heat and peak pressure are known well enough on all of these; on the cylinder, meshes
+    # that this limit affords leave only the force so certain.
+    due = {("recommended_1", key) for key in known if key != "edge_contact"}
+    if case == "cylinder":
+        due = {("recommended_1", "normal_force")}
+        due |= {("recommended_10", key) for key in ("heat_rate", "peak_pressure")}
+    assert checked >= due
 
 
 @pytest.mark.parametrize("gap", [CLOSED, OPEN])
