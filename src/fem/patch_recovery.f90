@@ -1,0 +1,317 @@
+!> Stress or flux at the nodes by superconvergent patch recovery: polynomials fitted to the values at
+!> the recovery points of the elements round a corner (Zienkiewicz & Zhu, Int. J. Num. Meth. Eng. 33
+!> (1992) 1331). A fit depends on geometry alone, so each nodal value is a sum of values with
+!> weights that are formed once.
+!>
+!> Plain averages of extrapolated values (field_recovery) will not do for an estimate of errors: in
+!> elements of eight nodes the extrapolations of two neighbours agree up to the order of the error
+!> itself, and the estimate would tend to zero times the error.
+module patch_recovery
+   use element_kinds, only: element_corner_count, element_node_count, quad4, triangle3
+   use field_recovery, only: point_map_type
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use patch_fits, only: fit_type, linear_terms, make_fit, quadratic_terms
+   implicit none
+   private
+   public :: patch_recovery_type
+
+   integer, parameter :: most_layers = 3   !! times that a patch is widened by its neighbours
+
+   !> Nodal values from values at the recovery points of all elements.
+   type :: patch_recovery_type
+      integer, allocatable :: first(:)      !! (points + 1) first weight of each point
+      integer, allocatable :: sample(:)     !! (weights) recovery point that it belongs to
+      real(dp), allocatable :: weight(:)    !! (weights) their sum over a point is 1
+   contains
+      procedure :: prepare
+      procedure :: recover
+   end type patch_recovery_type
+
+   !> Weights of one point.
+   type :: row_type
+      integer :: count = 0
+      integer, allocatable :: sample(:)
+      real(dp), allocatable :: weight(:)
+   end type row_type
+
+   !> What patches are made of.
+   type :: layout_type
+      integer, allocatable :: first_sample(:)    !! (elements + 1) first recovery point
+      real(dp), allocatable :: position(:, :)    !! (2, recovery points) [length]
+      integer, allocatable :: start(:)           !! (points + 1) first of the elements round each
+      integer, allocatable :: around(:)          !! elements of which the points are corners
+   end type layout_type
+
+contains
+
+   !> Fits the patches.
+   pure subroutine prepare(self, mesh, points, first_sample, position)
+      class(patch_recovery_type), intent(inout) :: self !! the weights
+      type(mesh_type), intent(in) :: mesh               !! the mesh
+      type(point_map_type), intent(in) :: points        !! where averaged fields live
+      integer, intent(in) :: first_sample(:)            !! (elements + 1) first recovery point
+      real(dp), intent(in) :: position(:, :)            !! (2, recovery points) x, y [length]
+      type(row_type) :: rows(size(points%node))
+      type(layout_type) :: layout
+      type(fit_type) :: fit
+      integer, allocatable :: patch(:), near(:)
+      integer :: i, p
+
+      layout%first_sample = first_sample
+      layout%position = position
+      call find_elements_round_corners(mesh, points, layout)
+      do p = 1, size(rows)
+         if (layout%start(p + 1) == layout%start(p)) cycle
+         call fit_round_corner(mesh, points, layout, p, patch, fit)
+         call add_weights(rows(p), mesh, layout, patch, &
+            fit%weights_at(mesh%coordinates(:, points%node(p))))
+         ! A midside node takes the mean of the fits round the ends of its side.
+         near = midsides_at(mesh, points, layout, p)
+         do i = 1, size(near)
+            call add_weights(rows(near(i)), mesh, layout, patch, &
+               fit%weights_at(mesh%coordinates(:, points%node(near(i))))/2)
+         end do
+      end do
+      call join_rows(self, rows)
+   end subroutine prepare
+
+   pure subroutine join_rows(self, rows)
+      class(patch_recovery_type), intent(inout) :: self
+      type(row_type), intent(in) :: rows(:)
+      integer :: p
+
+      allocate (self%first(size(rows) + 1), source=1)
+      do p = 1, size(rows)
+         self%first(p + 1) = self%first(p) + rows(p)%count
+      end do
+      allocate (self%sample(self%first(size(rows) + 1) - 1))
+      allocate (self%weight(size(self%sample)))
+      do p = 1, size(rows)
+         if (rows(p)%count == 0) cycle
+         self%sample(self%first(p):self%first(p + 1) - 1) = rows(p)%sample(:rows(p)%count)
+         self%weight(self%first(p):self%first(p + 1) - 1) = rows(p)%weight(:rows(p)%count)
+      end do
+   end subroutine join_rows
+
+   !> The values at all points.
+   pure subroutine recover(self, components, samples, values)
+      class(patch_recovery_type), intent(in) :: self    !! the weights
+      integer, intent(in) :: components                 !! 2 or 4
+      real(dp), intent(in) :: samples(components, *)    !! at the recovery points
+      real(dp), intent(out) :: values(components, *)    !! at the points; 0 outside all elements
+      real(dp) :: total(2)
+      integer :: c, k, p
+
+      do p = 1, size(self%first) - 1
+         do c = 1, components, 2
+            total = 0.0_dp
+            do k = self%first(p), self%first(p + 1) - 1
+               total = total + self%weight(k)*samples(c:c + 1, self%sample(k))
+            end do
+            values(c:c + 1, p) = total
+         end do
+      end do
+   end subroutine recover
+
+   pure subroutine find_elements_round_corners(mesh, points, layout)
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points
+      type(layout_type), intent(inout) :: layout
+      integer :: next(size(points%node)), e, p, q
+
+      allocate (layout%start(size(points%node) + 1), source=0)
+      do e = 1, size(mesh%element_kind)
+         do q = 1, element_corner_count(mesh%element_kind(e))
+            p = points%element_points(q, e)
+            layout%start(p + 1) = layout%start(p + 1) + 1
+         end do
+      end do
+      layout%start(1) = 1
+      do p = 1, size(points%node)
+         layout%start(p + 1) = layout%start(p + 1) + layout%start(p)
+      end do
+      next = layout%start(:size(next))
+      allocate (layout%around(layout%start(size(layout%start)) - 1))
+      do e = 1, size(mesh%element_kind)
+         do q = 1, element_corner_count(mesh%element_kind(e))
+            p = points%element_points(q, e)
+            layout%around(next(p)) = e
+            next(p) = next(p) + 1
+         end do
+      end do
+   end subroutine find_elements_round_corners
+
+   !> Midside points of the sides that end at a corner, each once.
+   pure function midsides_at(mesh, points, layout, corner) result(near)
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points
+      type(layout_type), intent(in) :: layout
+      integer, intent(in) :: corner
+      integer, allocatable :: near(:)
+      integer :: corners, i, k, q, sides(2)
+
+      allocate (near(0))
+      do k = layout%start(corner), layout%start(corner + 1) - 1
+         associate (e => layout%around(k))
+            corners = element_corner_count(mesh%element_kind(e))
+            if (element_node_count(mesh%element_kind(e)) == corners) cycle
+            q = findloc(points%element_points(:corners, e), corner, dim=1)
+            sides = corners + [q, modulo(q - 2, corners) + 1]
+            do i = 1, 2
+               if (any(near == points%element_points(sides(i), e))) cycle
+               near = [near, points%element_points(sides(i), e)]
+            end do
+         end associate
+      end do
+   end function midsides_at
+
+   !> Fits the elements round a corner, with their neighbours where they are too few, as at the
+   !> outline of a body.
+   pure subroutine fit_round_corner(mesh, points, layout, corner, patch, fit)
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points
+      type(layout_type), intent(in) :: layout
+      integer, intent(in) :: corner
+      integer, allocatable, intent(out) :: patch(:)
+      type(fit_type), intent(out) :: fit
+      real(dp), allocatable :: sites(:, :)
+      integer :: before, fewest, layer, terms
+
+      patch = layout%around(layout%start(corner):layout%start(corner + 1) - 1)
+      terms = quadratic_terms
+      fewest = 2*terms
+      if (any(is_linear(mesh%element_kind(patch)))) then
+         terms = linear_terms
+         fewest = terms + 1
+      end if
+      do layer = 0, most_layers
+         sites = sites_of(mesh, layout, patch)
+         before = size(patch)
+         if (size(sites, 2) >= fewest .or. layer == most_layers) then
+            fit = make_fit(sites, corners_of(mesh, patch), terms)
+            if (fit%complete .or. layer == most_layers) return
+         end if
+         call widen(mesh, points, layout, patch)
+         if (size(patch) > before) cycle
+         fit = make_fit(sites, corners_of(mesh, patch), terms)
+         return
+      end do
+   end subroutine fit_round_corner
+
+   elemental logical function is_linear(kind)
+      integer, intent(in) :: kind
+
+      is_linear = kind == quad4 .or. kind == triangle3
+   end function is_linear
+
+   !> Adds the elements beyond the sides of a patch.
+   pure subroutine widen(mesh, points, layout, patch)
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points
+      type(layout_type), intent(in) :: layout
+      integer, allocatable, intent(inout) :: patch(:)
+      integer :: corners, i, k, q, side(2), within
+
+      within = size(patch)
+      do i = 1, within
+         corners = element_corner_count(mesh%element_kind(patch(i)))
+         do q = 1, corners
+            side = points%element_points([q, modulo(q, corners) + 1], patch(i))
+            do k = layout%start(side(1)), layout%start(side(1) + 1) - 1
+               associate (other => layout%around(k))
+                  if (any(patch == other)) cycle
+                  if (all(points%element_points(:, other) /= side(2))) cycle
+                  patch = [patch, other]
+               end associate
+            end do
+         end do
+      end do
+   end subroutine widen
+
+   !> Where the values of a patch are fitted: at all recovery points, but in elements of four nodes
+   !> at their mean, as the centre is where these are best.
+   pure function sites_of(mesh, layout, patch) result(sites)
+      type(mesh_type), intent(in) :: mesh
+      type(layout_type), intent(in) :: layout
+      integer, intent(in) :: patch(:)
+      real(dp), allocatable :: sites(:, :)
+      integer :: i, n
+
+      allocate (sites(2, sum(layout%first_sample(patch + 1) - layout%first_sample(patch))))
+      n = 0
+      do i = 1, size(patch)
+         associate (mine => layout%position(:, layout%first_sample(patch(i)): &
+            layout%first_sample(patch(i) + 1) - 1))
+            if (mesh%element_kind(patch(i)) == quad4) then
+               sites(:, n + 1) = sum(mine, dim=2)/size(mine, 2)
+               n = n + 1
+            else
+               sites(:, n + 1:n + size(mine, 2)) = mine
+               n = n + size(mine, 2)
+            end if
+         end associate
+      end do
+      sites = sites(:, :n)
+   end function sites_of
+
+   pure function corners_of(mesh, patch) result(corners)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: patch(:)
+      real(dp), allocatable :: corners(:, :)
+      integer :: c, i, n
+
+      allocate (corners(2, sum(element_corner_count(mesh%element_kind(patch)))))
+      n = 0
+      do i = 1, size(patch)
+         c = element_corner_count(mesh%element_kind(patch(i)))
+         corners(:, n + 1:n + c) = mesh%coordinates(:, mesh%element_nodes(:c, patch(i)))
+         n = n + c
+      end do
+   end function corners_of
+
+   !> Adds weights of the sites of a patch to those of a point.
+   pure subroutine add_weights(row, mesh, layout, patch, weights)
+      type(row_type), intent(inout) :: row
+      type(mesh_type), intent(in) :: mesh
+      type(layout_type), intent(in) :: layout
+      integer, intent(in) :: patch(:)
+      real(dp), intent(in) :: weights(:)
+      integer :: i, n, s, samples
+
+      n = 0
+      do i = 1, size(patch)
+         samples = layout%first_sample(patch(i) + 1) - layout%first_sample(patch(i))
+         do s = 0, samples - 1
+            if (mesh%element_kind(patch(i)) == quad4) then
+               call add_weight(row, layout%first_sample(patch(i)) + s, weights(n + 1)/samples)
+            else
+               call add_weight(row, layout%first_sample(patch(i)) + s, weights(n + 1 + s))
+            end if
+         end do
+         n = n + merge(1, samples, mesh%element_kind(patch(i)) == quad4)
+      end do
+   end subroutine add_weights
+
+   pure subroutine add_weight(row, sample, weight)
+      type(row_type), intent(inout) :: row
+      integer, intent(in) :: sample
+      real(dp), intent(in) :: weight
+      integer :: k
+
+      if (.not. allocated(row%sample)) allocate (row%sample(24), row%weight(24))
+      k = findloc(row%sample(:row%count), sample, dim=1)
+      if (k > 0) then
+         row%weight(k) = row%weight(k) + weight
+         return
+      end if
+      if (row%count == size(row%sample)) then
+         row%sample = [row%sample, row%sample]
+         row%weight = [row%weight, row%weight]
+      end if
+      row%count = row%count + 1
+      row%sample(row%count) = sample
+      row%weight(row%count) = weight
+   end subroutine add_weight
+
+end module patch_recovery
