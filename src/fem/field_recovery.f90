@@ -99,6 +99,7 @@ contains
       real(dp) :: values(most, 4)
       integer :: e, i
 
+      values = 0.0_dp
       do e = 1, size(mesh%element_kind)
          call fields%stress(mesh, e, displacement, temperature, values)
          do i = fields%first(e), fields%first(e + 1) - 1
@@ -116,6 +117,7 @@ contains
       real(dp) :: values(most, 2)
       integer :: e, i
 
+      values = 0.0_dp
       do e = 1, size(mesh%element_kind)
          call fields%heat_flux(mesh, e, temperature, values)
          do i = fields%first(e), fields%first(e + 1) - 1
@@ -139,7 +141,7 @@ contains
       real(dp), allocatable :: samples(:, :)
 
       call prepare_samples(mesh, sections, materials, orientations, fields)
-      allocate (samples(4, size(fields%volume)))
+      allocate (samples(4, fields%first(size(fields%first)) - 1))
       call stress_samples(fields, mesh, displacement, temperature, samples)
       stress = average_samples(mesh, points, samples)
    end function recover_stress
@@ -158,7 +160,7 @@ contains
       real(dp), allocatable :: samples(:, :)
 
       call prepare_samples(mesh, sections, materials, orientations, fields)
-      allocate (samples(2, size(fields%volume)))
+      allocate (samples(2, fields%first(size(fields%first)) - 1))
       call heat_flux_samples(fields, mesh, temperature, samples)
       flux = average_samples(mesh, points, samples)
    end function recover_heat_flux

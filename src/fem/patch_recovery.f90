@@ -94,25 +94,54 @@ contains
       end do
    end subroutine join_rows
 
-   !> The values at all points.
+   !> The values at all points; zero at those outside all elements.
    pure subroutine recover(self, components, samples, values)
       class(patch_recovery_type), intent(in) :: self    !! the weights
       integer, intent(in) :: components                 !! 2 or 4
       real(dp), intent(in) :: samples(components, *)    !! at the recovery points
-      real(dp), intent(out) :: values(components, *)    !! at the points; 0 outside all elements
-      real(dp) :: total(2)
-      integer :: c, k, p
+      real(dp), intent(out) :: values(components, *)    !! at the points
+      integer :: p
 
       do p = 1, size(self%first) - 1
-         do c = 1, components, 2
-            total = 0.0_dp
-            do k = self%first(p), self%first(p + 1) - 1
-               total = total + self%weight(k)*samples(c:c + 1, self%sample(k))
-            end do
-            values(c:c + 1, p) = total
-         end do
+         associate (first => self%first(p), last => self%first(p + 1) - 1)
+            if (components == 4) then
+               call sum_four(last - first + 1, self%sample(first:last), self%weight(first:last), &
+                  samples, values(:, p))
+            else
+               call sum_two(last - first + 1, self%sample(first:last), self%weight(first:last), &
+                  samples, values(:, p))
+            end if
+         end associate
       end do
    end subroutine recover
+
+   pure subroutine sum_four(n, sample, weight, samples, total)
+      integer, intent(in) :: n, sample(n)
+      real(dp), intent(in) :: weight(n), samples(4, *)
+      real(dp), intent(out) :: total(4)
+      real(dp) :: a(2), b(2)
+      integer :: k
+
+      a = 0.0_dp
+      b = 0.0_dp
+      do k = 1, n
+         a = a + weight(k)*samples(1:2, sample(k))
+         b = b + weight(k)*samples(3:4, sample(k))
+      end do
+      total = [a, b]
+   end subroutine sum_four
+
+   pure subroutine sum_two(n, sample, weight, samples, total)
+      integer, intent(in) :: n, sample(n)
+      real(dp), intent(in) :: weight(n), samples(2, *)
+      real(dp), intent(out) :: total(2)
+      integer :: k
+
+      total = 0.0_dp
+      do k = 1, n
+         total = total + weight(k)*samples(:, sample(k))
+      end do
+   end subroutine sum_two
 
    pure subroutine find_elements_round_corners(mesh, points, layout)
       type(mesh_type), intent(in) :: mesh

@@ -1,6 +1,7 @@
 !> Stress and heat flux at given points of all elements, increment after increment: what depends on
-!> geometry and materials alone is formed once. Arrays run over the points first, so that the loops
-!> over the points of an element are those that the compiler turns into vector instructions.
+!> geometry and materials alone is formed once. Arrays run over the points first, and points are taken
+!> two at a time, which the compiler turns into vector instructions: this is most of the time that
+!> the recovery of an increment takes. A rule of an odd number of points ends in one without weight.
 module point_fields
    use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain, &
       plane_stress, quad4
@@ -13,19 +14,20 @@ module point_fields
    use side_integrals, only: area_factor
    implicit none
    private
-   public :: point_fields_type, point_rule_type, point_material_type, apply_to_points
+   public :: point_fields_type, point_rule_type, point_material_type
    public :: most_field_points
 
-   integer, parameter :: most_field_points = 9   !! of an element
+   integer, parameter :: most_field_points = 10  !! of an element, made even
    integer, parameter :: most = most_field_points
 
    !> Points of a kind of element, with what its shape functions are there.
    type :: point_rule_type
       integer :: count = 0                         !! number of points
-      real(dp), allocatable :: weight(:)           !! (count) sum 4 (square) or 1/2 (triangle)
-      real(dp), allocatable :: shape(:, :)         !! (count, nodes) psi
-      real(dp), allocatable :: slope_xi(:, :)      !! (count, nodes) d psi/d xi
-      real(dp), allocatable :: slope_eta(:, :)     !! (count, nodes) d psi/d eta
+      integer :: nodes = 0                         !! nodes of the kind
+      real(dp) :: weight(most) = 0.0_dp            !! sum 4 (square) or 1/2 (triangle)
+      real(dp) :: shape(most, nodes_per_element) = 0.0_dp      !! (points, nodes) psi
+      real(dp) :: slope_xi(most, nodes_per_element) = 0.0_dp   !! d psi/d xi
+      real(dp) :: slope_eta(most, nodes_per_element) = 0.0_dp  !! d psi/d eta
    end type point_rule_type
 
    !> A material at a point, along x, y and z.
@@ -41,8 +43,8 @@ module point_fields
    type :: point_fields_type
       type(point_rule_type) :: rules(kind_count)         !! by the kind of the element
       integer, allocatable :: first(:)                   !! (elements + 1) first point of each
-      !> For each element (points of it, 4): d xi/dx, d eta/dx, d xi/dy, d eta/dy [1/length]
-      real(dp), allocatable :: inverse(:)
+      !> (4, points) d xi/dx, d eta/dx, d xi/dy, d eta/dy [1/length]
+      real(dp), allocatable :: inverse(:, :)
       real(dp), allocatable :: volume(:)                 !! (points) that each stands for [length^3]
       type(point_material_type), allocatable :: materials(:)
       integer, allocatable :: material(:)                !! (elements) first of its materials
@@ -76,13 +78,13 @@ contains
       do e = 1, n
          self%first(e + 1) = self%first(e) + counts(mesh%element_kind(e))
       end do
-      allocate (self%inverse(4*(self%first(n + 1) - 1)), self%volume(self%first(n + 1) - 1))
+      allocate (self%inverse(4, self%first(n + 1)), self%volume(self%first(n + 1)), source=0.0_dp)
       do e = 1, n
          associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
             call map_points(self%rules(mesh%element_kind(e)), mesh%coordinates(:, nodes), &
                sections(mesh%element_section(e))%thickness, &
-               mesh%element_plane(e) == axisymmetric, counts(mesh%element_kind(e)), &
-               self%inverse(4*self%first(e) - 3), self%volume(self%first(e)))
+               mesh%element_plane(e) == axisymmetric, self%inverse(:, self%first(e):), &
+               self%volume(self%first(e):))
          end associate
       end do
       call place_materials(self, mesh, sections, materials, orientations)
@@ -93,37 +95,34 @@ contains
       real(dp), intent(in) :: points(:, :), weights(:)
       type(point_rule_type) :: rule
       real(dp) :: slope(2, element_node_count(kind)), jacobian
-      integer :: g, n
+      integer :: g
 
-      n = element_node_count(kind)
+      rule%nodes = element_node_count(kind)
       rule%count = size(weights)
-      rule%weight = weights
-      allocate (rule%shape(rule%count, n), rule%slope_xi(rule%count, n))
-      allocate (rule%slope_eta(rule%count, n))
+      rule%weight(:rule%count) = weights
       do g = 1, rule%count
-         rule%shape(g, :) = element_shape(kind, points(:, g))
+         rule%shape(g, :rule%nodes) = element_shape(kind, points(:, g))
          ! In the reference element x is xi and y is eta.
          call element_gradients(kind, node_position(kind), points(:, g), slope, jacobian)
-         rule%slope_xi(g, :) = slope(1, :)
-         rule%slope_eta(g, :) = slope(2, :)
+         rule%slope_xi(g, :rule%nodes) = slope(1, :)
+         rule%slope_eta(g, :rule%nodes) = slope(2, :)
       end do
    end function make_rule
 
-   pure subroutine map_points(rule, coordinates, thickness, is_ring, n, inverse, volume)
+   pure subroutine map_points(rule, coordinates, thickness, is_ring, inverse, volume)
       type(point_rule_type), intent(in) :: rule
       real(dp), intent(in) :: coordinates(:, :), thickness
       logical, intent(in) :: is_ring
-      integer, intent(in) :: n
-      real(dp), intent(inout) :: inverse(n, 4), volume(n)
+      real(dp), intent(inout) :: inverse(:, :), volume(:)
       real(dp) :: along_xi(2), along_eta(2), jacobian, radius
       integer :: g
 
-      do g = 1, n
-         along_xi = matmul(coordinates, rule%slope_xi(g, :))
-         along_eta = matmul(coordinates, rule%slope_eta(g, :))
+      do g = 1, rule%count
+         along_xi = matmul(coordinates, rule%slope_xi(g, :rule%nodes))
+         along_eta = matmul(coordinates, rule%slope_eta(g, :rule%nodes))
          jacobian = along_xi(1)*along_eta(2) - along_xi(2)*along_eta(1)
-         inverse(g, :) = [along_eta(2), -along_xi(2), -along_eta(1), along_xi(1)]/jacobian
-         radius = dot_product(rule%shape(g, :), coordinates(1, :))
+         inverse(:, g) = [along_eta(2), -along_xi(2), -along_eta(1), along_xi(1)]/jacobian
+         radius = dot_product(rule%shape(g, :rule%nodes), coordinates(1, :))
          volume(g) = rule%weight(g)*jacobian*area_factor(radius, thickness, is_ring)
       end do
    end subroutine map_points
@@ -157,7 +156,7 @@ contains
                do g = 1, merge(1, rule%count, self%one_material(e))
                   n = n + 1
                   if (pass == 1) cycle
-                  position = matmul(mesh%coordinates(:, nodes), rule%shape(g, :))
+                  position = matmul(mesh%coordinates(:, nodes), rule%shape(g, :rule%nodes))
                   self%materials(n) = material_at(materials(sections(s)%material), plane, &
                      material_axes(orientations, sections(s)%orientation, position))
                end do
@@ -213,29 +212,59 @@ contains
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: displacement(:, :)     !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
-      real(dp), intent(out) :: values(most, 4)       !! its points first; xx, yy, zz, xy [stress]
-      real(dp) :: strain(most, 4), warmth(most)
-      integer :: g, i, last, n
+      real(dp), intent(inout) :: values(most, 4)     !! its points first; xx, yy, zz, xy [stress]
+      real(dp) :: strain(most, 4), warmth(most), u(3, nodes_per_element)
+      integer :: g, i, n, q
 
       associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
          first => self%first(element), nodes => mesh%element_nodes(:, element))
          n = self%rules(kind)%count
-         call find_strains(self%rules(kind), n, nodes, self%inverse(4*first - 3), displacement, &
-            temperature, strain, warmth)
+         do q = 1, self%rules(kind)%nodes
+            u(:2, q) = displacement(:, nodes(q))
+            u(3, q) = temperature(nodes(q))
+         end do
+         call find_strains(self%rules(kind), self%inverse(:, first), u, strain, warmth)
          if (plane == axisymmetric) call add_hoop_strain(self%rules(kind), nodes, &
             mesh%coordinates, displacement, strain(:n, 3))
          if (kind == quad4 .and. plane /= plane_stress) call set_mean_dilatation( &
             self%volume(first:first + n - 1), strain)
-         do g = 1, n
-            i = self%material(element)
-            if (.not. self%one_material(element)) i = i - 1 + g
-            last = merge(n, g, self%one_material(element))
-            call apply_to_points(self%materials(i)%elasticity, 4, g, last, strain, values)
-            call subtract_heat(self%materials(i)%thermal_modulus, g, last, warmth, values)
-            if (last == n) exit
+         i = self%material(element)
+         do g = 1, n, 2
+            call stress_from_strain(self%materials(i), g, strain, warmth, values)
+            if (self%one_material(element)) cycle
+            if (g < n) call stress_of_second(self%materials(i + 1), g + 1, strain, warmth, values)
+            i = i + 2
          end do
       end associate
    end subroutine stress
+
+   !> Two points of one material.
+   pure subroutine stress_from_strain(material, g, strain, warmth, values)
+      type(point_material_type), intent(in) :: material
+      integer, intent(in) :: g
+      real(dp), intent(in) :: strain(most, 4), warmth(most)
+      real(dp), intent(inout) :: values(most, 4)
+      integer :: i
+
+      do i = 1, 4
+         values(g:g + 1, i) = material%elasticity(1, i)*strain(g:g + 1, 1) + &
+            material%elasticity(2, i)*strain(g:g + 1, 2) + &
+            material%elasticity(3, i)*strain(g:g + 1, 3) + &
+            material%elasticity(4, i)*strain(g:g + 1, 4) - &
+            material%thermal_modulus(i)*warmth(g:g + 1)
+      end do
+   end subroutine stress_from_strain
+
+   !> One point of a material of its own.
+   pure subroutine stress_of_second(material, g, strain, warmth, values)
+      type(point_material_type), intent(in) :: material
+      integer, intent(in) :: g
+      real(dp), intent(in) :: strain(most, 4), warmth(most)
+      real(dp), intent(inout) :: values(most, 4)
+
+      values(g, :) = matmul(material%elasticity, strain(g, :)) - &
+         material%thermal_modulus*warmth(g)
+   end subroutine stress_of_second
 
    !> Heat flux of an element at its points along x and y, eq. (1.4).
    pure subroutine heat_flux(self, mesh, element, temperature, values)
@@ -243,52 +272,52 @@ contains
       type(mesh_type), intent(in) :: mesh            !! the mesh
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: temperature(:)         !! (nodes) [temperature]
-      real(dp), intent(out) :: values(most, 2)       !! its points first; x, y [power/length^2]
-      real(dp) :: fall(most, 2)
-      integer :: g, i, last, n
+      real(dp), intent(inout) :: values(most, 2)     !! its points first; x, y [power/length^2]
+      real(dp) :: fall(most, 2), t(nodes_per_element), k(2, 2)
+      integer :: g, i, q
 
       associate (rule => self%rules(mesh%element_kind(element)))
-         n = rule%count
-         call find_fall(rule, n, mesh%element_nodes(:, element), &
-            self%inverse(4*self%first(element) - 3), temperature, fall)
-         do g = 1, n
-            i = self%material(element)
-            if (.not. self%one_material(element)) i = i - 1 + g
-            last = merge(n, g, self%one_material(element))
-            call apply_to_points(self%materials(i)%conductivity, 2, g, last, fall, values)
-            if (last == n) exit
+         do q = 1, rule%nodes
+            t(q) = temperature(mesh%element_nodes(q, element))
+         end do
+         call find_fall(rule, self%inverse(:, self%first(element)), t, fall)
+         i = self%material(element)
+         k = self%materials(i)%conductivity
+         do g = 1, rule%count
+            if (.not. self%one_material(element)) k = self%materials(i - 1 + g)%conductivity
+            values(g, 1) = k(1, 1)*fall(g, 1) + k(1, 2)*fall(g, 2)
+            values(g, 2) = k(2, 1)*fall(g, 1) + k(2, 2)*fall(g, 2)
          end do
       end associate
    end subroutine heat_flux
 
    !> Strains, but for zz, which is zero, and the temperature.
-   pure subroutine find_strains(rule, n, nodes, inverse, displacement, temperature, strain, warmth)
+   pure subroutine find_strains(rule, inverse, u, strain, warmth)
       type(point_rule_type), intent(in) :: rule
-      integer, intent(in) :: n, nodes(nodes_per_element)
-      real(dp), intent(in) :: inverse(n, 4), displacement(:, :), temperature(:)
+      real(dp), intent(in) :: inverse(4, *), u(3, nodes_per_element)
       real(dp), intent(out) :: strain(most, 4), warmth(most)
-      real(dp) :: local(most, 4), u(2), t
+      real(dp), dimension(2) :: x_xi, x_eta, y_xi, y_eta, t
       integer :: g, q
 
-      local(:n, :) = 0.0_dp
-      warmth(:n) = 0.0_dp
-      do q = 1, size(rule%shape, 2)
-         u = displacement(:, nodes(q))
-         t = temperature(nodes(q))
-         do g = 1, n
-            local(g, 1) = local(g, 1) + rule%slope_xi(g, q)*u(1)
-            local(g, 2) = local(g, 2) + rule%slope_eta(g, q)*u(1)
-            local(g, 3) = local(g, 3) + rule%slope_xi(g, q)*u(2)
-            local(g, 4) = local(g, 4) + rule%slope_eta(g, q)*u(2)
-            warmth(g) = warmth(g) + rule%shape(g, q)*t
+      do g = 1, rule%count, 2
+         x_xi = 0.0_dp
+         x_eta = 0.0_dp
+         y_xi = 0.0_dp
+         y_eta = 0.0_dp
+         t = 0.0_dp
+         do q = 1, rule%nodes
+            x_xi = x_xi + rule%slope_xi(g:g + 1, q)*u(1, q)
+            x_eta = x_eta + rule%slope_eta(g:g + 1, q)*u(1, q)
+            y_xi = y_xi + rule%slope_xi(g:g + 1, q)*u(2, q)
+            y_eta = y_eta + rule%slope_eta(g:g + 1, q)*u(2, q)
+            t = t + rule%shape(g:g + 1, q)*u(3, q)
          end do
-      end do
-      do g = 1, n
-         strain(g, 1) = local(g, 1)*inverse(g, 1) + local(g, 2)*inverse(g, 2)
-         strain(g, 2) = local(g, 3)*inverse(g, 3) + local(g, 4)*inverse(g, 4)
-         strain(g, 3) = 0.0_dp
-         strain(g, 4) = local(g, 1)*inverse(g, 3) + local(g, 2)*inverse(g, 4) + &
-            local(g, 3)*inverse(g, 1) + local(g, 4)*inverse(g, 2)
+         strain(g:g + 1, 1) = x_xi*inverse(1, g:g + 1) + x_eta*inverse(2, g:g + 1)
+         strain(g:g + 1, 2) = y_xi*inverse(3, g:g + 1) + y_eta*inverse(4, g:g + 1)
+         strain(g:g + 1, 3) = 0.0_dp
+         strain(g:g + 1, 4) = x_xi*inverse(3, g:g + 1) + x_eta*inverse(4, g:g + 1) + &
+            y_xi*inverse(1, g:g + 1) + y_eta*inverse(2, g:g + 1)
+         warmth(g:g + 1) = t
       end do
    end subroutine find_strains
 
@@ -300,10 +329,11 @@ contains
       real(dp), intent(inout) :: strain(:)
       integer :: g
 
-      associate (mine => nodes(:size(rule%shape, 2)))
+      associate (mine => nodes(:rule%nodes))
          do g = 1, size(strain)
-            strain(g) = strain(g) + dot_product(rule%shape(g, :), displacement(1, mine))/ &
-               dot_product(rule%shape(g, :), coordinates(1, mine))
+            strain(g) = strain(g) + &
+               dot_product(rule%shape(g, :rule%nodes), displacement(1, mine))/ &
+               dot_product(rule%shape(g, :rule%nodes), coordinates(1, mine))
          end do
       end associate
    end subroutine add_hoop_strain
@@ -327,57 +357,23 @@ contains
    end subroutine set_mean_dilatation
 
    !> -grad T.
-   pure subroutine find_fall(rule, n, nodes, inverse, temperature, fall)
+   pure subroutine find_fall(rule, inverse, temperature, fall)
       type(point_rule_type), intent(in) :: rule
-      integer, intent(in) :: n, nodes(nodes_per_element)
-      real(dp), intent(in) :: inverse(n, 4), temperature(:)
+      real(dp), intent(in) :: inverse(4, *), temperature(nodes_per_element)
       real(dp), intent(out) :: fall(most, 2)
-      real(dp) :: local(most, 2), t
+      real(dp), dimension(2) :: xi, eta
       integer :: g, q
 
-      local(:n, :) = 0.0_dp
-      do q = 1, size(rule%shape, 2)
-         t = temperature(nodes(q))
-         do g = 1, n
-            local(g, 1) = local(g, 1) - rule%slope_xi(g, q)*t
-            local(g, 2) = local(g, 2) - rule%slope_eta(g, q)*t
+      do g = 1, rule%count, 2
+         xi = 0.0_dp
+         eta = 0.0_dp
+         do q = 1, rule%nodes
+            xi = xi - rule%slope_xi(g:g + 1, q)*temperature(q)
+            eta = eta - rule%slope_eta(g:g + 1, q)*temperature(q)
          end do
-      end do
-      do g = 1, n
-         fall(g, 1) = local(g, 1)*inverse(g, 1) + local(g, 2)*inverse(g, 2)
-         fall(g, 2) = local(g, 1)*inverse(g, 3) + local(g, 2)*inverse(g, 4)
+         fall(g:g + 1, 1) = xi*inverse(1, g:g + 1) + eta*inverse(2, g:g + 1)
+         fall(g:g + 1, 2) = xi*inverse(3, g:g + 1) + eta*inverse(4, g:g + 1)
       end do
    end subroutine find_fall
-
-   !> A matrix times the values at each of some points.
-   pure subroutine apply_to_points(matrix, components, first, last, values, product)
-      integer, intent(in) :: components                            !! 2 or 4
-      real(dp), intent(in) :: matrix(components, components)       !! the matrix
-      integer, intent(in) :: first                                 !! first of the points
-      integer, intent(in) :: last                                  !! last of them
-      real(dp), intent(in) :: values(most, components)             !! what it is applied to
-      real(dp), intent(inout) :: product(most, components)         !! its products
-      integer :: i, j
-
-      do i = 1, components
-         product(first:last, i) = matrix(i, 1)*values(first:last, 1)
-         do j = 2, components
-            if (abs(matrix(i, j)) > 0.0_dp) product(first:last, i) = product(first:last, i) + &
-               matrix(i, j)*values(first:last, j)
-         end do
-      end do
-   end subroutine apply_to_points
-
-   pure subroutine subtract_heat(modulus, first, last, warmth, values)
-      real(dp), intent(in) :: modulus(4), warmth(most)
-      integer, intent(in) :: first, last
-      real(dp), intent(inout) :: values(most, 4)
-      integer :: i
-
-      do i = 1, 4
-         if (abs(modulus(i)) > 0.0_dp) values(first:last, i) = values(first:last, i) - &
-            modulus(i)*warmth(first:last)
-      end do
-   end subroutine subtract_heat
 
 end module point_fields

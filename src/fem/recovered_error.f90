@@ -8,11 +8,12 @@
 module recovered_error
    use element_kinds, only: kind_count, quad4, quad8, quad8_reduced, triangle3, triangle6
    use kinds, only: dp
-   use point_fields, only: apply_to_points, most => most_field_points
+   use mesh, only: nodes_per_element
+   use point_fields, only: most => most_field_points, point_rule_type
    use quadrature, only: integration_rule, load_point_count, load_rule, point_count
    implicit none
    private
-   public :: element_error_type, measure_element, error_points
+   public :: element_error_type, measure_stress, measure_heat_flux, error_points
 
    !> Integrals over an element.
    type :: element_error_type
@@ -47,45 +48,70 @@ contains
       end do
    end subroutine error_points
 
-   !> The integrals over the points of an element at which one matrix C^-1 holds.
-   pure subroutine measure_element(components, first, last, shape, smooth, values, softness, &
-      volume, measured)
-      integer, intent(in) :: components                 !! 4 for stress, 2 for flux
-      integer, intent(in) :: first                      !! first of the points
-      integer, intent(in) :: last                       !! last of them
-      real(dp), intent(in) :: shape(:, :)               !! (points, nodes) psi
-      real(dp), intent(in) :: smooth(:, :)              !! (components, nodes) s*
-      real(dp), intent(in) :: values(most, components)  !! (points, components) s
-      real(dp), intent(in) :: softness(components, components)   !! C^-1
-      real(dp), intent(in) :: volume(:)                 !! (points) that each stands for [length^3]
-      type(element_error_type), intent(inout) :: measured        !! the integrals, added to
-      real(dp) :: difference(most, 4), product(most, 4), error(most), energy(most), square(most)
-      integer :: c, q
+   !> The integrals of stress over two points of an element.
+   pure subroutine measure_stress(rule, g, smooth, values, compliance, volume, measured)
+      type(point_rule_type), intent(in) :: rule             !! points of the kind
+      integer, intent(in) :: g                              !! first of the two points
+      real(dp), intent(in) :: smooth(4, nodes_per_element)  !! s* at the nodes [stress]
+      real(dp), intent(in) :: values(most, 4)               !! s at the points [stress]
+      real(dp), intent(in) :: compliance(4, 4)              !! C^-1 [1/stress]
+      real(dp), intent(in) :: volume(2)                     !! that each stands for [length^3]
+      type(element_error_type), intent(inout) :: measured   !! the integrals, added to
+      real(dp) :: d(2, 4), error(2), energy(2)
+      integer :: i, q
 
-      do c = 1, components
-         difference(first:last, c) = -values(first:last, c)
-         do q = 1, size(shape, 2)
-            difference(first:last, c) = difference(first:last, c) + &
-               shape(first:last, q)*smooth(c, q)
-         end do
+      d = -values(g:g + 1, :)
+      do q = 1, rule%nodes
+         d(:, 1) = d(:, 1) + rule%shape(g:g + 1, q)*smooth(1, q)
+         d(:, 2) = d(:, 2) + rule%shape(g:g + 1, q)*smooth(2, q)
+         d(:, 3) = d(:, 3) + rule%shape(g:g + 1, q)*smooth(3, q)
+         d(:, 4) = d(:, 4) + rule%shape(g:g + 1, q)*smooth(4, q)
       end do
-      error(first:last) = 0.0_dp
-      energy(first:last) = 0.0_dp
-      square(first:last) = 0.0_dp
-      call apply_to_points(softness, components, first, last, difference, product)
-      do c = 1, components
-         error(first:last) = error(first:last) + difference(first:last, c)*product(first:last, c)
-         ! Shear stress stands twice in the tensor.
-         square(first:last) = square(first:last) + merge(2, 1, c == 4)*difference(first:last, c)**2
+      error = 0.0_dp
+      energy = 0.0_dp
+      do i = 1, 4
+         error = error + d(:, i)*(compliance(1, i)*d(:, 1) + compliance(2, i)*d(:, 2) + &
+            compliance(3, i)*d(:, 3) + compliance(4, i)*d(:, 4))
+         energy = energy + values(g:g + 1, i)*(compliance(1, i)*values(g:g + 1, 1) + &
+            compliance(2, i)*values(g:g + 1, 2) + compliance(3, i)*values(g:g + 1, 3) + &
+            compliance(4, i)*values(g:g + 1, 4))
       end do
-      call apply_to_points(softness, components, first, last, values, product)
-      do c = 1, components
-         energy(first:last) = energy(first:last) + values(first:last, c)*product(first:last, c)
+      measured%error = measured%error + sum(volume*error)
+      measured%energy = measured%energy + sum(volume*energy)
+      ! Shear stress stands twice in the tensor.
+      measured%square = measured%square + sum(volume*(d(:, 1)**2 + d(:, 2)**2 + d(:, 3)**2 + &
+         2*d(:, 4)**2))
+      measured%volume = measured%volume + sum(volume)
+   end subroutine measure_stress
+
+   !> The integrals of heat flux over two points of an element.
+   pure subroutine measure_heat_flux(rule, g, smooth, values, resistivity, volume, measured)
+      type(point_rule_type), intent(in) :: rule             !! points of the kind
+      integer, intent(in) :: g                              !! first of the two points
+      real(dp), intent(in) :: smooth(2, nodes_per_element)  !! s* at the nodes [power/length^2]
+      real(dp), intent(in) :: values(most, 2)               !! s at the points [power/length^2]
+      real(dp), intent(in) :: resistivity(2, 2)             !! C^-1 [length temperature/power]
+      real(dp), intent(in) :: volume(2)                     !! that each stands for [length^3]
+      type(element_error_type), intent(inout) :: measured   !! the integrals, added to
+      real(dp) :: d(2, 2), x(2), y(2)
+      integer :: q
+
+      x = values(g:g + 1, 1)
+      y = values(g:g + 1, 2)
+      d(:, 1) = -x
+      d(:, 2) = -y
+      do q = 1, rule%nodes
+         d(:, 1) = d(:, 1) + rule%shape(g:g + 1, q)*smooth(1, q)
+         d(:, 2) = d(:, 2) + rule%shape(g:g + 1, q)*smooth(2, q)
       end do
-      measured%error = measured%error + dot_product(volume(first:last), error(first:last))
-      measured%energy = measured%energy + dot_product(volume(first:last), energy(first:last))
-      measured%square = measured%square + dot_product(volume(first:last), square(first:last))
-      measured%volume = measured%volume + sum(volume(first:last))
-   end subroutine measure_element
+      associate (c => resistivity)
+         measured%error = measured%error + sum(volume*(c(1, 1)*d(:, 1)**2 + &
+            2*c(1, 2)*d(:, 1)*d(:, 2) + c(2, 2)*d(:, 2)**2))
+         measured%energy = measured%energy + sum(volume*(c(1, 1)*x**2 + 2*c(1, 2)*x*y + &
+            c(2, 2)*y**2))
+      end associate
+      measured%square = measured%square + sum(volume*(d(:, 1)**2 + d(:, 2)**2))
+      measured%volume = measured%volume + sum(volume)
+   end subroutine measure_heat_flux
 
 end module recovered_error

@@ -2,16 +2,18 @@
 !> geometry and materials give is formed once a run.
 module discretisation_errors
    use element_fields, only: element_positions
-   use element_kinds, only: element_node_count, kind_count
+   use element_kinds, only: kind_count
    use field_recovery, only: average_samples, heat_flux_samples, make_points, point_map_type, &
       prepare_samples, stress_samples
    use kinds, only: dp
+   use mesh, only: nodes_per_element
    use model, only: model_type
    use patch_recovery, only: patch_recovery_type
    use point_fields, only: most => most_field_points, point_fields_type
    use quadrature, only: recovery_points
    use records, only: error_record_type
-   use recovered_error, only: element_error_type, error_points, measure_element
+   use recovered_error, only: element_error_type, error_points, measure_heat_flux, &
+      measure_stress
    implicit none
    private
    public :: recovery_type
@@ -48,7 +50,7 @@ contains
       call error_points(points, weights, counts)
       call self%quadrature%prepare(model%mesh, model%sections, model%materials, &
          model%orientations, points, weights, counts)
-      allocate (position(2, size(self%samples%volume)))
+      allocate (position(2, self%samples%first(size(self%samples%first)) - 1))
       do e = 1, size(model%mesh%element_kind)
          position(:, self%samples%first(e):self%samples%first(e + 1) - 1) = &
             element_positions(model%mesh, e, recovery_points(model%mesh%element_kind(e)))
@@ -69,14 +71,15 @@ contains
       real(dp) :: values(most, 4), scale
       integer :: e
 
-      allocate (samples(4, size(self%samples%volume)), smooth(4, size(self%points%node)))
+      values = 0.0_dp
+      allocate (samples(4, self%samples%first(size(self%samples%first)) - 1), smooth(4, size(self%points%node)))
       call stress_samples(self%samples, model%mesh, displacement, temperature, samples)
       stress = average_samples(model%mesh, self%points, samples)
       call self%patches%recover(4, samples, smooth)
       scale = scale_of(samples)
       do e = 1, size(errors)
          call self%quadrature%stress(model%mesh, e, displacement, temperature, values)
-         call compare(self, model, e, 4, scale, smooth, values, errors(e))
+         call compare_stress(self, model, e, 1/scale, smooth, values, errors(e))
       end do
       estimate = sum_up(model, scale, errors)
    end subroutine recover_stress
@@ -93,14 +96,15 @@ contains
       real(dp) :: values(most, 2), scale
       integer :: e
 
-      allocate (samples(2, size(self%samples%volume)), smooth(2, size(self%points%node)))
+      values = 0.0_dp
+      allocate (samples(2, self%samples%first(size(self%samples%first)) - 1), smooth(2, size(self%points%node)))
       call heat_flux_samples(self%samples, model%mesh, temperature, samples)
       flux = average_samples(model%mesh, self%points, samples)
       call self%patches%recover(2, samples, smooth)
       scale = scale_of(samples)
       do e = 1, size(errors)
          call self%quadrature%heat_flux(model%mesh, e, temperature, values)
-         call compare(self, model, e, 2, scale, smooth, values, errors(e))
+         call compare_heat_flux(self, model, e, 1/scale, smooth, values, errors(e))
       end do
       estimate = sum_up(model, scale, errors)
    end subroutine recover_heat_flux
@@ -116,42 +120,65 @@ contains
          scale_of = largest
    end function scale_of
 
-   !> The integrals over an element.
-   pure subroutine compare(self, model, e, components, scale, smooth, values, measured)
+   !> The integrals of stress over an element.
+   pure subroutine compare_stress(self, model, e, scale, smooth, values, measured)
       class(recovery_type), intent(in) :: self
       type(model_type), intent(in) :: model
-      integer, intent(in) :: e, components
+      integer, intent(in) :: e
       real(dp), intent(in) :: scale, smooth(:, :)
-      real(dp), intent(inout) :: values(most, components)
+      real(dp), intent(inout) :: values(most, 4)
       type(element_error_type), intent(out) :: measured
-      real(dp) :: nodal(4, 8)
-      integer :: first, g, i, last, q
+      real(dp) :: nodal(4, nodes_per_element), volume(2)
+      integer :: g, i, q, steps
 
-      associate (fields => self%quadrature, kind => model%mesh%element_kind(e))
-         first = fields%first(e)
-         do q = 1, element_node_count(kind)
-            nodal(:components, q) = smooth(:, self%points%element_points(q, e))
+      associate (fields => self%quadrature, rule => self%quadrature%rules( &
+         model%mesh%element_kind(e)))
+         do q = 1, rule%nodes
+            nodal(:, q) = smooth(:, self%points%element_points(q, e))*scale
          end do
-         if (abs(scale - 1.0_dp) > 0.0_dp) then
-            nodal(:components, :element_node_count(kind)) = &
-               nodal(:components, :element_node_count(kind))/scale
-            values(:fields%rules(kind)%count, :) = values(:fields%rules(kind)%count, :)/scale
-         end if
-         do g = 1, fields%rules(kind)%count
-            i = fields%material(e)
-            if (.not. fields%one_material(e)) i = i - 1 + g
-            last = merge(fields%rules(kind)%count, g, fields%one_material(e))
-            if (components == 4) then
-               call measure_element(4, g, last, fields%rules(kind)%shape, nodal, values, &
-                  fields%materials(i)%compliance, fields%volume(first:), measured)
-            else
-               call measure_element(2, g, last, fields%rules(kind)%shape, nodal, values, &
-                  fields%materials(i)%resistivity, fields%volume(first:), measured)
-            end if
-            if (last == fields%rules(kind)%count) exit
+         if (abs(scale - 1.0_dp) > 0.0_dp) values = values*scale
+         i = fields%material(e)
+         steps = merge(2, 1, fields%one_material(e))
+         do g = 1, rule%count, steps
+            volume = 0.0_dp
+            q = min(steps, rule%count + 1 - g)
+            volume(:q) = fields%volume(fields%first(e) + g - 1:fields%first(e) + g + q - 2)
+            call measure_stress(rule, g, nodal, values, fields%materials(i)%compliance, volume, &
+               measured)
+            if (steps == 1) i = i + 1
          end do
       end associate
-   end subroutine compare
+   end subroutine compare_stress
+
+   !> The integrals of heat flux over an element.
+   pure subroutine compare_heat_flux(self, model, e, scale, smooth, values, measured)
+      class(recovery_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: e
+      real(dp), intent(in) :: scale, smooth(:, :)
+      real(dp), intent(inout) :: values(most, 2)
+      type(element_error_type), intent(out) :: measured
+      real(dp) :: nodal(2, nodes_per_element), volume(2)
+      integer :: g, i, q, steps
+
+      associate (fields => self%quadrature, rule => self%quadrature%rules( &
+         model%mesh%element_kind(e)))
+         do q = 1, rule%nodes
+            nodal(:, q) = smooth(:, self%points%element_points(q, e))*scale
+         end do
+         if (abs(scale - 1.0_dp) > 0.0_dp) values = values*scale
+         i = fields%material(e)
+         steps = merge(2, 1, fields%one_material(e))
+         do g = 1, rule%count, steps
+            volume = 0.0_dp
+            q = min(steps, rule%count + 1 - g)
+            volume(:q) = fields%volume(fields%first(e) + g - 1:fields%first(e) + g + q - 2)
+            call measure_heat_flux(rule, g, nodal, values, fields%materials(i)%resistivity, &
+               volume, measured)
+            if (steps == 1) i = i + 1
+         end do
+      end associate
+   end subroutine compare_heat_flux
 
    !> Relative error of each body, and the field over the elements.
    pure function sum_up(model, scale, errors) result(estimate)
