@@ -55,26 +55,71 @@ contains
       type(row_type) :: rows(size(points%node))
       type(layout_type) :: layout
       type(fit_type) :: fit
-      integer, allocatable :: patch(:), near(:)
-      integer :: i, p
+      logical :: has_fit(size(points%node))
+      integer, allocatable :: centres(:), near(:), patch(:)
+      integer :: c, i, p
+      real(dp) :: share
 
       layout%first_sample = first_sample
       layout%position = position
       call find_elements_round_corners(mesh, points, layout)
       do p = 1, size(rows)
+         has_fit(p) = .false.
+         if (layout%start(p + 1) > layout%start(p)) &
+            call fit_round_corner(mesh, points, layout, p, 0, patch, fit, has_fit(p))
+      end do
+      do p = 1, size(rows)
          if (layout%start(p + 1) == layout%start(p)) cycle
-         call fit_round_corner(mesh, points, layout, p, patch, fit)
-         call add_weights(rows(p), mesh, layout, patch, &
-            fit%weights_at(mesh%coordinates(:, points%node(p))))
-         ! A midside node takes the mean of the fits round the ends of its side.
+         centres = centres_for(mesh, points, layout, p, has_fit)
          near = midsides_at(mesh, points, layout, p)
-         do i = 1, size(near)
-            call add_weights(rows(near(i)), mesh, layout, patch, &
-               fit%weights_at(mesh%coordinates(:, points%node(near(i))))/2)
+         share = 1.0_dp/size(centres)
+         do c = 1, size(centres)
+            call fit_round_corner(mesh, points, layout, centres(c), most_layers, patch, fit)
+            call add_weights(rows(p), mesh, layout, patch, &
+               share*fit%weights_at(mesh%coordinates(:, points%node(p))))
+            ! A midside node takes the mean of what holds at the ends of its side.
+            do i = 1, size(near)
+               call add_weights(rows(near(i)), mesh, layout, patch, &
+                  share/2*fit%weights_at(mesh%coordinates(:, points%node(near(i)))))
+            end do
          end do
       end do
       call join_rows(self, rows)
    end subroutine prepare
+
+   !> Corners whose fits hold at a corner: its own, or, where its elements are too few for one, as at
+   !> the outline of a body, those of its neighbours inside; without any its own, widened.
+   pure function centres_for(mesh, points, layout, corner, has_fit) result(centres)
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points
+      type(layout_type), intent(in) :: layout
+      integer, intent(in) :: corner
+      logical, intent(in) :: has_fit(:)
+      integer, allocatable :: centres(:)
+      integer :: corners, k, other, q, reach
+
+      centres = [corner]
+      if (has_fit(corner)) return
+      deallocate (centres)
+      allocate (centres(0))
+      ! First along sides, then across elements.
+      do reach = 1, 2
+         do k = layout%start(corner), layout%start(corner + 1) - 1
+            associate (mine => points%element_points(:, layout%around(k)))
+               corners = element_corner_count(mesh%element_kind(layout%around(k)))
+               do q = 1, corners
+                  other = mine(q)
+                  if (.not. has_fit(other) .or. any(centres == other)) cycle
+                  if (reach == 1 .and. mine(modulo(q, corners) + 1) /= corner .and. &
+                     mine(modulo(q - 2, corners) + 1) /= corner) cycle
+                  centres = [centres, other]
+               end do
+            end associate
+         end do
+         if (size(centres) > 0) return
+      end do
+      centres = [corner]
+   end function centres_for
 
    pure subroutine join_rows(self, rows)
       class(patch_recovery_type), intent(inout) :: self
@@ -195,15 +240,16 @@ contains
       end do
    end function midsides_at
 
-   !> Fits the elements round a corner, with their neighbours where they are too few, as at the
-   !> outline of a body.
-   pure subroutine fit_round_corner(mesh, points, layout, corner, patch, fit)
+   !> Fits the elements round a corner, with their neighbours where they are too few.
+   pure subroutine fit_round_corner(mesh, points, layout, corner, layers, patch, fit, fits)
       type(mesh_type), intent(in) :: mesh
       type(point_map_type), intent(in) :: points
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: corner
+      integer, intent(in) :: layers                 !! times that the patch may be widened
       integer, allocatable, intent(out) :: patch(:)
       type(fit_type), intent(out) :: fit
+      logical, intent(out), optional :: fits        !! whether all terms are determined
       real(dp), allocatable :: sites(:, :)
       integer :: before, fewest, layer, terms
 
@@ -214,18 +260,16 @@ contains
          terms = linear_terms
          fewest = terms + 1
       end if
-      do layer = 0, most_layers
-         sites = sites_of(mesh, layout, patch)
+      before = 0
+      do layer = 0, layers
+         if (layer > 0) call widen(mesh, points, layout, patch)
+         if (size(patch) == before) exit
          before = size(patch)
-         if (size(sites, 2) >= fewest .or. layer == most_layers) then
-            fit = make_fit(sites, corners_of(mesh, patch), terms)
-            if (fit%complete .or. layer == most_layers) return
-         end if
-         call widen(mesh, points, layout, patch)
-         if (size(patch) > before) cycle
+         sites = sites_of(mesh, layout, patch)
          fit = make_fit(sites, corners_of(mesh, patch), terms)
-         return
+         if (fit%complete .and. size(sites, 2) >= fewest) exit
       end do
+      if (present(fits)) fits = fit%complete .and. size(sites, 2) >= fewest
    end subroutine fit_round_corner
 
    elemental logical function is_linear(kind)
