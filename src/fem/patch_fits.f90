@@ -4,10 +4,11 @@ module patch_fits
    use kinds, only: dp
    implicit none
    private
-   public :: fit_type, make_fit, linear_terms, quadratic_terms
+   public :: fit_type, make_fit, linear_terms, quadratic_terms, cubic_terms
 
    integer, parameter :: linear_terms = 3      !! 1, x, y
    integer, parameter :: quadratic_terms = 6   !! and xy, x^2, y^2
+   integer, parameter :: cubic_terms = 10      !! and x^2 y, x y^2, x^3, y^3
 
    !> Root mean square over the sites of what is new in a term, below which the sites do not tell
    !> it from the terms before: a single row of elements has no slope, or no curvature, across.
@@ -19,9 +20,9 @@ module patch_fits
       logical, public :: complete = .false.   !! whether the sites determine all terms
       real(dp) :: origin(2) = 0.0_dp          !! [length]
       real(dp) :: scaling(2, 2) = 0.0_dp      !! to coordinates of about unit size [1/length]
-      integer :: terms = 0                    !! linear_terms or quadratic_terms
-      logical :: kept(quadratic_terms) = .false.
-      real(dp) :: r(quadratic_terms, quadratic_terms) = 0.0_dp !! terms = orthogonal ones times r
+      integer :: terms = 0                    !! linear_terms, quadratic_terms or cubic_terms
+      logical :: kept(cubic_terms) = .false.
+      real(dp) :: r(cubic_terms, cubic_terms) = 0.0_dp !! terms = orthogonal ones times r
       real(dp), allocatable :: q(:, :)        !! (sites, terms) the orthogonal ones at the sites
    contains
       procedure :: weights_at
@@ -34,7 +35,7 @@ contains
       real(dp), intent(in) :: sites(:, :)     !! (2, sites) [length]
       !> (2, corners) of the elements that they lie in: the size of the patch [length]
       real(dp), intent(in) :: corners(:, :)
-      integer, intent(in) :: terms            !! linear_terms or quadratic_terms
+      integer, intent(in) :: terms            !! linear_terms, quadratic_terms or cubic_terms
       type(fit_type) :: fit
       real(dp) :: column(size(sites, 2))
       integer :: i, j
@@ -64,7 +65,7 @@ contains
       class(fit_type), intent(in) :: self          !! the fit
       real(dp), intent(in) :: place(2)             !! x, y [length]
       real(dp) :: weights(size(self%q, 1))         !! their sum is 1
-      real(dp) :: value(quadratic_terms), local(2)
+      real(dp) :: value(cubic_terms), local(2)
       integer :: j
 
       local = matmul(self%scaling, place - self%origin)
@@ -88,8 +89,12 @@ contains
          term = local(j - 1)
       case (4)
          term = local(1)*local(2)
-      case default
+      case (5, 6)
          term = local(j - 4)**2
+      case (7, 8)
+         term = local(1)*local(2)*local(j - 6)
+      case default
+         term = local(j - 8)**3
       end select
    end function term
 

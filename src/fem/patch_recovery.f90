@@ -11,7 +11,7 @@ module patch_recovery
    use field_recovery, only: point_map_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use patch_fits, only: fit_type, linear_terms, make_fit, quadratic_terms
+   use patch_fits, only: cubic_terms, fit_type, linear_terms, make_fit, quadratic_terms
    implicit none
    private
    public :: patch_recovery_type
@@ -251,6 +251,7 @@ contains
       type(fit_type), intent(out) :: fit
       logical, intent(out), optional :: fits        !! whether all terms are determined
       real(dp), allocatable :: sites(:, :)
+      type(fit_type) :: cubic
       integer :: before, fewest, layer, terms
 
       patch = layout%around(layout%start(corner):layout%start(corner + 1) - 1)
@@ -269,6 +270,11 @@ contains
          fit = make_fit(sites, corners_of(mesh, patch), terms)
          if (fit%complete .and. size(sites, 2) >= fewest) exit
       end do
+      if (terms == quadratic_terms .and. size(sites, 2) >= 16 .and. all(element_corner_count( &
+         mesh%element_kind(patch)) == 4)) then
+         cubic = make_fit(sites, corners_of(mesh, patch), cubic_terms)
+         if (cubic%complete) fit = cubic
+      end if
       if (present(fits)) fits = fit%complete .and. size(sites, 2) >= fewest
    end subroutine fit_round_corner
 
