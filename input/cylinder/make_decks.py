@@ -6,11 +6,13 @@ Each body has six strips, seen from the contact: two layers of 10 elements, a 3-
 (13 elements), two layers of 4 and a transition from 4 to 2 (5 elements). The base is the mirror image of the cylinder
 but for the curved face, which fades out towards the top. Needs numpy.
 """
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 RADIUS, WIDTH, HEIGHT, LIFT = 100.0, 30.0, 60.0, 0.5
+FINE, NEAR = 9.0, 7.0    # abscissa and height up to which the grading suits the contact
 
 # Corner abscissae of the seven rows between the strips and the heights of these rows, from the contact outwards.
 CONTACT = [0.0, 0.8, 1.7, 2.6, 3.6, 4.8, 6.0, 7.4, 9.0, 14.0, WIDTH]
@@ -18,6 +20,49 @@ LAYER = [0.0, 1.1, 2.2, 3.4, 4.6, 5.9, 7.3, 8.9, 11.2, 16.0, WIDTH]
 COARSE = [0.0, 4.0, 9.0, 17.0, WIDTH]
 ROWS = [CONTACT, CONTACT, LAYER, COARSE, COARSE, COARSE, [0.0, 15.0, WIDTH]]
 HEIGHTS = [0.0, 1.0, 2.5, 7.0, 14.0, 30.0, HEIGHT]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the paper leaves open, as the decks here read it: half the width and the height of each body, its curved
+    face, its supports, and the Poisson ratios of cylinder and base. `fine` moves the nodes of the face."""
+
+    width: float = WIDTH
+    height: float = HEIGHT
+    fine: float = FINE
+    arc: bool = False
+    ends_held: bool = False
+    plane_stress: bool = False
+    poisson: tuple = (0.4, 0.2)
+
+    def abscissa(self, x):
+        """Place of a row's point: the fine part in proportion, the rest up to the width."""
+        return rescaled(x, FINE, WIDTH, self.fine, self.width)
+
+    def rows(self):
+        """Corner abscissae of the seven rows."""
+        return [[self.abscissa(x) for x in row] for row in ROWS[:-1]] + [[0.0, self.width / 2, self.width]]
+
+    def heights(self):
+        """Heights of the seven rows."""
+        return [rescaled(y, NEAR, HEIGHT, NEAR, self.height) for y in HEIGHTS]
+
+    def face(self, x):
+        """Height of the curved face."""
+        return RADIUS - (RADIUS**2 - x**2)**0.5 if self.arc else x**2 / (2 * RADIUS)
+
+
+PUBLISHED = Reading()
+
+
+def rescaled(value, inner, outer, new_inner, new_outer):
+    """A value from 0 to `outer`, moved so that `inner` and `outer` come to other places and all between in proportion;
+    values stay as they are, to the last digit, where nothing moves."""
+    if value <= inner:
+        return value if new_inner == inner else value * new_inner / inner
+    if (new_inner, new_outer) == (inner, outer):
+        return value
+    return new_inner + (value - inner) * (new_outer - new_inner) / (outer - inner)
 
 
 def strip_elements(low, high):
@@ -38,10 +83,10 @@ def strip_elements(low, high):
     return quads
 
 
-def make_body(curved):
+def make_body(curved, reading=PUBLISHED):
     """Nodes (number to x, y) and elements (lists of eight numbers) of the upper body, its contact face either on
-    y = x^2/(2 R) or flat. Numbers run along the contact first, then row by row away from it."""
-    rows = [[(x, height) for x in row] for row, height in zip(ROWS, HEIGHTS)]
+    the reading's curve or flat. Numbers run along the contact first, then row by row away from it."""
+    rows = [[(x, height) for x in row] for row, height in zip(reading.rows(), reading.heights())]
     quads = [quad for low, high in zip(rows, rows[1:]) for quad in strip_elements(low, high)]
     points, elements = {}, []
     for quad in quads:
@@ -49,26 +94,26 @@ def make_body(curved):
         sides = [tuple(np.round(np.add(corners[k], corners[(k + 1) % 4]) / 2, 9)) for k in range(4)]
         elements.append(corners + sides)
         for k in range(4):
-            points[corners[k]] = bend(corners[k], curved)
+            points[corners[k]] = bend(corners[k], curved, reading)
         for k in range(4):
             ends = points[corners[k]], points[corners[(k + 1) % 4]]
             on_face = sides[k][1] == 0.0
-            points[sides[k]] = bend(sides[k], curved) if on_face else tuple(np.mean(ends, axis=0))
+            points[sides[k]] = bend(sides[k], curved, reading) if on_face else tuple(np.mean(ends, axis=0))
     number = {p: n for n, p in enumerate(sorted(points, key=lambda p: (p[1], p[0])), start=1)}
     nodes = {number[p]: tuple(round(float(c), 9) for c in points[p]) for p in number}
     return nodes, [[number[p] for p in element] for element in elements]
 
 
-def bend(point, curved):
+def bend(point, curved, reading):
     """Move a point of the plain rectangle to its place over the curved face."""
     x, height = point
-    return (x, height + curved * (1 - height / HEIGHT) * x**2 / (2 * RADIUS))
+    return (x, height + curved * (1 - height / reading.height) * reading.face(x))
 
 
-def make_mesh(lift=0.0):
+def make_mesh(lift=0.0, reading=PUBLISHED):
     """Both bodies, the upper one first, as (nodes, elements); the base has its numbers from 1001."""
-    upper, upper_elements = make_body(curved=True)
-    lower, lower_elements = make_body(curved=False)
+    upper, upper_elements = make_body(True, reading)
+    lower, lower_elements = make_body(False, reading)
     upper = {n: (x, round(y + lift, 9)) for n, (x, y) in upper.items()}
     lower = {n + 1000: (x, 0.0 - y) for n, (x, y) in lower.items()}
     mirrored = [[e[k] + 1000 for k in (1, 0, 3, 2, 4, 7, 6, 5)] for e in lower_elements]
@@ -98,7 +143,7 @@ def shape_derivatives(a, b):
     return np.array([by_a, by_b])
 
 
-def check_mesh(bodies, lift):
+def check_mesh(bodies, lift, reading=PUBLISHED):
     """Stop unless the mesh has the published counts, positive Jacobians and opposite contact nodes."""
     (upper, upper_elements), (lower, lower_elements) = bodies
     assert len(upper) + len(lower) == 326 and len(upper_elements) + len(lower_elements) == 92
@@ -108,8 +153,8 @@ def check_mesh(bodies, lift):
         assert len([e for e in set(edges) if edges.count(e) == 1]) == 24    # conforming: 10 + 2 + 2*6 outer edges
     for n in range(1, 22):
         x, y = upper[n]
-        assert lower[n + 1000] == (x, 0.0) and abs(y - lift - x**2 / (2 * RADIUS)) < 1e-15 * WIDTH
-    assert all(abs(2 * upper[n][0] - upper[n - 1][0] - upper[n + 1][0]) < 1e-12 for n in range(2, 21, 2))
+        assert lower[n + 1000] == (x, 0.0) and abs(y - lift - reading.face(x)) < 2e-9    # nine decimals
+    assert all(abs(2 * upper[n][0] - upper[n - 1][0] - upper[n + 1][0]) < 4e-9 for n in range(2, 21, 2))
 
 
 def number_lines(numbers, width=12):
@@ -127,9 +172,9 @@ def mesh_cards(bodies):
         cards += [f"*ELEMENT, TYPE=CPE8, ELSET={name}"]
         cards += [", ".join(map(str, [n] + e)) for n, e in enumerate(elements, start=first)]
     nodes = {**upper, **lower}
-    highest = max(y for _, y in nodes.values())
+    highest, lowest = max(y for _, y in nodes.values()), min(y for _, y in nodes.values())
     for name, chosen in (("TOP", [n for n, (x, y) in nodes.items() if y == highest]),
-                         ("BOTTOM", [n for n, (x, y) in nodes.items() if y == -HEIGHT]),
+                         ("BOTTOM", [n for n, (x, y) in nodes.items() if y == lowest]),
                          ("AXIS", [n for n, (x, y) in nodes.items() if x == 0.0])):
         cards += [f"*NSET, NSET={name}"] + number_lines(chosen)
     for name, first in (("CURVED", 1), ("FLAT", 1001)):
@@ -165,14 +210,14 @@ OPENING = """\
 MODEL = """\
 *MATERIAL, NAME=UPPER
 *ELASTIC
-2.E4, 0.4
+2.E4, {poisson[0]}
 *EXPANSION
 1.2E-5
 *CONDUCTIVITY
 0.18
 *MATERIAL, NAME=LOWER
 *ELASTIC
-2.E4, 0.2
+2.E4, {poisson[1]}
 *EXPANSION
 {base_expansion}
 *CONDUCTIVITY
@@ -195,7 +240,7 @@ CURVED, FLAT
 *BOUNDARY
 TOP, 2, 2, 0.
 BOTTOM, 2, 2, 0.
-AXIS, 1, 1, 0.
+AXIS, 1, 1, 0.{ends}
 *STEP, INC=100
 *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT
 20., 900.
@@ -274,14 +319,20 @@ APART = """\
 ** the cylinder stands 0.5 above it."""
 
 
+def reading_cards(reading=PUBLISHED, lift=0.0, base_expansion="1.2E-5", method="NEWTON"):
+    """Cards of options, mesh and model of a reading."""
+    bodies = make_mesh(lift, reading)
+    check_mesh(bodies, lift, reading)
+    plane = ", PLANE=STRESS" if reading.plane_stress else ""
+    ends = "\nTOP, 1, 1, 0.\nBOTTOM, 1, 1, 0." if reading.ends_held else ""
+    model = MODEL.format(base_expansion=base_expansion, method=method, poisson=reading.poisson, ends=ends)
+    return [f'*OPTIONS, UNITS="cm MPa W C", LOAD=TOP,11{plane}', *mesh_cards(bodies), *model.splitlines()]
+
+
 def write_deck(path, heading, first_touch, base_expansion, lift, method, checks):
     """Write one deck; no card image may be wider than 80 columns."""
-    bodies = make_mesh(lift)
-    check_mesh(bodies, lift)
     cards = OPENING.format(heading=heading, first_touch=first_touch).splitlines()
-    cards += ['*OPTIONS, UNITS="cm MPa W C", LOAD=TOP,11']
-    cards += mesh_cards(bodies)
-    cards += MODEL.format(base_expansion=base_expansion, method=method).splitlines() + checks.splitlines()
+    cards += reading_cards(PUBLISHED, lift, base_expansion, method) + checks.splitlines()
     assert max(map(len, cards)) <= 80
     path.write_text("\n".join(cards) + "\n")
 

@@ -1,0 +1,148 @@
+"""A document of docs/ that is written from runs: sections of themes, each with its tables.
+
+A theme is a module with TITLE, TEXT and a function tables(folder), which runs its cases in a folder
+and returns the parts of the section: tables, pictures, or text. Figures of the document may differ
+in their digits from those of another run; everything else may not.
+"""
+
+import importlib
+import re
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PICTURES = DOCS / "pictures"
+
+
+@dataclass
+class Table:
+    """A table of the document; a verdict is a cell that says pass, refused or FAIL."""
+
+    title: str
+    head: list[str]
+    rows: list[list] = field(default_factory=list)
+    text: str = ""
+
+    def markdown(self):
+        """Return the lines of the table."""
+        lines = [f"### {self.title}", "", *([self.text, ""] if self.text else [])]
+        lines += ["| " + " | ".join(self.head) + " |", "|" + "---|" * len(self.head)]
+        return lines + ["| " + " | ".join(map(shown, row)) + " |" for row in self.rows] + [""]
+
+
+@dataclass
+class Picture:
+    """A picture of the document; draw(path) draws it, and does so only where the document is written."""
+
+    file: str
+    title: str
+    draw: Callable
+
+    def markdown(self):
+        """Return the lines of the picture."""
+        return [f"![{self.title}](pictures/{self.file})", ""]
+
+
+def shown(cell):
+    """Return a cell's text; numbers with three digits."""
+    return f"{cell:.3g}" if isinstance(cell, float) else str(cell)
+
+
+def verdict(holds):
+    """Return the verdict on a case that must come out right."""
+    return "pass" if holds else "FAIL"
+
+
+def lines_of(part):
+    """Return the lines of a table, a picture or a text."""
+    return [part.strip(), ""] if isinstance(part, str) else part.markdown()
+
+
+def masked(lines):
+    """Return the text of lines without the digits of its numbers."""
+    number = r"(?<![\w.])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
+    return re.sub(number, "#", "\n".join(lines))
+
+
+@dataclass
+class Document:
+    """A file of docs/, the folder of its themes, their names in order, and what stands before them."""
+
+    file: str
+    folder: Path
+    themes: tuple[str, ...]
+    preface: str
+
+    @property
+    def path(self):
+        """Return where the document stands."""
+        return DOCS / self.file
+
+    def present(self):
+        """Return the themes whose files are there, by their names and in their order."""
+        return {name: importlib.import_module(f"test_{name}") for name in self.themes
+                if (self.folder / f"test_{name}.py").exists()}
+
+    def sections(self):
+        """Return the lines of the sections that stand in the document, by their titles."""
+        found, lines = {}, []
+        for line in self.path.read_text().splitlines() if self.path.exists() else ():
+            if line.startswith("## "):
+                lines = found.setdefault(line[3:], [])
+            lines.append(line)
+        return found
+
+    def write(self, names=()):
+        """Run the themes named, or all, and write their sections; the others stay as they are."""
+        themes, sections = self.present(), self.sections()
+        unknown = set(names) - themes.keys()
+        if unknown:
+            sys.exit(f"no theme {', '.join(sorted(unknown))}; there are {', '.join(themes)}")
+        for name in names or themes:
+            sections[themes[name].TITLE] = self.section(themes[name])
+        lines = self.preface.splitlines() + [""]
+        for theme in themes.values():
+            lines += sections.get(theme.TITLE, [])
+        self.path.write_text("\n".join(lines).rstrip() + "\n")
+
+    def section(self, theme):
+        """Run a theme, draw its pictures and return its lines."""
+        lines = [f"## {theme.TITLE}", "", *([theme.TEXT.strip(), ""] if theme.TEXT.strip() else [])]
+        with tempfile.TemporaryDirectory() as folder:
+            for part in theme.tables(Path(folder)):
+                lines += lines_of(part)
+                if isinstance(part, Picture):
+                    PICTURES.mkdir(exist_ok=True)
+                    part.draw(PICTURES / part.file)
+        return lines
+
+    def check(self, theme, folder):
+        """Assert that all cases of a theme hold, and that the document tells the same of them."""
+        self.check_parts(theme.tables(folder))
+
+    def check_parts(self, parts):
+        """Assert that no verdict of these parts fails, and that the document tells the same."""
+        tables = [part for part in parts if isinstance(part, Table)]
+        failed = [row for table in tables for row in table.rows if "FAIL" in map(str, row)]
+        assert not failed, f"these cases fail: {failed}"
+        document = masked(self.path.read_text().splitlines())
+        for part in parts:
+            text = masked(lines_of(part)).strip()
+            assert text in document, f"docs/{self.file} tells something else than\n{text}"
+            assert not isinstance(part, Picture) or (PICTURES / part.file).exists()
+
+    def rows(self, title):
+        """Return the rows of a table as the document has them: cells by the heads of the columns,
+        for tests that run only a part of a theme and compare with what is told."""
+        lines = self.path.read_text().splitlines()
+        at = lines.index(f"### {title}")
+        at += next(k for k, line in enumerate(lines[at:]) if line.startswith("|"))
+        found = []
+        for line in lines[at:]:
+            if not line.startswith("|"):
+                break
+            found.append([cell.strip() for cell in line.strip("|").split("|")])
+        return [dict(zip(found[0], row, strict=True)) for row in found[2:]]
