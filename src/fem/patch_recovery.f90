@@ -1,6 +1,6 @@
-!> Stress or flux at the nodes by superconvergent patch recovery: polynomials fitted to the values at
-!> the recovery points of the elements round a corner (Zienkiewicz & Zhu, Int. J. Num. Meth. Eng. 33
-!> (1992) 1331). A fit depends on geometry alone, so each nodal value is a sum of values with
+!> Stress or flux at the nodes by superconvergent patch recovery: polynomials fitted to the values
+!> at the recovery points of the elements round a corner (Zienkiewicz & Zhu, Int. J. Num. Meth. Eng.
+!> 33 (1992) 1331), cubic ones round four quadrilaterals of eight nodes. A fit depends on geometry alone, so each nodal value is a sum of values with
 !> weights that are formed once.
 !>
 !> Plain averages of extrapolated values (field_recovery) will not do for an estimate of errors: in
@@ -17,6 +17,7 @@ module patch_recovery
    public :: patch_recovery_type
 
    integer, parameter :: most_layers = 3   !! times that a patch is widened by its neighbours
+   integer, parameter :: fewest_for_cubic = 16   !! sites: four elements of eight nodes
 
    !> Nodal values from values at the recovery points of all elements.
    type :: patch_recovery_type
@@ -65,8 +66,9 @@ contains
       call find_elements_round_corners(mesh, points, layout)
       do p = 1, size(rows)
          has_fit(p) = .false.
-         if (layout%start(p + 1) > layout%start(p)) &
+         if (layout%start(p + 1) > layout%start(p)) then
             call fit_round_corner(mesh, points, layout, p, 0, patch, fit, has_fit(p))
+         end if
       end do
       do p = 1, size(rows)
          if (layout%start(p + 1) == layout%start(p)) cycle
@@ -87,8 +89,8 @@ contains
       call join_rows(self, rows)
    end subroutine prepare
 
-   !> Corners whose fits hold at a corner: its own, or, where its elements are too few for one, as at
-   !> the outline of a body, those of its neighbours inside; without any its own, widened.
+   !> Corners whose fits hold at a corner: its own, or, where its elements are too few for one, as
+   !> at the outline of a body, those of its neighbours inside; without any its own, widened.
    pure function centres_for(mesh, points, layout, corner, has_fit) result(centres)
       type(mesh_type), intent(in) :: mesh
       type(point_map_type), intent(in) :: points
@@ -270,8 +272,8 @@ contains
          fit = make_fit(sites, corners_of(mesh, patch), terms)
          if (fit%complete .and. size(sites, 2) >= fewest) exit
       end do
-      if (terms == quadratic_terms .and. size(sites, 2) >= 16 .and. all(element_corner_count( &
-         mesh%element_kind(patch)) == 4)) then
+      if (terms == quadratic_terms .and. size(sites, 2) >= fewest_for_cubic .and. &
+         all(element_corner_count(mesh%element_kind(patch)) == 4)) then
          cubic = make_fit(sites, corners_of(mesh, patch), cubic_terms)
          if (cubic%complete) fit = cubic
       end if

@@ -1,4 +1,5 @@
-!> The part of group `/VTKHDF` that grows: `Steps`, point and cell data of every increment that is due.
+!> The part of group `/VTKHDF` that grows: `Steps`, point and cell data of every increment that is
+!> due.
 !> The geometry is static, so its offsets are zero at every step.
 module result_fields
    use contact_pairs, only: contact_pairs_type

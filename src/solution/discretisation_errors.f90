@@ -72,7 +72,8 @@ contains
       integer :: e
 
       values = 0.0_dp
-      allocate (samples(4, self%samples%first(size(self%samples%first)) - 1), smooth(4, size(self%points%node)))
+      allocate (samples(4, self%samples%first(size(self%samples%first)) - 1))
+      allocate (smooth(4, size(self%points%node)))
       call stress_samples(self%samples, model%mesh, displacement, temperature, samples)
       stress = average_samples(model%mesh, self%points, samples)
       call self%patches%recover(4, samples, smooth)
@@ -97,7 +98,8 @@ contains
       integer :: e
 
       values = 0.0_dp
-      allocate (samples(2, self%samples%first(size(self%samples%first)) - 1), smooth(2, size(self%points%node)))
+      allocate (samples(2, self%samples%first(size(self%samples%first)) - 1))
+      allocate (smooth(2, size(self%points%node)))
       call heat_flux_samples(self%samples, model%mesh, temperature, samples)
       flux = average_samples(model%mesh, self%points, samples)
       call self%patches%recover(2, samples, smooth)
@@ -116,8 +118,8 @@ contains
 
       scale_of = 1.0_dp
       largest = maxval(abs(samples))
-      if (largest > large .or. (largest < 1/large .and. largest > tiny(largest))) &
-         scale_of = largest
+      if (largest > large) scale_of = largest
+      if (largest < 1/large .and. largest > tiny(largest)) scale_of = largest
    end function scale_of
 
    !> The integrals of stress over an element.

@@ -42,9 +42,10 @@ def result(tmp_path_factory):
     """Return the results of a step with heat, then one with forces, and the listing."""
     deck = write(tmp_path_factory.mktemp("estimate") / "square.inp", HEAT + PULL)
     with h5py.File(solve(deck)) as file:
-        found = {}
-        file.visititems(lambda name, item: found.update({name: item[()]})
-                        if isinstance(item, h5py.Dataset) else None)
+        groups = ("history", "VTKHDF", "VTKHDF/PointData", "VTKHDF/CellData",
+                  "VTKHDF/Steps/CellDataOffsets")
+        found = {f"{group}/{name}": item[()] for group in groups
+                 for name, item in file[group].items() if isinstance(item, h5py.Dataset)}
     return found, deck.with_suffix(".lst").read_text()
 
 
@@ -108,7 +109,7 @@ def test_listing_tells_the_errors_at_the_end_of_each_step(result):
 def test_no_dataset_without_the_physics(tmp_path):
     """A deck without heat has no error of heat flux; huge and tiny loads change no digit."""
     found = []
-    for force in ("4", "4e80", "4e-120"):
+    for force in ("4", "4e80", "4e-80"):
         pull = [card.replace("1, 4", f"1, {force}").replace("2, -3", "2, 0") for card in PULL]
         deck = write(tmp_path / "pull.inp", pull)
         with h5py.File(solve(deck)) as file:
@@ -118,7 +119,7 @@ def test_no_dataset_without_the_physics(tmp_path):
     assert found == pytest.approx([found[0]] * 3, rel=1e-9)
 
 
-def test_program_of_one_element_estimates_nothing(tmp_path):
+def test_body_of_one_element_estimates_nothing(tmp_path):
     """A body without a patch has no smoother stress than its own; nothing fails."""
     deck = tmp_path / "one.inp"
     deck.write_text("""*NODE, NSET=ALL
