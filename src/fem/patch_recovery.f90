@@ -1,11 +1,11 @@
 !> Stress or flux at the nodes by superconvergent patch recovery: polynomials fitted to the values
 !> at the recovery points of the elements round a corner (Zienkiewicz & Zhu, Int. J. Num. Meth. Eng.
-!> 33 (1992) 1331), cubic ones round four quadrilaterals of eight nodes. A fit depends on geometry alone, so each nodal value is a sum of values with
-!> weights that are formed once.
+!> 33 (1992) 1331), cubic ones round four quadrilaterals of eight nodes. A fit depends on geometry
+!> alone, so each nodal value is a sum of values with weights that are formed once.
 !>
 !> Plain averages of extrapolated values (field_recovery) will not do for an estimate of errors: in
-!> elements of eight nodes the extrapolations of two neighbours agree up to the order of the error
-!> itself, and the estimate would tend to zero times the error.
+!> elements of eight nodes they are off at the nodes by the order of the error itself, h^2 times the
+!> curvature of the field, which extrapolation by bilinear functions leaves out on all sides alike.
 module patch_recovery
    use element_kinds, only: element_corner_count, element_node_count, quad4, triangle3
    use field_recovery, only: point_map_type

@@ -1,7 +1,8 @@
 !> Stress and heat flux at given points of all elements, increment after increment: what depends on
 !> geometry and materials alone is formed once. Arrays run over the points first, and points are
-!> taken two at a time, which the compiler turns into vector instructions: this is most of the time that
-!> the recovery of an increment takes. A rule of an odd number of points ends in one without weight.
+!> taken two at a time, which the compiler turns into vector instructions: this is most of the time
+!> that the recovery of an increment takes. A rule of an odd number of points ends in one without
+!> weight.
 module point_fields
    use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain, &
       plane_stress, quad4
