@@ -1,6 +1,6 @@
-"""Observed orders, Richardson extrapolation and uncertainty bands of quantities over a course of loads.
+"""Observed orders, Richardson extrapolation and uncertainty bands of quantities over loads.
 
-A series holds a quantity at the same loads on grids each twice as fine as the one before. Grids meet
+A series holds a quantity at the same loads on grids each twice as fine as the one before. They meet
 an edge of contact here and there between two nodes, which makes errors that change sign with the
 load; so orders are those of the rms over all loads, which is steady where a single load tells an
 order by chance.
@@ -46,7 +46,7 @@ class Series:
 
     @property
     def order(self):
-        """Return the observed order: the slope of the sizes, by least squares over the last three."""
+        """Return the observed order: the slope of the last three sizes, by least squares."""
         sizes = np.log2(self.sizes[-3:])
         return -float(np.polyfit(range(len(sizes)), sizes, 1)[0])
 

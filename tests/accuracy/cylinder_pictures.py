@@ -70,10 +70,10 @@ def readings(results, where, loads, path):
             for load, at, shade, sign in zip(loads, where, shades, style.MARKERS, strict=False):
                 mine = ours.value[at] * ours.scale[at]
                 change = 100 * (other.value[at] * other.scale[at] / mine - 1)
-                band = 100 * (other.band[at] * other.scale[at] + ours.band[at] * ours.scale[at]) / mine
+                band = other.band[at] * other.scale[at] + ours.band[at] * ours.scale[at]
                 height = row + 0.5 - (list(loads).index(load) + 1) / 6
-                axes.errorbar(change, height, xerr=band, color=shade, marker=sign, markersize=3,
-                              linewidth=0.6, label=f"{load} °C" if row == 0 else None)
+                axes.errorbar(change, height, xerr=100 * band / mine, color=shade, marker=sign,
+                              markersize=3, linewidth=0.6, label=f"{load} °C" if row == 0 else None)
         axes.set_xlabel("change, %")
         axes.locator_params(axis="x", nbins=5)
         axes.grid(axis="x", linewidth=0.3, color="#D0D0D0")
