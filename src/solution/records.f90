@@ -7,7 +7,7 @@ module records
    private
    public :: element_points_record_type
    public :: increment_record_type, contact_record_type, iteration_record_type
-   public :: field_record_type, work_record_type, attempt_record_type
+   public :: field_record_type, work_record_type, attempt_record_type, error_record_type
    public :: add_attempts, note_failure
    public :: status_open, status_slip, status_stick, edges_kept
 
@@ -61,6 +61,14 @@ module records
       !> (2, points) along 1, 2; unallocated without heat [power/length^2]
       real(dp), allocatable :: heat_flux(:, :)
    end type element_points_record_type
+
+   !> Estimated discretisation error of stress or of heat flux (Zienkiewicz & Zhu).
+   type :: error_record_type
+      !> (bodies) error in the energy norm, relative to that of the whole; 0 without either
+      real(dp), allocatable :: body(:)
+      !> (elements) root mean square of the difference to the recovered field [stress or flux]
+      real(dp), allocatable :: element(:)
+   end type error_record_type
 
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and
    !> section.
@@ -122,6 +130,8 @@ module records
       !> Passes of all attempts in their order; unallocated without coupling.
       type(iteration_record_type), allocatable :: iterations(:)
       type(field_record_type) :: fields                         !! fields
+      type(error_record_type) :: stress_error     !! unallocated before mechanics is solved
+      type(error_record_type) :: heat_flux_error  !! unallocated without heat
       !> One an *EL PRINT of the step; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work                            !! re-factorisation
