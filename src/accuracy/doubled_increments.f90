@@ -60,7 +60,7 @@ contains
       class(doubled_increments_type), intent(inout) :: self      !! the second run
       type(model_type), intent(in) :: model                      !! the model
       type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
-      type(loads_type), intent(in) :: loads                      !! loads at the end of the increment
+      type(loads_type), intent(in) :: loads                      !! loads at its end
       integer, intent(in) :: number                              !! number of the step
       type(solution_state_type), intent(in) :: accepted          !! the run's state there
       real(dp), intent(in) :: time                               !! total time there [time]
@@ -86,7 +86,8 @@ contains
       next%film = accepted%film
       next%force_load = accepted%force_load
       if (solves_heat(doubled%analysis)) then
-         call operators%set_film(left_films(doubled%scheme, self%state%film, next%film), model, error)
+         call operators%set_film(left_films(doubled%scheme, self%state%film, next%film), model, &
+            error)
       end if
       if (.not. allocated(error)) call solve_pairs(operators, loads, model, doubled, self%state, &
          next, record, error)

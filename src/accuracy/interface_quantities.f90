@@ -12,8 +12,8 @@ module interface_quantities
    private
    public :: quantities_of, quantities_of_state, edge_resolution
 
-   !> How far edges of zones are known on a mesh, in spacings of the pairs about them: nine tenths of
-   !> those of the published cylinder are no further from the converged edges (docs/accuracy.md).
+   !> How far edges of zones are known on a mesh, in spacings of the pairs about them: of those of the
+   !> published cylinder nine tenths are no further from the converged ones (docs/accuracy.md).
    real(dp), parameter :: known_contact_edge = 0.2_dp
    real(dp), parameter :: known_stick_edge = 0.6_dp
 
@@ -64,8 +64,8 @@ contains
       end associate
    end subroutine quantities_of_state
 
-   !> How far the edges among the quantities are known from the spacing of the pairs; 0 for the others
-   !> and for zones that end with the interface.
+   !> How far the edges among the quantities are known from the spacing of the pairs; 0 for the
+   !> others and for zones that end with the interface.
    pure function edge_resolution(pairs, values) result(resolution)
       type(contact_pairs_type), intent(in) :: pairs   !! the pairs of the interface
       real(dp), intent(in) :: values(:)               !! as quantities_of gave them

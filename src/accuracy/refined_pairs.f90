@@ -194,17 +194,17 @@ contains
       integer, intent(in) :: k
       real(dp), intent(in) :: friction
 
-      select case (self%status(k))
-      case (status_open)
+      if (self%status(k) == status_open) then
          if (self%gap(k) < 0.0_dp) self%status(k) = merge(status_stick, status_slip, &
             friction > 0.0_dp)
-      case (status_stick)
-         if (abs(self%shear_force(k)) > friction*self%force(k)) then
-            self%status(k) = status_slip
-            self%direction(k) = merge(1, -1, self%shear_force(k) > 0.0_dp)
-         end if
-      end select
-      if (self%force(k) >= 0.0_dp .or. self%status(k) == status_open) return
+         return
+      end if
+      if (self%status(k) == status_stick .and. &
+         abs(self%shear_force(k)) > friction*self%force(k)) then
+         self%status(k) = status_slip
+         self%direction(k) = merge(1, -1, self%shear_force(k) > 0.0_dp)
+      end if
+      if (self%force(k) >= 0.0_dp) return
       self%status(k) = status_open
       self%force(k) = 0.0_dp
       self%shear_force(k) = 0.0_dp

@@ -44,8 +44,8 @@ module refinement_error
 
 contains
 
-   !> What quantities of the interfaces change by on the refined mesh, at the end of an increment, in
-   !> the equilibrium of heat there.
+   !> What the quantities of the interfaces change by on the refined mesh, at the end of an
+   !> increment, in the equilibrium of heat there.
    !> Error: the increment has no solution under one of the corrections.
    subroutine find_change_by_refinement(refined, operators, loads, model, step, clock, previous, &
       next, change, error)
@@ -238,7 +238,7 @@ contains
                pairs%status(first:last), max(pairs%gap(first:last), 0.0_dp), &
                merge(pairs%force(first:last), 0.0_dp, closed), &
                merge(pairs%shear_force(first:last), 0.0_dp, closed), rates(first:last))
-            ! What the old mesh takes for forces of open pairs is held up by the new ones about them.
+            ! What the old mesh lacks at open pairs, the new ones about them carry.
             values(1, i) = sum(pairs%force(first:last))
             values(2, i) = sum(pairs%shear_force(first:last))
          end do

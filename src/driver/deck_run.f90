@@ -81,7 +81,7 @@ contains
       type(error_estimator_type) :: estimator
       type(increment_record_type) :: record
 
-      associate (pairs => simulation%operators%interfaces, points => simulation%points)
+      associate (pairs => simulation%operators%interfaces, points => simulation%recovery%points)
          call make_folder(command%folder)
          call output%start(command%folder//'/'//base_name(path), model, pairs, points%node, &
             points%element_points, cards%images, command%quiet, error)

@@ -54,6 +54,8 @@ module model
       logical :: estimates_errors = .true.                       !! ERRORS= of *OPTIONS
       integer :: refinement_levels = 0                           !! *REFINE, already applied
       integer :: element_order = 2                               !! *OPTIONS, ORDER=, applied
+      integer :: written_levels = 0                              !! *REFINE, where it was varied
+      integer :: written_order = 2                               !! ORDER=, where it was varied
       integer :: load_node = 0                                   !! LOAD=: node index, 0 for time
       integer :: load_dof = 0                                    !! LOAD=: 1, 2, dof_temperature
       character(:), allocatable :: load_label                    !! label of the load axis

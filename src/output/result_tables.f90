@@ -8,7 +8,8 @@ module result_tables
    use hdf5_helpers, only: as_integer, as_real, create_group, write_array
    use kinds, only: dp
    use record_values, only: contact_edge_names, contact_heat_names, contact_pair_names, &
-      contact_total_names, contact_values, history_names, history_value, name_length
+      contact_total_names, contact_values, history_body_names, history_body_values, history_names, &
+      history_value, name_length
    use records, only: contact_record_type, edges_kept, estimated_names, estimated_quantities, &
       increment_record_type, interface_errors_type, iteration_record_type
    implicit none
@@ -18,6 +19,7 @@ module result_tables
 
    !> Group `/history`: one row an increment.
    type :: history_results_type
+      integer :: bodies = 0                                !! number of bodies
       character(name_length), allocatable :: names(:)      !! datasets that grow
       type(growing_dataset_type), allocatable :: sets(:)   !! one for each of names
    contains
@@ -62,21 +64,26 @@ module result_tables
 contains
 
    !> Prepares the datasets.
-   subroutine start_history(self, has_heat, has_mechanics, has_coupling, expected)
+   subroutine start_history(self, has_heat, has_mechanics, has_coupling, bodies, expected)
       class(history_results_type), intent(inout) :: self  !! the group
       logical, intent(in) :: has_heat                     !! whether a step solves heat
       logical, intent(in) :: has_mechanics                !! whether a step solves mechanics
       logical, intent(in) :: has_coupling                 !! whether a step couples both in contact
+      integer, intent(in) :: bodies                       !! number of bodies
       integer, intent(in) :: expected                     !! increments that are expected
-      integer :: i, storage
+      integer :: i, storage, width
 
       self%names = pack(history_names, (has_heat .or. index(history_names, 'heat_') /= 1) .and. &
          (has_mechanics .or. history_names /= 'force_imbalance') .and. &
          (has_coupling .or. index(history_names, 'coupling_') /= 1))
+      self%bodies = bodies
+      self%names = [self%names, pack(history_body_names, [has_mechanics, has_heat])]
       allocate(self%sets(size(self%names)))
       do i = 1, size(self%names)
          storage = merge(as_integer, as_real, self%names(i) == 'iterations')
-         self%sets(i) = growing_dataset('/history/'//trim(self%names(i)), storage, 0, 1, expected)
+         width = merge(bodies, 0, any(self%names(i) == history_body_names))
+         self%sets(i) = growing_dataset('/history/'//trim(self%names(i)), storage, width, 1, &
+            expected)
       end do
    end subroutine start_history
 
@@ -87,7 +94,11 @@ contains
       integer :: i
 
       do i = 1, size(self%sets)
-         call self%sets(i)%append([history_value(self%names(i), record)])
+         if (any(self%names(i) == history_body_names)) then
+            call self%sets(i)%append(history_body_values(self%names(i), record, self%bodies))
+         else
+            call self%sets(i)%append([history_value(self%names(i), record)])
+         end if
       end do
    end subroutine append_history
 

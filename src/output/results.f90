@@ -77,10 +77,11 @@ contains
       has_heat = any(solves_heat(model%steps%analysis))
       has_mechanics = any(solves_mechanics(model%steps%analysis))
       expected = expected_increments(model)
-      call self%fields%start(pairs, point_node, has_heat .or. any(model%materials%has_expansion), &
-         has_heat, has_mechanics, expected)
+      call self%fields%start(pairs, point_node, size(model%mesh%element_kind), &
+         has_heat .or. any(model%materials%has_expansion), has_heat, has_mechanics, expected)
       call self%history%start(has_heat, has_mechanics, size(pairs) > 0 .and. any(solves_heat( &
-         model%steps%analysis) .and. solves_mechanics(model%steps%analysis)), expected)
+         model%steps%analysis) .and. solves_mechanics(model%steps%analysis)), &
+         model%mesh%body_count, expected)
       call self%convergence%start(8*expected)
       call self%errors%start(pairs, size(model%steps))
       allocate(self%contacts(size(pairs)))

@@ -7,7 +7,7 @@ module records
    private
    public :: element_points_record_type
    public :: increment_record_type, contact_record_type, iteration_record_type
-   public :: field_record_type, work_record_type, attempt_record_type
+   public :: field_record_type, work_record_type, attempt_record_type, error_record_type
    public :: add_attempts, note_failure
    public :: interface_errors_type, estimated_quantities, estimated_names, is_band
    public :: status_open, status_slip, status_stick, edges_kept
@@ -81,6 +81,14 @@ module records
       real(dp), allocatable :: heat_flux(:, :)
    end type element_points_record_type
 
+   !> Estimated discretisation error of stress or of heat flux (Zienkiewicz & Zhu).
+   type :: error_record_type
+      !> (bodies) error in the energy norm, relative to that of the whole; 0 without either
+      real(dp), allocatable :: body(:)
+      !> (elements) root mean square of the difference to the recovered field [stress or flux]
+      real(dp), allocatable :: element(:)
+   end type error_record_type
+
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and
    !> section.
    type :: field_record_type
@@ -143,6 +151,8 @@ module records
       type(field_record_type) :: fields                         !! fields
       !> (interfaces) at the end of a step; else unallocated
       type(interface_errors_type), allocatable :: errors(:)
+      type(error_record_type) :: stress_error     !! unallocated before mechanics is solved
+      type(error_record_type) :: heat_flux_error  !! unallocated without heat
       !> One an *EL PRINT of the step; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work                            !! re-factorisation

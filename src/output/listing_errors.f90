@@ -1,21 +1,43 @@
-!> The estimated errors of an interface in the listing: those of the mesh, of the increments and of
-!> the iteration beside each other.
-module listing_interface_errors
+!> Estimated errors in the listing: of bodies in the energy norm, and of the global quantities of an
+!> interface, those of the mesh, of the increments and of the iteration beside each other.
+module listing_errors
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use kinds, only: dp
    use listing_text, only: column
-   use records, only: estimated_names, estimated_quantities, interface_errors_type, is_band
+   use records, only: estimated_names, estimated_quantities, increment_record_type, &
+      interface_errors_type, is_band
    implicit none
    private
-   public :: print_errors
+   public :: print_body_errors, print_interface_errors
 
    character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'increments', &
       'iteration']
 
 contains
 
+   !> Prints how large the discretisation error of each body is estimated, in the energy norm,
+   !> relative to stress and heat flux, at the end of a step.
+   subroutine print_body_errors(unit, record)
+      integer, intent(in) :: unit                         !! unit of the listing
+      type(increment_record_type), intent(in) :: record   !! the increment
+      integer :: b, bodies
+
+      if (.not. record%last_of_step) return
+      bodies = 0
+      if (allocated(record%stress_error%body)) bodies = size(record%stress_error%body)
+      if (allocated(record%heat_flux_error%body)) bodies = size(record%heat_flux_error%body)
+      do b = 1, bodies
+         write (unit, '(3x, a, i0)', advance='no') 'estimated error of the mesh, body ', b
+         if (allocated(record%stress_error%body)) write (unit, '(2a)', advance='no') &
+            '   stress', column(record%stress_error%body(b), 9, 2)
+         if (allocated(record%heat_flux_error%body)) write (unit, '(2a)', advance='no') &
+            '   heat flux', column(record%heat_flux_error%body(b), 9, 2)
+         write (unit, '(a)') '  (energy norm, relative)'
+      end do
+   end subroutine print_body_errors
+
    !> Prints the errors of an interface. What has no value, or no part in the deck, is left out.
-   subroutine print_errors(unit, name, errors)
+   subroutine print_interface_errors(unit, name, errors)
       integer, intent(in) :: unit                          !! unit of the listing
       character(*), intent(in) :: name                     !! name of the interface
       type(interface_errors_type), intent(in) :: errors    !! its errors
@@ -39,7 +61,7 @@ contains
                largest_part(errors, q)
          end associate
       end do
-   end subroutine print_errors
+   end subroutine print_interface_errors
 
    !> A name with blanks for its underlines.
    pure function spaced(name) result(words)
@@ -86,4 +108,4 @@ contains
       if (abs(parts(k)) > 0.0_dp) name = kinds_of_error(k)
    end function largest_part
 
-end module listing_interface_errors
+end module listing_errors
