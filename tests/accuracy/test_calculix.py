@@ -1,0 +1,125 @@
+"""Theme: the cylinder by thercon and by CalculiX at equal error; figures are those on record in
+tests/bench, which `./setup.sh bench` measures again."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import report
+from report import Picture, Table
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "bench"))
+import decks  # noqa: E402  their folder is made known first
+import envelope  # noqa: E402
+import records  # noqa: E402
+import runs  # noqa: E402
+
+TITLE = "Against CalculiX at equal error"
+TEXT = """
+CalculiX 2.20 of Debian beside thercon on the published cylinder. The error of a run is the largest relative one of normal force, heat
+rate, friction force and contact edge at 180, 360, 540, 720 and 900 C on top. For each error the cheapest run of each program was looked
+for over elements, meshes and increments, and CalculiX's penalty and stick slope too. Cost is CPU time, user and system, of one core, with
+reading and writing.
+
+Both programs solve one problem, so that one limit holds for both: heat crosses closed pairs only, which is all that CalculiX can do, and
+strains are 100 times smaller, so that gaps at displaced positions, which CalculiX measures, are those of the undeformed bodies. Pressures, forces,
+heat and zones are those of the paper's theory all the same. [tests/bench](../tests/bench/README.md) has the details; `./setup.sh bench` repeats the
+runs.
+"""
+ELEMENTS = {"CPE8": "8", "CPE8R": "8R", "CPE4": "4", "CPE4R": "4R"}
+MODEL_RUNS = ("small", "published", "gas")
+
+
+def described(case):
+    """Return the words for a run."""
+    text = f"{case.sides} CPE{ELEMENTS[case.element]}, {case.family}, {case.increments} increments"
+    return text + (f", K = {case.penalty:.0e}" if case.penalty else "").replace("e+0", "e")
+
+
+def cheapest_runs(scored):
+    """Return the table of the cheapest runs."""
+    rows = []
+    for level, aim in envelope.LEVELS.items():
+        best = [envelope.cheapest(scored, program, level) for program in envelope.PROGRAMS]
+        for program, one in zip(envelope.PROGRAMS, best, strict=True):
+            what = [described(one.record.case), f"{100 * one.error:.2f} %", one.record.cpu,
+                    f"{one.record.memory:.0f}"] if one else ["none found", "", "", ""]
+            ratio = envelope.ratio(scored, level)
+            last = ["", ""] if program == "thercon" else [
+                f"{ratio:.0f}" if ratio else "", f"{aim}" if aim else ""]
+            rows.append([f"{100 * level:g} %", envelope.NAMES[program], *what, *last])
+    return Table("The cheapest run at each error", ["error", "program", "run, elements on the contact first",
+                 "its error", "CPU s", "MB", "times as dear", "aimed at"], rows)
+
+
+def what_errs(scored, limit):
+    """Return the table of errors by quantity."""
+    rows = []
+    for level in envelope.LEVELS:
+        for program in envelope.PROGRAMS:
+            one = envelope.cheapest(scored, program, level)
+            if one:
+                off = records.errors(one.record, limit).max(axis=1)
+                rows.append([f"{100 * level:g} %", envelope.NAMES[program],
+                             *(f"{100 * value:.2f} %" for value in off)])
+    return Table("The errors of these runs", ["error", "program", "normal force", "heat rate",
+                 "friction force", "contact edge"], rows, "Largest over the five temperatures.")
+
+
+def models(runs_on_record):
+    """Return the table of what the changes of the published deck amount to."""
+    rows = []
+    by_model = {}
+    for one in runs_on_record:
+        if not one.failed:
+            by_model.setdefault(one.case.program, {})[one.case] = one.values
+    for program, (new, old), words in (
+            ("thercon", ("published", "small"), "strains and curvature as published"),
+            ("calculix", ("published", "small"), "strains and curvature as published"),
+            ("thercon", ("gas", "published"), "conductance across the gap")):
+        for case, values in by_model[program].items():
+            if case.model != new:
+                continue
+            before = by_model[program][decks.replace(case, model=old)]
+            off = values[:4] / before[:4] - 1
+            worst = off[range(4), np.abs(off).argmax(axis=1)]
+            rows.append([words, envelope.NAMES[program], *(f"{100 * v:+.2f} %" for v in worst)])
+    return Table("What the two changes amount to", ["put back", "program", "normal force",
+                 "heat rate", "friction force", "contact edge"], rows,
+                 "The largest change over the five temperatures, on one mesh. The rows of both programs for one change "
+                 "differ by what CalculiX adds: gaps and areas at displaced positions.")
+
+
+def searched(scored):
+    """Return the words for what the runs were chosen from."""
+    counts = [sum(one.record.case.program == p for one in scored) for p in envelope.PROGRAMS]
+    failed = sum(one.record.failed for one in scored)
+    _, spread = records.limit()
+    return (f"{counts[0]} runs of thercon and {counts[1]} of CalculiX, of which {failed} failed, were compared. The limit is the "
+            "mean of thercon's finest meshes, between which forces scatter "
+            f"by {100 * spread[[0, 2]].max():.2f} %, heat by {100 * spread[1].max():.2f} % and edges by {100 * spread[3].max():.2f} %.")
+
+
+def tables(_):
+    """Return the parts of the section, from the runs on record."""
+    recorded, (limit, _) = records.read(), records.limit()
+    scored = envelope.scored(recorded)
+    return [cheapest_runs(scored), Picture("calculix.png", "Worst error against CPU seconds", envelope.draw),
+            searched(scored), what_errs(scored, limit), models(recorded)]
+
+
+def test_the_document_tells_what_is_on_record():
+    document = report.DOCUMENT.path.read_text()
+    for part in tables(None):
+        text = part if isinstance(part, str) else "\n".join(part.markdown())
+        assert text.strip() in document
+
+
+def test_cheap_runs_have_the_errors_on_record(tmp_path):
+    limit, _ = records.limit()
+    best = [one for one in envelope.lower(envelope.scored(), "thercon") if one.record.cpu < 0.5]
+    assert best
+    for one in best:
+        _, values = runs.solve(one.record.case, tmp_path)
+        again = records.worst(records.Record(one.record.case, values=values), limit)
+        assert abs(again - one.error) < 1e-4, one.record.case
