@@ -104,8 +104,8 @@ def main():
     recorded = records.read()
     if options.add:
         for case in map(case_of, options.add):
-            recorded = [one for one in recorded if one.case != case] + [measure(case, options.folder)]
-            records.write(recorded)
+            new = measure(case, options.folder)
+            records.write([one for one in records.read() if one.case != case] + [new])
         return
     found = repeat(recorded if options.all else worth_repeating(recorded), options.folder)
     again = {one.case: one for one in found}

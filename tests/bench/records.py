@@ -14,9 +14,9 @@ from decks import Case
 HERE = Path(__file__).resolve().parent
 RUNS, LIMIT = HERE / "runs.csv", HERE / "limit.csv"
 QUANTITIES = ("normal_force", "heat_rate", "shear_force", "edge_contact")
-OTHER_EDGE = "other_edge"   # of CalculiX, whose better one counts
+OTHER_EDGES = ("edge_of_both", "edge_of_corners")   # of CalculiX, whose best one counts
 KEYS = [field.name for field in fields(Case)]
-HEAD = [*KEYS, "cpu", "memory", *(f"{name}@{load:g}" for name in (*QUANTITIES, OTHER_EDGE)
+HEAD = [*KEYS, "cpu", "memory", *(f"{name}@{load:g}" for name in (*QUANTITIES, *OTHER_EDGES)
                                   for load in decks.LOADS)]
 
 
@@ -63,28 +63,27 @@ def write(records, path=RUNS):
 
 
 def limit():
-    """Return the limit that both programs go to, a row a quantity, and how far apart the runs that
-    it is made of are. All is the mean of the finest meshes; friction, which alone needs many
-    increments, also gets what ever more of them change on a middling mesh, and as much again."""
+    """Return the limit that both programs go to, a row a quantity, and the relative scatter of the
+    runs that it is made of: the mean of fine meshes in few increments. Friction alone needs many;
+    it is that of the run with most, and its scatter is what the last doubling of increments and
+    elements changed."""
     runs = read(LIMIT)
-    fine = np.array([run.values for run in runs if run.case.sides >= 100])
-    middling = {run.case.each: run.values for run in runs if run.case.sides < 100}
-    mean, most = fine.mean(axis=0), max(middling)
-    coarse = next(run.case.each for run in runs if run.case.sides >= 100)
+    few = min(run.case.each for run in runs)
+    fine = np.array([run.values for run in runs if run.case.each == few])
+    half, most = sorted((run for run in runs if run.case.each > few),
+                        key=lambda run: run.case.each)[-2:]
+    mean, scatter = fine.mean(axis=0), fine.std(axis=0) / fine.mean(axis=0)
     friction = QUANTITIES.index("shear_force")
-    more = 2 * middling[most] - middling[most // 2] - middling[coarse]
-    mean[friction] += more[friction]
-    return mean, fine.std(axis=0) / mean
+    mean[friction] = most.values[friction]
+    scatter[friction] = np.abs(half.values[friction] / mean[friction] - 1)
+    return mean, scatter
 
 
 def errors(record, limit):
-    """Return the relative errors, a row a quantity, of CalculiX with the better one of its edges."""
-    off = np.abs(record.values[:len(QUANTITIES)] / limit - 1)
-    if len(record.values) > len(QUANTITIES):
-        other = np.abs(record.values[-1] / limit[-1] - 1)
-        if not other.max() > off[-1].max():
-            off[-1] = other
-    return np.nan_to_num(off, nan=np.inf)
+    """Return the relative errors, a row a quantity, of CalculiX with the best one of its edges."""
+    off = np.abs(record.values / limit[[0, 1, 2] + [3] * (len(record.values) - 3)] - 1)
+    off = np.nan_to_num(off, nan=np.inf)
+    return np.vstack([off[:3], min(off[3:], key=np.max)])
 
 
 def worst(record, limit):

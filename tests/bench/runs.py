@@ -48,13 +48,17 @@ def thercon_values(result):
     return np.abs(values)
 
 
-def edge_of_gap(x, gap):
-    """Return the zero of the line through gap^(2/3) of the second and third open node."""
-    k = np.flatnonzero(gap <= 0.0)[-1] if (gap <= 0.0).any() else len(gap)
-    if k + 4 > len(gap):
+def edge_of_gap(x, gap, every=1):
+    """Return the zero of the line through gap^(2/3) of the second and third open node, or of the
+    parabola through those of the second to fourth open corner, which are every second node."""
+    if not (gap <= 0.0).any():
         return np.nan
-    (x1, x2), (g1, g2) = x[k + 2:k + 4], gap[k + 2:k + 4] ** (2 / 3)
-    return float(x1 - g1 * (x2 - x1) / (g2 - g1))
+    last = np.flatnonzero(gap <= 0.0)[-1]
+    nodes = np.arange(last + 1, len(gap))
+    nodes = nodes[nodes % every == 0][1:3 + (every > 1)]
+    if len(nodes) < 2 + (every > 1):
+        return np.nan
+    return float(np.polyfit(gap[nodes] ** (2 / 3), x[nodes], len(nodes) - 1)[-1])
 
 
 def edge_of_both(x, pressure, gap):
@@ -83,8 +87,8 @@ def blocks(text):
 
 
 def calculix_values(case, path):
-    """Return the quantities at the five loads, a row a quantity; the last row is the edge by its
-    other formula."""
+    """Return the quantities at the five loads, a row a quantity; the last rows are the edge by
+    other formulas."""
     bodies = decks.bodies_of(case)
     faces = [list(body.nodes.items())[:decks.face_nodes(bodies[0])] for body in bodies]
     x = np.array([place[0] for _, place in faces[0]])
@@ -99,7 +103,8 @@ def calculix_values(case, path):
         values.append([-rows["total force", "TOP", at][0][1],
                        rows["total heat generation", "TOP", at][0][0],
                        rows["total force", "AXISCYLINDER", at][0][0],
-                       edge_of_gap(x, gap), edge_of_both(x, pressure, gap)])
+                       edge_of_gap(x, gap), edge_of_both(x, pressure, gap),
+                       edge_of_gap(x, gap, every=2)])
     return np.array(values).T
 
 
