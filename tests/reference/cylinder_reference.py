@@ -179,12 +179,15 @@ def pair_geometry(slave, master):
 
 
 class Contact:
-    """Both bodies reduced to the pairs, and the increments of load on them."""
+    """Both bodies reduced to the pairs, and the increments of load on them. The normals of the pairs are common to
+    both faces, or, `vertical`, the negative y axis for all."""
 
-    def __init__(self, slave, master, ends):
+    def __init__(self, slave, master, ends, vertical=False):
         upper, lower = respond(slave, ends[0], True), respond(master, ends[1], False)
         faces = slave.xy[slave.face], master.xy[master.face]
         self.s, self.weight, normal, tangent = pair_geometry(*faces)
+        if vertical:
+            normal, tangent = np.full_like(normal, [0.0, -1.0]), np.full_like(tangent, [1.0, 0.0])
         self.count = m = len(self.s)
         opening, along = np.zeros((m, 2 * m)), np.zeros((m, 2 * m))
         for k in range(2):
@@ -367,14 +370,14 @@ class Contact:
         return self.contact_edge(state, closed[-1]), stick
 
 
-def solve_deck(deck=DECK, levels=0, step=20.0, last=900.0):
+def solve_deck(deck=DECK, levels=0, step=20.0, last=900.0, vertical=False):
     """The pairs and the states at every increment. Each state has load, status, p, t, g, l, slip, w, q (per pair) and
     normal_force, shear_force, heat_rate, edge_contact, edge_stick."""
     bodies = read_deck(deck)
     ends = bodies[0].xy[:, 1].max(), bodies[1].xy[:, 1].min()
     for _ in range(levels):
         bodies = [refine(body) for body in bodies]
-    contact = Contact(*bodies, ends)
+    contact = Contact(*bodies, ends, vertical)
     states = [contact.start()]
     for k in range(1, round(last / step) + 1):
         state = contact.increment(states[-1], k * step)
