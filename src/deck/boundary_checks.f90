@@ -6,6 +6,7 @@ module boundary_checks
    use kinds, only: dp
    use load_requests, only: request_type
    use model, only: model_type
+   use order_reduction, only: side_corners
    use steps, only: dof_temperature, solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
@@ -30,6 +31,7 @@ contains
             card = request%card
          end associate
       end do
+      if (any(context%dropped)) call check_dropped(context, model, report)
       do i = 0, size(model%steps)
          call check_conflicts(context, i, model, report)
       end do
@@ -68,6 +70,43 @@ contains
          ' belongs to no element: what is prescribed there has no effect'// &
          others(size(nodes), '; nodes without one: '))
    end subroutine check_nodes
+
+   !> Where ORDER=1 drops all nodes of a data card, their corners have values in their place.
+   subroutine check_dropped(context, model, report)
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      integer :: corners(2, size(model%mesh%node_number))
+      integer :: first(3, size(model%mesh%node_number))   ! first step that gives a value
+      integer, allocatable :: nodes(:)
+      integer :: i, j, card
+
+      corners = side_corners(model%mesh)
+      first = huge(first)
+      do i = context%boundaries%count, 1, -1
+         associate (request => context%boundaries%items(i))
+            first(min(request%component, 3), nodes_of(request, model)) = max(1, request%step)
+         end associate
+      end do
+      card = 0
+      do i = 1, context%boundaries%count
+         associate (request => context%boundaries%items(i))
+            nodes = nodes_of(request, model)
+            if (.not. all(context%dropped(nodes)) .or. request%card == card) cycle
+            do j = 1, size(nodes)
+               if (all(first(min(request%component, 3), corners(:, nodes(j))) <= &
+                  max(1, request%step))) cycle
+               card = request%card
+               call report%error(request%place, 'ORDER=1 drops midside node '// &
+                  to_text(model%mesh%node_number(nodes(j)))//' and what is prescribed there; '// &
+                  'prescribe it at the corners of its side, '// &
+                  to_text(model%mesh%node_number(corners(1, nodes(j))))//' and '// &
+                  to_text(model%mesh%node_number(corners(2, nodes(j)))))
+               exit
+            end do
+         end associate
+      end do
+   end subroutine check_dropped
 
    !> Warns where a data card replaces what another one of the same step prescribes. What stands
    !> before the first step may be replaced in it.

@@ -18,6 +18,7 @@ module deck_builder
    use deck_builder_steps, only: build_steps
    use deck_builder_surfaces, only: build_surfaces
    use deck_builder_verify, only: build_verifications, check_heat_quantities
+   use deck_builder_order, only: apply_order, find_dropped
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -52,6 +53,7 @@ contains
       call build_options(cards, context, model, report)
       call build_nodes(cards, context, model%mesh, report)
       call build_elements(cards, context, model%mesh, report)
+      call find_dropped(context, model%mesh)
       errors = report%error_count()
       call build_sets('node', cards, context%node_index, report, model%mesh%node_sets)
       call build_sets('element', cards, context%element_index, report, model%mesh%element_sets)
@@ -77,6 +79,7 @@ contains
          call refine(model, context%levels)
          call apply_temperatures(context, deck_nodes, .false., model)
          call apply_boundaries(context, model)
+         call apply_order(context, model, report)
          call find_bodies(model%mesh)
          call note_defaults(cards, context, model)
       end if

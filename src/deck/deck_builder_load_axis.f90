@@ -17,6 +17,7 @@ contains
       type(model_type), intent(inout) :: model   !! receives node, degree of freedom and label
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name
+      integer, allocatable :: members(:)
       integer :: comma, set, dof
       logical :: valid
 
@@ -40,8 +41,15 @@ contains
             nearest_known(name, set_names(model%mesh%node_sets)))
          return
       end if
-      if (size(model%mesh%node_sets(set)%members) == 0) return
-      model%load_node = model%mesh%node_sets(set)%members(1)
+      members = model%mesh%node_sets(set)%members
+      if (size(members) == 0) return
+      members = pack(members, .not. context%dropped(members))
+      if (size(members) == 0) then
+         call report%error(context%load_place, 'ORDER=1 leaves no node of '//name// &
+            ', which has midside nodes only; LOAD= needs one at a corner')
+         return
+      end if
+      model%load_node = members(1)
       model%load_dof = dof
       model%load_label = dof_name(dof)//' of '//name
       if (.not. (context%boundaries_sound .and. context%sets_sound)) return

@@ -20,7 +20,7 @@ contains
    !> Takes *HEADING, *OPTIONS, *SOLVER and *REFINE.
    subroutine build_options(cards, context, model, report)
       type(cards_type), intent(in) :: cards                !! the cards
-      type(deck_context_type), intent(inout) :: context    !! receives plane, levels, load axis
+      type(deck_context_type), intent(inout) :: context    !! receives plane, order, levels, axis
       type(model_type), intent(inout) :: model             !! receives heading, units, solver
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k
@@ -63,11 +63,27 @@ contains
       if (plane == 'STRAIN') context%plane = plane_strain
       if (plane == 'STRESS') context%plane = plane_stress
       if (plane == 'AXISYMMETRIC') context%plane = axisymmetric
+      if (has_parameter(card, 'ORDER')) call build_order(card, context, report)
       if (has_parameter(card, 'UNITS')) call build_units(card, model, report)
       if (.not. has_parameter(card, 'LOAD')) return
       context%load_set = to_upper(parameter_text(card, 'LOAD'))
       context%load_place = parameter_place(card, 'LOAD')
    end subroutine build_option_card
+
+   subroutine build_order(card, context, report)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      integer :: errors
+
+      errors = report%error_count()
+      context%order_place = parameter_place(card, 'ORDER')
+      call take_parameter(card, 'ORDER', report, context%order)
+      if (any(context%order == [1, 2])) return
+      if (report%error_count() == errors) call report%error(context%order_place, &
+         'ORDER= is 1, elements without midside nodes, or 2, elements as they are')
+      context%order = 2
+   end subroutine build_order
 
    !> UNITS="length stress power temperature".
    subroutine build_units(card, model, report)

@@ -46,6 +46,7 @@ contains
       choice = 'NO'
       if (card%name == 'NODE PRINT') then
          call take_set(card, 'NSET', 'node', mesh%node_sets, context, report, request%set)
+         call check_dropped(card, context, mesh, report, request%set)
          call choose(card, 'TOTALS', 'YES/NO/ONLY', report, choice)
          request%each_node = choice /= 'ONLY'
          request%totals = choice /= 'NO'
@@ -78,6 +79,24 @@ contains
       call report%error(parameter_place(card, parameter), 'unknown '//noun//' set '//name// &
          nearest_known(name, set_names(sets)))
    end subroutine take_set
+
+   !> Warns of a node set of which ORDER=1 leaves no node: there is nothing to print.
+   subroutine check_dropped(card, context, mesh, report, set)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(inout) :: set   ! becomes 0 then
+
+      if (set == 0) return
+      associate (members => mesh%node_sets(set)%members)
+         if (size(members) == 0) return
+         if (.not. all(context%dropped(members))) return
+      end associate
+      call report%warning(parameter_place(card, 'NSET'), 'ORDER=1 leaves no node of '// &
+         mesh%node_sets(set)%name//', for none is a corner: nothing is printed')
+      set = 0
+   end subroutine check_dropped
 
    !> Keys of one data card.
    subroutine take_quantities(card, data, report, quantities)

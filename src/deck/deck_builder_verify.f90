@@ -150,6 +150,7 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       logical :: used(0:size(model%mesh%node_number))
+      integer, allocatable :: nodes(:)
       integer :: node, set
       logical :: valid
 
@@ -159,13 +160,16 @@ contains
       if (.not. valid) return
       used = .false.
       used([model%mesh%element_nodes]) = .true.
-      if (set > 0) then
-         valid = any(used(model%mesh%node_sets(set)%members))
-      else
-         valid = used(node)
+      nodes = [node]
+      if (set > 0) nodes = model%mesh%node_sets(set)%members
+      nodes = pack(nodes, used(nodes))
+      if (size(nodes) == 0) then
+         call report%error(field_place(data, 2), &
+            'no element has a node of '//field_text(data, 2)//': it has no values')
+      else if (all(context%dropped(nodes))) then
+         call report%error(field_place(data, 2), 'ORDER=1 leaves no node of '// &
+            field_text(data, 2)//', for none is a corner: it has no values')
       end if
-      if (.not. valid) call report%error(field_place(data, 2), &
-         'no element has a node of '//field_text(data, 2)//': it has no values')
    end subroutine check_nodes
 
    !> name or, for a profile, name@s.

@@ -4,7 +4,7 @@ module deck_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use elasticity, only: equivalent_poisson
-   use element_kinds, only: axisymmetric, plane_stress, quad8, triangle3, triangle6
+   use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
    use kinds, only: dp, long
    use load_checks, only: check_loads
    use mesh, only: mesh_type
@@ -131,14 +131,16 @@ contains
       integer, intent(in) :: kinds(:)
       character(*), intent(in) :: subject, trouble
       type(deck_report_type), intent(inout) :: report
-      integer :: e
+      integer :: e, kind
 
       associate (mesh => model%mesh)
          do e = 1, size(mesh%element_number)
             if (mesh%element_section(e) == 0 .or. .not. context%element_valid(e)) cycle
             if (model%sections(mesh%element_section(e))%material /= m) cycle
             if (mesh%element_plane(e) == plane_stress) cycle
-            if (all(mesh%element_kind(e) /= kinds)) cycle
+            kind = mesh%element_kind(e)
+            if (context%order == 1) kind = linear_kind(kind)
+            if (all(kind /= kinds)) cycle
             call report%warning(context%material_place(m), 'material '//model%materials(m)%name// &
                ' is nearly incompressible: '//subject//to_text(mesh%element_number(e))// &
                trouble//' with it; take '//trim(merge('CAX8R', 'CPE8R', &

@@ -30,6 +30,9 @@ module deck_context
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step stands
       !> PLANE=, a plane of element_kinds
       integer :: plane = plane_by_element
+      integer :: order = 2                                !! ORDER= of the elements, 1 or 2
+      type(place_type) :: order_place                     !! where it stands
+      logical, allocatable :: dropped(:)                  !! (nodes) whether ORDER=1 drops them
       integer :: levels = 0                               !! *REFINE, LEVELS=
       type(place_type) :: levels_place                    !! where it stands
       character(:), allocatable :: load_set   !! LOAD=: node set; unallocated when not given

@@ -3,6 +3,7 @@
 module mesh_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use element_kinds, only: axisymmetric, element_corner_count, element_node_count, &
       side_node_count, side_nodes
    use kinds, only: dp
@@ -13,7 +14,7 @@ module mesh_checks
    use text, only: to_text
    implicit none
    private
-   public :: check_planes, check_jacobians, check_sides
+   public :: check_planes, check_jacobians, check_corners, check_sides
 
    !> One side of one element.
    type :: side_type
@@ -79,6 +80,24 @@ contains
             to_text(mesh%element_number(e))//' is not positive'//advice)
       end do
    end subroutine check_jacobians
+
+   !> The same of elements that lost their midside nodes; the first that is not sound is named.
+   subroutine check_corners(place, mesh, report)
+      type(place_type), intent(in) :: place                !! where the order of elements stands
+      type(mesh_type), intent(in) :: mesh                  !! the mesh, of linear elements
+      type(deck_report_type), intent(inout) :: report      !! receives an error
+      integer :: e
+
+      do e = 1, size(mesh%element_number)
+         associate (kind => mesh%element_kind(e))
+            if (is_sound(kind, &
+               mesh%coordinates(:, mesh%element_nodes(:element_node_count(kind), e)))) cycle
+         end associate
+         call report%error(place, 'the Jacobian of element '//to_text(mesh%element_number(e))// &
+            ' is not positive without midside nodes: its sides are too curved for ORDER=1')
+         return
+      end do
+   end subroutine check_corners
 
    pure logical function is_sound(kind, coordinates)
       integer, intent(in) :: kind

@@ -151,6 +151,9 @@ contains
       slope = local_gradients(kind, point)
       map = matmul(slope, transpose(coordinates))
       jacobian = map(1, 1)*map(2, 2) - map(1, 2)*map(2, 1)
+      gradients = 0.0_dp
+      ! An element without area, which callers find by its Jacobian.
+      if (abs(jacobian) <= 0.0_dp) return
       gradients(1, :) = (map(2, 2)*slope(1, :) - map(1, 2)*slope(2, :))/jacobian
       gradients(2, :) = (map(1, 1)*slope(2, :) - map(2, 1)*slope(1, :))/jacobian
    end subroutine element_gradients

@@ -4,6 +4,7 @@ module element_kinds
    private
    public :: quad8, quad8_reduced, quad4, triangle6, triangle3, kind_count
    public :: element_node_count, element_corner_count, side_node_count, side_nodes
+   public :: linear_kind
    public :: plane_strain, plane_stress, axisymmetric
 
    integer, parameter :: quad8 = 1           !! eight nodes, 3 x 3 points
@@ -26,6 +27,9 @@ module element_kinds
 
    !> Nodes of a side by the kind of the element.
    integer, parameter :: side_node_count(kind_count) = [3, 3, 2, 3, 2]
+
+   !> The kind with the same corners and no midside nodes, by the kind.
+   integer, parameter :: linear_kind(kind_count) = [quad4, quad4, quad4, triangle3, triangle3]
 
 contains
 

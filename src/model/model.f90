@@ -52,6 +52,7 @@ module model
       type(unit_labels_type) :: units                            !! labels of units
       integer :: solver = solver_skyline                         !! solver_skyline or solver_mumps
       integer :: refinement_levels = 0                           !! *REFINE, already applied
+      integer :: element_order = 2                               !! *OPTIONS, ORDER=, applied
       integer :: load_node = 0                                   !! LOAD=: node index, 0 for time
       integer :: load_dof = 0                                    !! LOAD=: 1, 2, dof_temperature
       character(:), allocatable :: load_label                    !! label of the load axis

@@ -18,7 +18,9 @@ module steps
    integer, parameter :: analysis_heat = 3      !! *HEAT TRANSFER, STEADY STATE: gaps stay
    integer, parameter :: dof_temperature = 11   !! degree of freedom 11; 1 and 2 are u_x and u_y
 
-   ! Kinds of loads; behind each its item and component, and the unit of its value.
+   ! Kinds of loads; behind each its item and component, and the unit of its value. A force or heat
+   ! that a node has from another one, which ORDER=1 dropped, has a component above 2, odd and even
+   ! as before: it is a place of its own.
    integer, parameter :: load_force = 1             !! node, dof 1 or 2 [force]
    integer, parameter :: load_pressure = 2          !! element, face; towards the body [stress]
    integer, parameter :: load_traction = 3          !! element, 2*(face - 1) + direction [stress]

@@ -29,6 +29,8 @@ contains
       call print_count(unit, 'nodes', size(model%mesh%node_number))
       call print_count(unit, 'elements', size(model%mesh%element_number))
       call print_count(unit, 'uniform refinements', model%refinement_levels)
+      if (model%element_order == 1) call print_entry(unit, 'order of the elements', &
+         '1 (*OPTIONS, ORDER=1)')
       call print_count(unit, 'steps', size(model%steps))
       call print_steps(unit, model)
       call print_count(unit, 'unknown temperatures', run%equations_thermal)

@@ -27,7 +27,7 @@ contains
       case (load_force)
          nodes = [item]
          allocate (forces(2, 1), source=0.0_dp)
-         forces(component, 1) = 1.0_dp
+         forces(2 - mod(component, 2), 1) = 1.0_dp
       case (load_pressure)
          nodes = nodes_of_side(model, item, component)
          x = model%mesh%coordinates(:, nodes)

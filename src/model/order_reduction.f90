@@ -1,0 +1,137 @@
+!> A model on the same mesh with elements of first order: elements lose their midside nodes, and
+!> the model the nodes that only were such. A force or heat on one of these goes half and half to
+!> the corners of its side, as the shape functions of the side without it have it.
+module order_reduction
+   use element_kinds, only: element_corner_count, linear_kind, side_node_count, side_nodes
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use model, only: model_type
+   use steps, only: boundary_type, load_force, load_nodal_heat, load_temperature, load_type, &
+      step_type
+   implicit none
+   private
+   public :: reduce_order, side_corners
+
+contains
+
+   !> Makes all elements of a model linear ones; its bodies must be found anew afterwards.
+   !> Refinement comes before it, so that new corners lie on the curved sides of the deck.
+   pure subroutine reduce_order(model)
+      type(model_type), intent(inout) :: model   !! model with a conforming mesh
+      integer :: corners(2, size(model%mesh%node_number))
+      integer :: new_index(size(model%mesh%node_number))
+      integer :: i, n
+
+      corners = side_corners(model%mesh)
+      n = 0
+      new_index = 0
+      do i = 1, size(new_index)
+         if (corners(1, i) > 0) cycle
+         n = n + 1
+         new_index(i) = n
+      end do
+      if (allocated(model%steps)) then
+         do i = 1, size(model%steps)
+            call reduce_step(corners, new_index, model%steps(i))
+         end do
+      end if
+      if (allocated(model%initial_temperature)) then
+         model%initial_temperature = pack(model%initial_temperature, new_index > 0)
+      end if
+      if (model%load_node > 0) model%load_node = new_index(model%load_node)
+      call reduce_mesh(new_index, model%mesh)
+      model%element_order = 1
+   end subroutine reduce_order
+
+   !> The corners of the side in whose middle a node lies; zero for nodes that are corners of an
+   !> element, or in no element.
+   pure function side_corners(mesh) result(corners)
+      type(mesh_type), intent(in) :: mesh                 !! the mesh; unknown nodes are zero
+      integer :: corners(2, size(mesh%node_number))       !! (2, nodes)
+      integer :: e, f, nodes(3)
+
+      corners = 0
+      do e = 1, size(mesh%element_number)
+         associate (kind => mesh%element_kind(e))
+            if (side_node_count(kind) == 2) cycle
+            do f = 1, element_corner_count(kind)
+               nodes = mesh%element_nodes(side_nodes(kind, f), e)
+               if (all(nodes > 0)) corners(:, nodes(2)) = nodes([1, 3])
+            end do
+         end associate
+      end do
+      do e = 1, size(mesh%element_number)
+         do f = 1, element_corner_count(mesh%element_kind(e))
+            if (mesh%element_nodes(f, e) > 0) corners(:, mesh%element_nodes(f, e)) = 0
+         end do
+      end do
+   end function side_corners
+
+   pure subroutine reduce_mesh(new_index, mesh)
+      integer, intent(in) :: new_index(:)   ! (nodes) zero for those that drop out
+      type(mesh_type), intent(inout) :: mesh
+      real(dp), allocatable :: coordinates(:, :)
+      integer :: e, i, corners
+
+      do i = 1, size(mesh%node_sets)
+         mesh%node_sets(i)%members = new_index(mesh%node_sets(i)%members)
+         mesh%node_sets(i)%members = pack(mesh%node_sets(i)%members, mesh%node_sets(i)%members > 0)
+      end do
+      allocate(coordinates(2, count(new_index > 0)))
+      coordinates(1, :) = pack(mesh%coordinates(1, :), new_index > 0)
+      coordinates(2, :) = pack(mesh%coordinates(2, :), new_index > 0)
+      call move_alloc(coordinates, mesh%coordinates)
+      mesh%node_number = pack(mesh%node_number, new_index > 0)
+      do e = 1, size(mesh%element_number)
+         corners = element_corner_count(mesh%element_kind(e))
+         mesh%element_nodes(:corners, e) = new_index(mesh%element_nodes(:corners, e))
+         mesh%element_nodes(corners + 1:, e) = 0
+      end do
+      mesh%element_kind = linear_kind(mesh%element_kind)
+   end subroutine reduce_mesh
+
+   pure subroutine reduce_step(corners, new_index, step)
+      integer, intent(in) :: corners(:, :)   ! (2, nodes) as of side_corners
+      integer, intent(in) :: new_index(:)    ! (nodes) zero for those that drop out
+      type(step_type), intent(inout) :: step
+
+      if (allocated(step%boundaries)) then
+         step%boundaries%node = new_index(step%boundaries%node)
+         step%boundaries = pack(step%boundaries, step%boundaries%node > 0)
+      end if
+      if (allocated(step%loads)) call reduce_loads(corners, new_index, step%loads)
+   end subroutine reduce_step
+
+   !> Loads of nodes follow them, or are shared; those of elements stay. A share is a place of its
+   !> own, told by the node that it comes from, so that what a later step gives there replaces it.
+   pure subroutine reduce_loads(corners, new_index, loads)
+      integer, intent(in) :: corners(:, :)
+      integer, intent(in) :: new_index(:)
+      type(load_type), allocatable, intent(inout) :: loads(:)
+      type(load_type), allocatable :: reduced(:)
+      integer :: i, n
+
+      allocate(reduced(2*size(loads)))
+      n = 0
+      do i = 1, size(loads)
+         associate (load => loads(i))
+            if (all(load%kind /= [load_force, load_nodal_heat, load_temperature])) then
+               n = n + 1
+               reduced(n) = load
+            else if (new_index(load%item) > 0) then
+               n = n + 1
+               reduced(n) = load
+               reduced(n)%item = new_index(load%item)
+            else if (load%kind /= load_temperature) then
+               reduced(n + 1:n + 2) = load
+               reduced(n + 1:n + 2)%item = new_index(corners(:, load%item))
+               reduced(n + 1:n + 2)%component = load%component + 2*load%item
+               reduced(n + 1:n + 2)%value = 0.5_dp*load%value
+               n = n + 2
+            end if
+         end associate
+      end do
+      loads = reduced(:n)
+   end subroutine reduce_loads
+
+end module order_reduction
