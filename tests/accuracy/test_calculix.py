@@ -42,15 +42,15 @@ def cheapest_runs(scored):
     rows = []
     for level, aim in envelope.LEVELS.items():
         best = [envelope.cheapest(scored, program, level) for program in envelope.PROGRAMS]
+        ratio = envelope.ratio(scored, level)
         for program, one in zip(envelope.PROGRAMS, best, strict=True):
             what = [described(one.record.case), f"{100 * one.error:.2f} %", one.record.cpu,
                     f"{one.record.memory:.0f}"] if one else ["none found", "", "", ""]
-            ratio = envelope.ratio(scored, level)
-            last = ["", ""] if program == "thercon" else [
-                f"{ratio:.0f}" if ratio else "", f"{aim}" if aim else ""]
+            last = [f"{ratio:.0f}" if ratio else "", aim or ""] if program == "calculix" else ["", ""]
             rows.append([f"{100 * level:g} %", envelope.NAMES[program], *what, *last])
-    return Table("The cheapest run at each error", ["error", "program", "run, elements on the contact first",
-                 "its error", "CPU s", "MB", "times as dear", "aimed at"], rows)
+    return Table("The cheapest run at each error", [
+        "error", "program", "run; first the elements on the contact", "its error", "CPU s", "MB",
+        "times as dear", "aimed at"], rows)
 
 
 def what_errs(scored, limit):
@@ -78,12 +78,13 @@ def models(recorded):
             off = values[case][:4] / values[decks.replace(case, model=before)][:4] - 1
             cells = [f"{100 * v:+.2f} %" for v in off[range(4), np.abs(off).argmax(axis=1)]]
             if case.program == "calculix":
-                cells[records.QUANTITIES.index("shear_force")] = ""
+                cells[2:] = ["", ""]
             rows.append([words, envelope.NAMES[case.program], *cells])
     return Table("What the two changes amount to", ["put back", "program", "normal force",
                  "heat rate", "friction force", "contact edge"], rows,
                  "The largest change over the five temperatures, on one mesh. Where the programs differ for one change, it is by gaps "
-                 "and areas at displaced positions. CalculiX's friction, taken from horizontal reactions, is not that along an inclined contact.")
+                 "and areas at displaced positions. CalculiX's friction and edge are taken from horizontal reactions and gaps between nodes, "
+                 "which on an inclined contact are something else.")
 
 
 def searched(scored):

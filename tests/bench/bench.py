@@ -2,8 +2,8 @@
 """Repeat the runs on record of thercon and CalculiX and say what came out against them.
 
 Runs that are dominated by a wide margin (another one is no worse and takes less than a third of the
-CPU seconds) are left out, unless --all is given. THERCON is the program. What came out is written to
-the folder given, or, with --record, to runs.csv here. --add measures other runs and records them.
+CPU seconds) are left out, unless --all is given. THERCON is the program. What came out is written
+to the folder given, or, with --record, to runs.csv here; --add measures other runs, too.
 """
 
 import argparse
@@ -64,8 +64,8 @@ def tell(recorded, found):
         for program in envelope.PROGRAMS:
             best = [envelope.cheapest(runs, program, level) for runs in (recorded, found)]
             print(f"{100 * level:4g} % {program:10}" + "".join(f"{described(b):22}" for b in best))
-        ratios = [envelope.ratio(runs, level) for runs in (recorded, found)]
-        print(f"{'':7}{'ratio':10}" + "".join(f"{f'{r:.0f}' if r else '-':>12}{'':10}" for r in ratios))
+        ratios = [envelope.ratio(runs, level) or np.nan for runs in (recorded, found)]
+        print(f"{'':7}{'ratio':10}" + "".join(f"{ratio:9.0f}{'':13}" for ratio in ratios))
 
 
 def changed(old, new):
@@ -82,9 +82,9 @@ def repeat(chosen, folder):
     for count, old in enumerate(chosen, start=1):
         new = measure(old.case, folder)
         found.append(new)
-        print(f"{count:3}/{len(chosen)} {time.monotonic() - start:6.0f} s  {old.case.name}: "
-              f"{new.cpu:.3f} s, on record {old.cpu:.3f} s; values differ by {changed(old, new):.1e}",
-              flush=True)
+        print(f"{count:3}/{len(chosen)} {time.monotonic() - start:6.0f} s  {old.case.name}:",
+              f"{new.cpu:.3f} s, on record {old.cpu:.3f} s;",
+              f"values differ by {changed(old, new):.1e}", flush=True)
     return found
 
 
@@ -98,8 +98,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, help="where the runs and what came out are written")
     parser.add_argument("--all", action="store_true", help="repeat runs that are dominated, too")
-    parser.add_argument("--record", action="store_true", help="write what came out to runs.csv here")
-    parser.add_argument("--add", nargs="+", metavar="CASE", help="first fields of lines of runs.csv")
+    parser.add_argument("--record", action="store_true", help="write to runs.csv here")
+    parser.add_argument("--add", nargs="+", metavar="CASE",
+                        help="measure and record these alone: first fields of lines of runs.csv")
     options = parser.parse_args()
     recorded = records.read()
     if options.add:

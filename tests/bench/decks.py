@@ -1,4 +1,4 @@
-"""The deck of the cylinder for both programs; README.md says what differs from the published one."""
+"""The deck of the cylinder for both programs; README.md says what differs from the published."""
 
 from dataclasses import astuple, dataclass, replace  # noqa: F401
 

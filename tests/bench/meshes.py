@@ -1,4 +1,5 @@
-"""Meshes of the cylinder on its base: structured ones and ones that grow coarse by transitions.
+"""Meshes of the cylinder on its base: structured ones, and ones that are thinned by transitions,
+even on the contact or graded towards the axis.
 
 A body is strips between rows of points, from the contact outwards; the base is the mirror image of
 the cylinder with a flat face. Nodes of both faces stand opposite each other.
@@ -9,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 WIDTH, HEIGHT, FINE = 30.0, 60.0, 9.0   # [cm]; contact never reaches beyond FINE
-# Corner abscissae of the published mesh's contact and of the row behind its first two layers.
+GRADED = 3.0   # last by first length up to there in a graded mesh
+# Corner abscissae of the published mesh's contact.
 PUBLISHED = [0.0, 0.8, 1.7, 2.6, 3.6, 4.8, 6.0, 7.4, 9.0, 14.0, WIDTH]
 
 
@@ -32,17 +34,18 @@ def growth(first, total, count):
     return low
 
 
-def face(count):
-    """Return the corner abscissae of the contact: even up to FINE, then ever longer."""
-    if count == len(PUBLISHED) - 1:
+def face(count, ratio=1.0):
+    """Return the corner abscissae of the contact: up to FINE with a ratio of the last length to the
+    first, then ever longer."""
+    if count == len(PUBLISHED) - 1 and ratio == 1.0:
         return list(PUBLISHED)
     outside = max(2, round(2 * np.log2(count / 5)))
-    first = FINE / (count - outside)
-    ratio = growth(first, WIDTH - FINE, outside)
-    lengths = [first] * (count - outside) + [first * ratio ** (k + 1) for k in range(outside)]
-    inner = np.cumsum([0.0, *lengths[: count - outside]])
-    outer = np.array(lengths[count - outside:])
-    return [*inner, *(inner[-1] + np.cumsum(outer) * (WIDTH - FINE) / outer.sum())]
+    steps = ratio ** (np.arange(count - outside) / (count - outside - 1))
+    inner = np.concatenate([[0.0], FINE * np.cumsum(steps) / steps.sum()])
+    last = inner[-1] - inner[-2]
+    more = growth(last, WIDTH - FINE, outside)
+    outer = np.cumsum(last * more ** np.arange(1, outside + 1))
+    return [*inner, *(FINE + outer * (WIDTH - FINE) / outer[-1])]
 
 
 def thinned(row, longest):
@@ -71,20 +74,19 @@ def transition(low, high):
     return quads
 
 
-def structured_rows(count, ratio):
+def structured_rows(row, ratio):
     """Return rows of one layout, whose distance grows by a ratio."""
-    row = face(count)
-    first = FINE / (0.8 * count)
+    first = FINE / (0.8 * (len(row) - 1))
     layers = max(3, round(np.log(1 + HEIGHT * (ratio - 1) / first) / np.log(ratio)))
     exact = growth(first, HEIGHT, layers)
     heights = np.cumsum([0.0, *(first * exact**k for k in range(layers))])
     return [row] * (layers + 1), heights * HEIGHT / heights[-1]
 
 
-def thinned_rows(count):
+def thinned_rows(row):
     """Return rows that are thinned as long as sides do not get too long for so fine a mesh: two
     layers, a transition, and so on, as high as sides are long; then ever higher ones."""
-    rows, heights = [face(count)], [0.0]
+    count, rows, heights = len(row) - 1, [row], [0.0]
     size, longest = FINE / (0.8 * count), 60 / np.sqrt(count)
     while 3 * size < longest:
         row = rows[-1]
@@ -140,7 +142,8 @@ def below(upper, first):
 
 
 def make(family, count, order, radius):
-    """Return cylinder and base of a family: `thinned`, or `structured`."""
-    rows = thinned_rows(count) if family == "thinned" else structured_rows(count, 1.6)
+    """Return cylinder and base of a family."""
+    row = face(count, GRADED if family == "graded" else 1.0)
+    rows = structured_rows(row, 1.6) if family == "structured" else thinned_rows(row)
     flat = body(*rows, np.inf, order)
     return body(*rows, radius, order), below(flat, 10 ** len(str(len(flat.nodes) + 1)))
