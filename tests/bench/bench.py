@@ -98,6 +98,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, help="where the runs and what came out are written")
     parser.add_argument("--all", action="store_true", help="repeat runs that are dominated, too")
+    parser.add_argument("--only", choices=envelope.PROGRAMS, help="repeat the runs of one program")
     parser.add_argument("--record", action="store_true", help="write to runs.csv here")
     parser.add_argument("--add", nargs="+", metavar="CASE",
                         help="measure and record these alone: first fields of lines of runs.csv")
@@ -108,11 +109,12 @@ def main():
             new = measure(case, options.folder)
             records.write([one for one in records.read() if one.case != case] + [new])
         return
-    found = repeat(recorded if options.all else worth_repeating(recorded), options.folder)
-    again = {one.case: one for one in found}
-    records.write([again.get(one.case, one) for one in recorded] if options.record else found,
-                  records.RUNS if options.record else options.folder / "runs.csv")
-    tell(envelope.scored(recorded), envelope.scored(found))
+    chosen = [one for one in (recorded if options.all else worth_repeating(recorded))
+              if options.only in (None, one.case.program)]
+    again = {one.case: one for one in repeat(chosen, options.folder)}
+    now = [again.get(one.case, one) for one in recorded if options.record or one.case in again]
+    records.write(now, records.RUNS if options.record else options.folder / "runs.csv")
+    tell(envelope.scored(recorded), envelope.scored(now))
 
 
 if __name__ == "__main__":
