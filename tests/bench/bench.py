@@ -72,8 +72,8 @@ def changed(old, new):
     """Return the largest relative difference of the values of two runs."""
     if new.failed:
         return np.inf
-    off = np.abs(new.values - old.values) / np.abs(old.values).max(axis=1, keepdims=True)
-    return float(np.nanmax(off))
+    one, other = (run.values[:len(records.QUANTITIES)] for run in (old, new))
+    return float(np.nanmax(np.abs(other - one) / np.abs(one).max(axis=1, keepdims=True)))
 
 
 def repeat(chosen, folder):
