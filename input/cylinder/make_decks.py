@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Write cylinder.inp and cylinder-coupled.inp, the decks of the published cylinder, beside this file.
+"""Write cylinder.inp and cylinder-coupled.inp, the decks of the published cylinder, beside this file; with
+`--calculix FILE` write only FILE, the cylinder with a conductance that CalculiX knows too, for both programs.
 
 The paper (Zaitsev, 1987) gives 92 eight-node elements, 326 nodes and 21 contact pairs; layout and grading are ours.
 Each body has six strips, seen from the contact: two layers of 10 elements, a 3-to-1 transition from 10 to 4 columns
 (13 elements), two layers of 4 and a transition from 4 to 2 (5 elements). The base is the mirror image of the cylinder
 but for the curved face, which fades out towards the top. Needs numpy.
 """
+import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -313,6 +315,54 @@ heat_rate, FACE, 480., 0.18426, 5.E-3
 gap, FACE@0., 480., 0.017404, 1.E-3
 """
 
+CALCULIX_HEAD = """\
+*HEADING
+Cylinder on a base, for CalculiX and thercon
+** Written by make_decks.py --calculix. As cylinder.inp but for the conductance:
+** 0.8 + 0.24 p closed and nothing across a gap, which CalculiX does not do.
+** For CalculiX, and reported by thercon as not needed: the penalty, the stick
+** slope, *CONTROLS (with its defaults CalculiX gives up at 700), and the tiny
+** first step (else CalculiX ramps an initial penetration out over 20 degrees).
+"""
+
+CALCULIX_CONTACT = """\
+*SURFACE INTERACTION, NAME=FACES
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+1.E5
+*FRICTION
+0.155, 1.E5
+*GAP CONDUCTANCE
+0.8, 0.
+480.8, 2000.
+*CONTACT PAIR, INTERACTION=FACES, TYPE=SURFACE TO SURFACE
+CURVED, FLAT
+"""
+
+CALCULIX_STEP = """\
+*STEP, INC=100
+*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT
+{increment}, {period}
+*CONTROLS, PARAMETERS=TIME INCREMENTATION
+40, 60, 9, 100, 10, 4, , 20, ,
+*BOUNDARY
+TOP, 11, 11, {top}
+BOTTOM, 11, 11, 0.
+*NODE FILE
+U, NT
+*EL FILE
+S, HFL
+*CONTACT FILE
+CDIS, CSTR
+*NODE PRINT, NSET=TOP, TOTALS=ONLY
+RF, RFL
+*CONTACT PRINT, SLAVE=CURVED, MASTER=FLAT
+CF
+*END STEP
+"""
+
+# Increment, period and temperature of the top at the end of each step.
+CALCULIX_STEPS = [("0.018", "0.018", "0.018"), ("19.982", "19.982", "20."), ("20.", "880.", "900.")]
+
 TOUCH = "** - the bodies touch at x = 0 at the start, without clearance or load;"
 APART = """\
 ** Changed against the paper, to couple strongly: the base does not expand, and
@@ -337,6 +387,17 @@ def write_deck(path, heading, first_touch, base_expansion, lift, method, checks)
     path.write_text("\n".join(cards) + "\n")
 
 
+def write_calculix_deck(path):
+    """Write the deck for both programs: bodies, supports and steps that either of them takes."""
+    bodies, rest = "\n".join(reading_cards()).split("*SURFACE INTERACTION")
+    supports = rest[rest.index("*BOUNDARY"):rest.index("*STEP")]
+    cards = (CALCULIX_HEAD + bodies + CALCULIX_CONTACT + supports).splitlines()
+    for increment, period, top in CALCULIX_STEPS:
+        cards += CALCULIX_STEP.format(increment=increment, period=period, top=top).splitlines()
+    assert max(map(len, cards)) <= 80
+    path.write_text("\n".join(cards) + "\n")
+
+
 def reference_cards():
     """*VERIFY data from the converged values, with what the published mesh is due to hold."""
     cards = []
@@ -347,6 +408,12 @@ def reference_cards():
 
 
 def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--calculix", type=Path, metavar="FILE", help="write only the deck for both programs")
+    chosen = parser.parse_args()
+    if chosen.calculix:
+        write_calculix_deck(chosen.calculix)
+        return
     folder = Path(__file__).parent
     write_deck(folder / "cylinder.inp", "Cylinder on a base, heated from the top", TOUCH, "1.2E-5", 0.0,
                "ZAITSEV", CHECKS.format(reference=reference_cards()))

@@ -1,6 +1,6 @@
 !> What a run models, in words and numbers, once it is started.
 module run_description
-   use conductance_laws, only: law_none
+   use conductance_laws, only: is_constant
    use controls, only: solver_mumps
    use increments, only: simulation_type
    use kinds, only: dp
@@ -50,8 +50,7 @@ contains
       do i = 1, size(model%contacts)
          associate (interaction => model%interactions(model%contacts(i)%interaction))
             has_friction = has_friction .or. interaction%friction > 0.0_dp
-            has_law = has_law .or. interaction%law%open_kind /= law_none .or. &
-               interaction%law%closed_kind /= law_none
+            has_law = has_law .or. .not. is_constant(interaction%law)
          end associate
       end do
       run%modelled = ''

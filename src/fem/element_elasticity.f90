@@ -81,18 +81,30 @@ contains
       real(dp), intent(in) :: displacement(:, :)   !! (2, nodes of the kind) [length]
       real(dp), intent(in) :: temperature(:)       !! (nodes) over the natural state [temperature]
       real(dp) :: stress(4)                        !! xx, yy, zz, xy [stress]
-      real(dp) :: b(4, 2*element_node_count(kind)), volume, strain(4)
-      real(dp) :: all_b(4, 2*element_node_count(kind), point_count(kind))
-      real(dp) :: volumes(point_count(kind))
+      real(dp) :: gradients(2, element_node_count(kind)), psi(element_node_count(kind))
+      real(dp) :: jacobian, slope(2, 2), strain(4)
 
-      call strain_matrix(kind, plane, coordinates, 1.0_dp, point, b, volume)
-      if (has_mean_dilatation(kind, plane)) then
-         call point_strain_matrices(kind, plane, coordinates, 1.0_dp, all_b, volumes)
-         call set_dilatation(mean_dilatation(all_b, volumes), b)
-      end if
-      strain = matmul(b, reshape(displacement, [size(b, 2)]))
-      stress = matmul(e, strain) - beta*dot_product(element_shape(kind, point), temperature)
+      call element_gradients(kind, coordinates, point, gradients, jacobian)
+      psi = element_shape(kind, point)
+      slope = matmul(displacement, transpose(gradients))
+      strain = [slope(1, 1), slope(2, 2), 0.0_dp, slope(1, 2) + slope(2, 1)]
+      if (plane == axisymmetric) strain(3) = dot_product(psi, displacement(1, :))/ &
+         dot_product(psi, coordinates(1, :))
+      if (has_mean_dilatation(kind, plane)) strain(:3) = strain(:3) + &
+         (dilatation_of(kind, plane, coordinates, displacement) - sum(strain(:3)))/3
+      stress = matmul(e, strain) - beta*dot_product(psi, temperature)
    end function stress_at
+
+   !> Mean dilatation of an element under displacements of its nodes.
+   pure function dilatation_of(kind, plane, coordinates, displacement) result(dilatation)
+      integer, intent(in) :: kind, plane
+      real(dp), intent(in) :: coordinates(:, :), displacement(:, :)
+      real(dp) :: dilatation
+      real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
+
+      call point_strain_matrices(kind, plane, coordinates, 1.0_dp, b, volumes)
+      dilatation = dot_product(mean_dilatation(b, volumes), reshape(displacement, [size(b, 2)]))
+   end function dilatation_of
 
    !> B at all integration points, with the mean dilatation where the element takes it, and the
    !> volumes that the points stand for.

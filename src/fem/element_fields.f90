@@ -42,11 +42,13 @@ contains
       real(dp) :: positions(2, size(places, 2))
       integer :: g
 
-      positions = element_positions(mesh, element, places)
-      do g = 1, size(places, 2)
-         axes(:, :, g) = material_axes(orientations, &
-            sections(mesh%element_section(element))%orientation, positions(:, g))
-      end do
+      positions = 0.0_dp
+      associate (orientation => sections(mesh%element_section(element))%orientation)
+         if (orientation > 0) positions = element_positions(mesh, element, places)
+         do g = 1, size(places, 2)
+            axes(:, :, g) = material_axes(orientations, orientation, positions(:, g))
+         end do
+      end associate
    end function element_axes
 
    !> Stress at points of an element along x and y, eq. (1.5).
@@ -61,18 +63,22 @@ contains
       real(dp), intent(in) :: displacement(:, :)            !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp) :: stress(4, size(places, 2))                !! xx, yy, zz, xy [stress]
-      real(dp) :: axes(2, 2, size(places, 2))
+      real(dp) :: axes(2, 2, size(places, 2)), e(4, 4), beta(4)
+      real(dp) :: coordinates(2, element_node_count(mesh%element_kind(element)))
       integer :: g
 
       axes = element_axes(mesh, sections, orientations, element, places)
       associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
-         material => materials(sections(mesh%element_section(element))%material), &
+         section => sections(mesh%element_section(element)), &
          nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+         coordinates = mesh%coordinates(:, nodes)
          do g = 1, size(places, 2)
-            stress(:, g) = stress_at(kind, plane, mesh%coordinates(:, nodes), places(:, g), &
-               elasticity_in(plane, material, axes(:, :, g)), &
-               thermal_modulus_in(plane, material, axes(:, :, g)), displacement(:, nodes), &
-               temperature(nodes))
+            if (g == 1 .or. section%orientation > 0) then
+               e = elasticity_in(plane, materials(section%material), axes(:, :, g))
+               beta = thermal_modulus_in(plane, materials(section%material), axes(:, :, g))
+            end if
+            stress(:, g) = stress_at(kind, plane, coordinates, places(:, g), e, beta, &
+               displacement(:, nodes), temperature(nodes))
          end do
       end associate
    end function element_stress
@@ -88,16 +94,21 @@ contains
       real(dp), intent(in) :: places(:, :)                  !! (2, points) xi, eta
       real(dp), intent(in) :: temperature(:)                !! (nodes) [temperature]
       real(dp) :: flux(2, size(places, 2))                  !! x, y [power/length^2]
-      real(dp) :: axes(2, 2, size(places, 2))
+      real(dp) :: axes(2, 2, size(places, 2)), conductivity(2, 2)
+      real(dp) :: coordinates(2, element_node_count(mesh%element_kind(element)))
       integer :: g
 
       axes = element_axes(mesh, sections, orientations, element, places)
       associate (kind => mesh%element_kind(element), &
-         material => materials(sections(mesh%element_section(element))%material), &
+         section => sections(mesh%element_section(element)), &
          nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+         coordinates = mesh%coordinates(:, nodes)
          do g = 1, size(places, 2)
-            flux(:, g) = heat_flux_at(kind, mesh%coordinates(:, nodes), places(:, g), &
-               conductivity_in(material, axes(:, :, g)), temperature(nodes))
+            if (g == 1 .or. section%orientation > 0) then
+               conductivity = conductivity_in(materials(section%material), axes(:, :, g))
+            end if
+            flux(:, g) = heat_flux_at(kind, coordinates, places(:, g), conductivity, &
+               temperature(nodes))
          end do
       end associate
    end function element_heat_flux

@@ -21,6 +21,15 @@ module field_recovery
       integer, allocatable :: sharing(:)            !! (points) elements that meet there
    end type point_map_type
 
+   !> How values at the recovery points of a kind of element give those at its nodes.
+   type :: extrapolation_type
+      integer :: kind = 0                     !! kind of the element
+      real(dp), allocatable :: places(:, :)   !! (2, recovery points) xi, eta
+      real(dp), allocatable :: weights(:, :)  !! (recovery points, nodes)
+   contains
+      procedure :: set_kind
+   end type extrapolation_type
+
 contains
 
    !> Numbers the points: first one per node in the order of the nodes, then further ones for
@@ -75,15 +84,15 @@ contains
       real(dp), intent(in) :: displacement(:, :)            !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp) :: stress(4, size(points%node))              !! xx, yy, zz, xy [stress]
+      type(extrapolation_type) :: rule
       integer :: element
 
       stress = 0.0_dp
       do element = 1, size(mesh%element_number)
-         associate (kind => mesh%element_kind(element))
-            call spread_to_nodes(kind, element_stress(mesh, sections, materials, orientations, &
-               element, recovery_points(kind), displacement, temperature), &
-               points%element_points(:, element), stress)
-         end associate
+         call rule%set_kind(mesh%element_kind(element))
+         call spread_to_nodes(rule%weights, element_stress(mesh, sections, materials, &
+            orientations, element, rule%places, displacement, temperature), &
+            points%element_points(:, element), stress)
       end do
       call average(points, stress)
    end function recover_stress
@@ -98,34 +107,51 @@ contains
       type(point_map_type), intent(in) :: points            !! the points
       real(dp), intent(in) :: temperature(:)                !! (nodes) [temperature]
       real(dp) :: flux(2, size(points%node))                !! x, y [power/length^2]
+      type(extrapolation_type) :: rule
       integer :: element
 
       flux = 0.0_dp
       do element = 1, size(mesh%element_number)
-         associate (kind => mesh%element_kind(element))
-            call spread_to_nodes(kind, element_heat_flux(mesh, sections, materials, orientations, &
-               element, recovery_points(kind), temperature), points%element_points(:, element), &
-               flux)
-         end associate
+         call rule%set_kind(mesh%element_kind(element))
+         call spread_to_nodes(rule%weights, element_heat_flux(mesh, sections, materials, &
+            orientations, element, rule%places, temperature), points%element_points(:, element), &
+            flux)
       end do
       call average(points, flux)
    end function recover_heat_flux
 
    !> Adds the extrapolation of the values at the recovery points to the nodes of an element.
-   pure subroutine spread_to_nodes(kind, at_points, points, values)
-      integer, intent(in) :: kind
+   pure subroutine spread_to_nodes(weights, at_points, points, values)
+      real(dp), intent(in) :: weights(:, :)      !! (recovery points, nodes)
       real(dp), intent(in) :: at_points(:, :)    !! (components, recovery points)
       integer, intent(in) :: points(:)
       real(dp), intent(inout) :: values(:, :)    !! (components, points)
+      integer :: g, q
+
+      do q = 1, size(weights, 2)
+         do g = 1, size(weights, 1)
+            values(:, points(q)) = values(:, points(q)) + weights(g, q)*at_points(:, g)
+         end do
+      end do
+   end subroutine spread_to_nodes
+
+   !> Makes the rule that of a kind of element, where it is not.
+   pure subroutine set_kind(self, kind)
+      class(extrapolation_type), intent(inout) :: self   !! the rule
+      integer, intent(in) :: kind                        !! kind of the element
       real(dp) :: position(2, element_node_count(kind))
       integer :: q
 
+      if (kind == self%kind) return
+      self%kind = kind
+      self%places = recovery_points(kind)
+      if (allocated(self%weights)) deallocate (self%weights)
+      allocate (self%weights(size(self%places, 2), element_node_count(kind)))
       position = node_position(kind)
       do q = 1, size(position, 2)
-         values(:, points(q)) = values(:, points(q)) + &
-            matmul(at_points, recovery_weights(kind, position(:, q)))
+         self%weights(:, q) = recovery_weights(kind, position(:, q))
       end do
-   end subroutine spread_to_nodes
+   end subroutine set_kind
 
    pure subroutine average(points, values)
       type(point_map_type), intent(in) :: points

@@ -5,7 +5,7 @@ module conductance_laws
    implicit none
    private
    public :: conductance_law_type, law_none, law_gas, law_power, law_clearance, law_pressure
-   public :: conductance, conductance_slope, conductance_inverse, law_jump, law_jumps
+   public :: conductance, conductance_slope, conductance_inverse, law_jump, law_jumps, is_constant
 
    integer, parameter :: law_none = 0        !! this side of the law was not given
    integer, parameter :: law_gas = 1         !! open: omega = A/(B + gamma)
@@ -122,6 +122,31 @@ contains
       jumps = abs(law_jump(law)) > rounding*max(conductance(law, .true., 0.0_dp, 0.0_dp), &
          conductance(law, .false., 0.0_dp, 0.0_dp))
    end function law_jumps
+
+   !> Whether omega is the same at every gap and pressure.
+   elemental logical function is_constant(law)
+      type(conductance_law_type), intent(in) :: law !! the law
+
+      is_constant = .false.
+      if (abs(law_jump(law)) > 0.0_dp .or. law%open_kind == law_gas) return
+      if (law%open_kind == law_clearance) then
+         if (.not. is_level(law%open_omega)) return
+      end if
+      select case (law%closed_kind)
+      case (law_power)
+         is_constant = law%power_c1 <= 0.0_dp
+      case (law_pressure)
+         is_constant = is_level(law%closed_omega)
+      case default
+         is_constant = .true.
+      end select
+   end function is_constant
+
+   pure logical function is_level(values)
+      real(dp), intent(in) :: values(:)
+
+      is_level = all(abs(values - values(1)) <= 0.0_dp)
+   end function is_level
 
    pure function open_law(law, gap) result(omega)
       type(conductance_law_type), intent(in) :: law

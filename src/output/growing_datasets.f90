@@ -3,10 +3,10 @@ module growing_datasets
    use, intrinsic :: iso_c_binding, only: c_loc
    use errors, only: error_type
    use hdf5, only: hid_t, hsize_t, h5dcreate_f, h5dopen_f, h5dclose_f, h5dset_extent_f, &
-      h5dget_space_f, h5dwrite_f, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5p_dataset_create_f, &
+      h5dget_space_f, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5p_dataset_create_f, &
       h5screate_simple_f, h5sclose_f, h5sselect_hyperslab_f, h5s_select_set_f, h5s_unlimited_f, &
       h5t_native_double
-   use hdf5_helpers, only: check_status, stored_type
+   use hdf5_helpers, only: check_status, stored_type, write_values
    use kinds, only: dp, long
    implicit none
    private
@@ -115,7 +115,7 @@ contains
          call h5sselect_hyperslab_f(space, h5s_select_set_f, offset(3 - rank:), &
             extent(3 - rank:), status(4))
          call h5screate_simple_f(rank, extent(3 - rank:), memory, status(5))
-         call h5dwrite_f(dataset, h5t_native_double, c_loc(self%buffer), status(6), memory, space)
+         call write_values(dataset, h5t_native_double, c_loc(self%buffer), status(6), memory, space)
          call h5sclose_f(memory, status(7))
          call h5sclose_f(space, status(8))
       end if

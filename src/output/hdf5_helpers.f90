@@ -6,6 +6,7 @@ module hdf5_helpers
    use hdf5, only: hid_t, hsize_t, h5open_f, h5close_f, h5dont_atexit_f, h5eset_auto_f, &
       h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, h5f_acc_rdwr_f, &
       h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5p_file_access_f, &
+      h5pset_buffer_f, h5p_dataset_xfer_f, &
       h5f_libver_v18_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5lcreate_hard_f, &
       h5screate_simple_f, h5sclose_f, h5dcreate_f, h5dwrite_f, h5dclose_f, &
       h5tcopy_f, h5tclose_f, h5tset_cset_f, h5t_cset_utf8_f, h5t_string, &
@@ -16,13 +17,16 @@ module hdf5_helpers
    implicit none
    private
    public :: open_hdf5, close_hdf5, create_file, open_file, close_file
-   public :: create_group, link_dataset, write_array, write_strings, utf8_string_type
-   public :: check_status, stored_type, as_real, as_integer, as_long, as_byte
+   public :: create_group, link_dataset, write_array, write_values, write_strings
+   public :: utf8_string_type, check_status, stored_type, as_real, as_integer, as_long, as_byte
 
    integer, parameter :: as_real = 1      !! stored as 64-bit real
    integer, parameter :: as_integer = 2   !! stored as 32-bit integer
    integer, parameter :: as_long = 3      !! stored as 64-bit integer
    integer, parameter :: as_byte = 4      !! stored as unsigned byte
+
+   !> Bytes of the buffer in which HDF5 converts types; its own default, 1 MB, is cleared each time.
+   integer(hsize_t), parameter :: conversion_bytes = 16384_hsize_t
 
    !> Writes a whole array as a dataset.
    interface write_array
@@ -239,10 +243,28 @@ contains
 
       call h5screate_simple_f(size(dimensions), dimensions, space, status(1))
       call h5dcreate_f(file, path, file_type, space, dataset, status(2))
-      call h5dwrite_f(dataset, memory_type, address, status(3))
+      call write_values(dataset, memory_type, address, status(3))
       call h5dclose_f(dataset, status(4))
       call h5sclose_f(space, status(5))
       call check_status(status, 'cannot write dataset '//path, error)
    end subroutine write_whole
+
+   !> Writes values into an open dataset: all of it, or what the selections name.
+   subroutine write_values(dataset, memory_type, address, status, memory, space)
+      integer(hid_t), intent(in) :: dataset            !! the dataset
+      integer(hid_t), intent(in) :: memory_type        !! type of the values
+      type(c_ptr), intent(in) :: address               !! the values
+      integer, intent(out) :: status                   !! negative for failure
+      integer(hid_t), intent(in), optional :: memory   !! selection in memory
+      integer(hid_t), intent(in), optional :: space    !! selection in the dataset
+      integer(hid_t) :: transfer
+      integer :: results(4)
+
+      call h5pcreate_f(h5p_dataset_xfer_f, transfer, results(1))
+      call h5pset_buffer_f(transfer, conversion_bytes, results(2))
+      call h5dwrite_f(dataset, memory_type, address, results(3), memory, space, transfer)
+      call h5pclose_f(transfer, results(4))
+      status = minval(results)
+   end subroutine write_values
 
 end module hdf5_helpers

@@ -25,9 +25,9 @@ contains
    pure function column(value, width, decimals) result(string)
       real(dp), intent(in) :: value      !! the number
       integer, intent(in) :: width       !! columns, at least 9
-      integer, intent(in) :: decimals    !! digits behind the point where they fit
+      integer, intent(in) :: decimals    !! digits behind the point where they fit, at most 9
       character(width) :: string         !! such as '  1.350E+00'
-      character(40) :: buffer, form
+      character(40) :: buffer
       integer :: digits, places
 
       if (.not. ieee_is_finite(value)) then
@@ -39,13 +39,23 @@ contains
       if (abs(value) >= 1.0e99_dp .or. (abs(value) > 0.0_dp .and. abs(value) < 1.0e-99_dp)) then
          digits = 3
       end if
-      do places = decimals, 0, -1
-         write (form, '(a, i0, a, i0, a)') '(es40.', places, 'e', digits, ')'
-         write (buffer, form) merge(0.0_dp, value, abs(value) <= 0.0_dp)
-         if (len_trim(adjustl(buffer)) < width) exit
-      end do
+      ! Beside the places there are a blank, a minus, a digit, the point, E and a sign.
+      places = min(decimals, width - digits - merge(6, 5, value < 0.0_dp))
+      if (abs(value) > 0.0_dp) then
+         write (buffer, '(es40.'//digit(places)//'e'//digit(digits)//')') value
+      else
+         buffer = '0.'//repeat('0', places)//'E+00'
+         buffer = adjustr(buffer)
+      end if
       string = buffer(41 - width:)
    end function column
+
+   !> A number below 10 as a character.
+   pure character function digit(number)
+      integer, intent(in) :: number
+
+      digit = achar(iachar('0') + number)
+   end function digit
 
    !> Numbers in columns side by side.
    pure function in_columns(values, width, decimals) result(string)

@@ -4,6 +4,7 @@ module increment_solution
    use closing_instant, only: solve_increment
    use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
       law_conductance, temperature_jumps, thermal_forces
+   use contact_states, only: contact_state_type
    use errors, only: error_type, status_no_convergence
    use films, only: film_history
    use finite_values, only: check_finite
@@ -53,11 +54,11 @@ contains
             'heat and temperatures', status_no_convergence, error)
          if (allocated(error)) return
          call warn_of_imbalance(operators, loads, data, previous, next, record)
+         if (size(next%omega) > 0 .and. .not. operators%is_coupled) then
+            call conduct(operators, previous, data, next, record)
+         end if
       end if
-      if (.not. solves_mechanics(step%analysis)) then
-         call conduct(operators, previous, data, next, record)
-         return
-      end if
+      if (.not. solves_mechanics(step%analysis)) return
       data%displacement_scale = maxval(abs(previous%displacement))
       next%contact%reference = previous%contact%tangential
       call operators%contact%drop_laws()
@@ -66,22 +67,38 @@ contains
       call check_finite([operators%mechanical%rhs(:, 1), data%welded_load], 'forces', &
          status_no_convergence, error)
       if (allocated(error)) return
-      if (solves_heat(step%analysis) .and. size(next%omega) > 0) then
+      if (operators%is_coupled) then
          if (is_explicit(step%scheme)) then
             call pass_once(operators, previous, data, next, record, error)
          else
             call solve_coupled(operators, step, previous, data, next, record, error)
          end if
       else
-         call solve_increment(operators%contact, data%previous, data%welded_load, next%contact, &
-            error)
-         if (allocated(error)) return
-         next%omega = law_conductance(operators, next%contact)
-         next%omega_before = next%omega
-         next%resting = .false.
+         call solve_mechanics(operators, step, data, next, record, error)
       end if
       next%has_mechanics = .true.
    end subroutine solve_pairs
+
+   !> Contact of an increment whose temperatures do not depend on it.
+   subroutine solve_mechanics(operators, step, data, next, record, error)
+      type(interface_operators_type), intent(inout) :: operators
+      type(step_type), intent(in) :: step
+      type(increment_data_type), intent(in) :: data
+      type(solution_state_type), intent(inout) :: next
+      type(increment_record_type), intent(inout) :: record
+      type(error_type), allocatable, intent(out) :: error
+
+      call solve_increment(operators%contact, data%previous, data%welded_load, next%contact, error)
+      if (allocated(error)) return
+      next%omega = law_conductance(operators, next%contact)
+      next%omega_before = next%omega
+      next%resting = .false.
+      if (.not. solves_heat(step%analysis) .or. size(next%omega) == 0) return
+      ! U is constant, and so are its fixed point and its derivative, zero.
+      record%coupling_gain = 0.0_dp
+      record%coupling_gain_max = 0.0_dp
+      record%iterations = [only_pass(record, data%previous, next%contact)]
+   end subroutine solve_mechanics
 
    !> Temperatures that a step without heat gives, and the jumps between them.
    subroutine give_temperatures(operators, loads, previous, next)
@@ -98,8 +115,9 @@ contains
       end associate
    end subroutine give_temperatures
 
-   !> The jumps of an increment without mechanics: the conductance is that of the contact state that
-   !> stays, at both ends of the increment.
+   !> Jumps and temperatures of an increment whose mechanics they do not depend on, for want of it
+   !> or because the conductance is constant: it is that of the contact state that stays, at both
+   !> ends of the increment.
    subroutine conduct(operators, previous, data, next, record)
       type(interface_operators_type), intent(inout) :: operators
       type(solution_state_type), intent(in) :: previous
@@ -114,7 +132,24 @@ contains
       call temperature_jumps(operators, data, next%omega, next%jump, record%work)
       next%omega_before = next%omega
       next%omega_start = next%omega
+      next%temperature = temperatures(operators, next%jump)
    end subroutine conduct
+
+   !> Temperatures of the whole bodies with these jumps.
+   function temperatures(operators, jump) result(values)
+      type(interface_operators_type), intent(inout) :: operators
+      real(dp), intent(in) :: jump(:)
+      real(dp) :: values(operators%thermal%matrix%row_count)
+      real(dp) :: on_tail(operators%thermal%map%tail)
+      integer :: k
+
+      ! Forces of links act on jumps only, nothing is recovered from them.
+      on_tail = 0.0_dp
+      do k = 1, size(jump)
+         if (operators%jump_place(k) > 0) on_tail(operators%jump_place(k)) = jump(k)
+      end do
+      values = operators%thermal%recover(on_tail)
+   end function temperatures
 
    !> An increment explicit in omega: temperatures by the conductance at its start, then mechanics,
    !> then the conductance at its end. Nothing is iterated.
@@ -131,9 +166,18 @@ contains
       if (allocated(error)) return
       next%omega_before = previous%omega
       next%resting = .false.
-      record%iterations = [iteration_record_type(increment=record%increment, iteration=1, &
-         pairs_changed=count(next%contact%status /= previous%contact%status))]
+      record%iterations = [only_pass(record, previous%contact, next%contact)]
    end subroutine pass_once
+
+   !> Record of the only pass of an increment.
+   pure function only_pass(record, before, after) result(pass)
+      type(increment_record_type), intent(in) :: record
+      type(contact_state_type), intent(in) :: before, after
+      type(iteration_record_type) :: pass
+
+      pass = iteration_record_type(increment=record%increment, iteration=1, &
+         pairs_changed=count(after%status /= before%status), cut_backs=record%cut_backs)
+   end function only_pass
 
    !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.
    subroutine load_heat(operators, loads, previous, data, next)
@@ -185,17 +229,9 @@ contains
       real(dp), allocatable :: on_tail(:)
       integer :: k
 
-      if (solves_heat(step%analysis)) then
-         ! Forces of links act on jumps only, nothing is recovered from them.
-         allocate (on_tail(operators%thermal%map%tail), source=0.0_dp)
-         do k = 1, size(next%jump)
-            if (operators%jump_place(k) > 0) on_tail(operators%jump_place(k)) = next%jump(k)
-         end do
-         next%temperature = operators%thermal%recover(on_tail)
-         deallocate (on_tail)
-      end if
       if (.not. solves_mechanics(step%analysis)) return
-      if (solves_heat(step%analysis)) then
+      if (operators%is_coupled) then
+         next%temperature = temperatures(operators, next%jump)
          call operators%mechanical%set_load(next%force_load + thermal_forces(operators, &
             next%temperature - model%initial_temperature), loads%displacement%value)
       end if

@@ -39,7 +39,7 @@ module interface_operators
       integer, allocatable :: jump_place(:) !! (m) place of the jump on the tail, 0 where held
       !> (mechanical tail, thermal tail) condensed mechanical load per jump; formed where coupled.
       real(dp), allocatable :: jump_load(:, :)
-      logical :: is_coupled = .false.   !! whether heat and mechanics are solved together
+      logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
    contains
       procedure :: prepare
       procedure :: number
@@ -135,7 +135,7 @@ contains
       type(model_type), intent(in) :: model                  !! the model
       logical, intent(in) :: mechanics                       !! whether mechanics is reduced anew
       logical, intent(in) :: heat                            !! whether heat is reduced anew
-      logical, intent(in) :: coupled                         !! whether both are solved together
+      logical, intent(in) :: coupled            !! whether heat depends on the mechanics of the step
       type(error_type), allocatable, intent(out) :: error    !! see above
 
       self%is_coupled = coupled

@@ -2,6 +2,7 @@
 !> What is numbered and reduced already is kept from step to step.
 module step_reduction
    use clock, only: wall_seconds
+   use conductance_laws, only: is_constant
    use errors, only: error_type
    use films, only: left_films
    use interface_operators, only: interface_operators_type
@@ -128,7 +129,7 @@ contains
       since = wall_seconds()
       if (heat) operators%thermal%added = left_films(step%scheme, film_old, film_new)
       call operators%reduce(model, mechanics, heat, solves_heat(step%analysis) .and. &
-         solves_mechanics(step%analysis), error)
+         solves_mechanics(step%analysis) .and. .not. all(is_constant(operators%pairs%law)), error)
       self%mechanics_is_reduced = self%mechanics_is_reduced .or. (mechanics .and. &
          .not. allocated(error))
       self%heat_is_reduced = self%heat_is_reduced .or. (heat .and. .not. allocated(error))

@@ -1,6 +1,6 @@
-"""Observed orders, Richardson extrapolation and uncertainty bands of quantities over a course of loads.
+"""Observed orders, Richardson extrapolation and uncertainty bands of quantities over loads.
 
-A series holds a quantity at the same loads on grids each twice as fine as the one before. Grids meet
+A series holds a quantity at the same loads on grids each twice as fine as the one before. They meet
 an edge of contact here and there between two nodes, which makes errors that change sign with the
 load; so orders are those of the rms over all loads, which is steady where a single load tells an
 order by chance.
@@ -12,7 +12,7 @@ import numpy as np
 
 STEADY, FORMAL = 0.7, 2.0
 LEAST = 0.5
-SAFETY_STEADY, SAFETY = 1.25, 3.0
+SAFETY_FORMAL, NEAR, SAFETY = 1.25, 0.2, 3.0
 WINDOW = 9
 
 
@@ -46,7 +46,7 @@ class Series:
 
     @property
     def order(self):
-        """Return the observed order: the slope of the sizes, by least squares over the last three."""
+        """Return the observed order: the slope of the last three sizes, by least squares."""
         sizes = np.log2(self.sizes[-3:])
         return -float(np.polyfit(range(len(sizes)), sizes, 1)[0])
 
@@ -77,12 +77,14 @@ class Series:
     def band(self):
         """Return how far the extrapolated values may be off, for each load.
 
-        Steady: 1.25 times the correction, or its rms nearby: the grid convergence index. Errors of
-        random sign fall like 2^-p, so a change has the rms E sqrt(1 + 4^p), E that of the finer
-        grid: three times E. Without an order: three times the largest change.
+        Steady: the grid convergence index, the correction or its rms nearby, times 1.25 where the
+        order is the formal one, else times 3. Errors of random sign fall like 2^-p, so a change has
+        the rms E sqrt(1 + 4^p), E that of the finer grid: three times E. Without an order: three
+        times the largest change.
         """
         if self.steady:
-            return SAFETY_STEADY * np.maximum(np.abs(self.correction), local_rms(self.correction))
+            safety = SAFETY_FORMAL if abs(self.order - FORMAL) < NEAR else SAFETY
+            return safety * np.maximum(np.abs(self.correction), local_rms(self.correction))
         if self.order > LEAST:
             fall = np.sqrt(1 + 4 ** min(self.order, FORMAL))
             return SAFETY * local_rms(self.changes[-1]) / fall

@@ -1,4 +1,4 @@
-"""Courses of the published cylinder and of other readings of the paper: what a run says of each load."""
+"""Courses of the published cylinder and of other readings of the paper: figures at each load."""
 
 import sys
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ OTHER_GRADING = Reading(fine=8.1)
 
 @dataclass(frozen=True)
 class Course:
-    """Quantities at the loads 20, 40, ..., 900; pressure, shear and flux of the pairs, at places s."""
+    """Quantities at the loads 20, 40, ..., 900; pressure, shear and flux of the pairs at places s."""
 
     values: dict
     s: np.ndarray
@@ -42,7 +42,8 @@ class Course:
 def deck_text(reading, level, increments):
     """Return the deck of a reading, refined, in so many increments, without fields and tables."""
     text = "\n".join(make_decks.reading_cards(reading)) + "\n"
-    changes = {"20., 900.": f"{LAST / increments!r}, {LAST!r}", "*STEP, INC=100\n": "*STEP, INC=100000\n",
+    changes = {"20., 900.": f"{LAST / increments!r}, {LAST!r}",
+               "*STEP, INC=100\n": "*STEP, INC=100000\n",
                " FILE\n": " FILE, FREQUENCY=0\n", " PRINT\n": " PRINT, FREQUENCY=0\n"}
     for old, new in changes.items():
         assert old in text, old
@@ -68,11 +69,13 @@ def course(folder, reading=PUBLISHED, level=0, increments=PUBLISHED_INCREMENTS):
                   {name: face[name] for name in ("pressure", "shear", "heat_flux")})
 
 
-def independent_course(folder, reading=PUBLISHED, level=0, vertical=False):
-    """Return the same quantities by the independent solver, in increments of 20."""
+def independent_course(folder, reading=PUBLISHED, level=0, vertical=False,
+                       increments=PUBLISHED_INCREMENTS):
+    """Return the same quantities by the independent solver; `vertical`: normals along y."""
     deck = folder / "independent.inp"
     deck.write_text(deck_text(reading, 0, PUBLISHED_INCREMENTS))
-    _, states = cylinder_reference.solve_deck(deck, level, STEP, LAST, vertical)
+    _, states = cylinder_reference.solve_deck(deck, level, LAST / increments, LAST, vertical)
+    every = increments // PUBLISHED_INCREMENTS
     found = np.array([(state.normal_force, state.heat_rate, state.p.max(), state.edge_contact,
-                       state.edge_stick) for state in states])
+                       state.edge_stick) for state in states[every - 1::every]])
     return dict(zip(QUANTITIES, found.T, strict=True))

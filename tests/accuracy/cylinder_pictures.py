@@ -15,8 +15,8 @@ def convergence(off, best, steps, where, loads, path):
         edge = quantity.startswith("edge")
         unit, factor = ("cm", 1.0) if edge else ("%", 100.0)
         order = min(best[quantity].mesh.order, 2.0)
-        band = factor * rms(best[quantity].band)
-        rising = band * 2.0 ** (order * np.arange(len(elements))[::-1])
+        band, of_mesh = (factor * rms(each.band) for each in (best[quantity], best[quantity].mesh))
+        rising = band + of_mesh * (2.0 ** (order * np.arange(len(elements))[::-1]) - 1)
         floor = band / 30
         axes.fill_between(elements, rising, floor, color="#E6E6E6", linewidth=0)
         for load, at, shade, sign in zip(loads, where, shades, style.MARKERS, strict=False):
@@ -32,24 +32,29 @@ def convergence(off, best, steps, where, loads, path):
         axes.set_xticks(elements, [f"{n:.0f}" for n in elements])
         axes.set_xticks([], minor=True)
         axes.set_xlabel("elements along the contact")
+        axes.axvline(elements[0], color=style.VERMILION, linewidth=0.8, linestyle="--")
+        axes.annotate("the paper's mesh", (elements[0], 0.03), (4, 0), fontsize=6.5, rotation=90,
+                      xycoords=("data", "axes fraction"), textcoords="offset points",
+                      color=style.VERMILION)
         style.panel_title(axes, f"{quantity}, order {best[quantity].mesh.order:.1f}", "abcde"[k])
     increments_panel(panels.flat[-1], steps)
-    panels.flat[0].legend(loc="lower left", fontsize=6.5, handlelength=1.6, labelspacing=0.2)
+    panels.flat[0].legend(loc="upper right", fontsize=6.5, handlelength=1.6, labelspacing=0.2)
     save(figure, path)
 
 
 def increments_panel(axes, steps):
-    """Draw what halving the increments changes, all quantities in one panel."""
+    """Draw what halving the increments changes on two meshes, all quantities in one panel."""
     for k, quantity in enumerate(QUANTITIES):
         factor, unit = (1.0, "cm") if quantity.startswith("edge") else (100.0, "%")
-        axes.plot(INCREMENTS[:-1], factor * np.array(steps[quantity]), color=style.SERIES[k],
-                  marker=style.marker(k), label=f"{quantity}, {unit}")
-    axes.set(xscale="log", yscale="log", ylim=(1e-6, 30.0), xlabel="increments",
+        for sizes, line in zip(steps[quantity], (":", "-"), strict=True):
+            axes.plot(INCREMENTS[:-1], factor * np.array(sizes), line, color=style.SERIES[k],
+                      marker=style.marker(k), label=f"{quantity}, {unit}" if line == "-" else None)
+    axes.set(xscale="log", yscale="log", ylim=(1e-6, 60.0), xlabel="increments",
              ylabel="change by halving them")
     axes.set_xticks(INCREMENTS[:-1], map(str, INCREMENTS[:-1]))
     axes.set_xticks([], minor=True)
     axes.legend(loc="upper center", fontsize=6, ncols=2, handlelength=1.4, columnspacing=0.8)
-    style.panel_title(axes, "increments, 80 elements", "f")
+    style.panel_title(axes, "increments, 10 and 80 elements", "f")
 
 
 def readings(results, where, loads, path):
@@ -65,11 +70,12 @@ def readings(results, where, loads, path):
             for load, at, shade, sign in zip(loads, where, shades, style.MARKERS, strict=False):
                 mine = ours.value[at] * ours.scale[at]
                 change = 100 * (other.value[at] * other.scale[at] / mine - 1)
-                band = 100 * (other.band[at] * other.scale[at] + ours.band[at] * ours.scale[at]) / mine
+                band = other.band[at] * other.scale[at] + ours.band[at] * ours.scale[at]
                 height = row + 0.5 - (list(loads).index(load) + 1) / 6
-                axes.errorbar(change, height, xerr=band, color=shade, marker=sign, markersize=3,
-                              linewidth=0.6, label=f"{load} °C" if row == 0 else None)
+                axes.errorbar(change, height, xerr=100 * band / mine, color=shade, marker=sign,
+                              markersize=3, linewidth=0.6, label=f"{load} °C" if row == 0 else None)
         axes.set_xlabel("change, %")
+        axes.locator_params(axis="x", nbins=5)
         axes.grid(axis="x", linewidth=0.3, color="#D0D0D0")
         for line in range(1, len(names)):
             axes.axhline(line - 0.5, color="#D0D0D0", linewidth=0.3)

@@ -6,7 +6,7 @@ from functools import partial
 
 import cylinder_pictures
 import numpy as np
-from convergence import Series, rms
+from convergence import Series, local_rms, rms
 from cylinder_courses import (
     INCREMENTS,
     LOADS,
@@ -25,24 +25,30 @@ TEXT = """
 elements along the contact, and its increments down to 2.5 C, so that whoever has the paper's printed figures can compare. Forces and
 heat rates are those of the half model, a unit thick; the edges are arc lengths on the cylinder, at most 0.007 cm more than x.
 
-- **The mesh decides, the increments hardly matter.** On the published mesh normal force and peak pressure are within 1 %, the heat rate is within
-  2 %, the edge of contact within 0.2 cm. Smaller increments change force, heat rate and edge of contact by some 1e-5.
+- **The mesh decides, the increments hardly matter.** From 60 C on the published mesh is within 0.4 % of the normal force, 2.1 % of the heat rate, 3 % of
+  the peak pressure (1.1 % from 180 C on), 0.15 cm of the edge of contact and 0.3 cm of the edge of stick. Smaller increments change force, heat
+  rate and edge of contact by some 1e-5; only the edge of stick notices them.
 - **Force and peak pressure converge with order 2, heat rate and edge of contact with order 1.** Heat crosses mainly near the edge,
   and the edge lies between two nodes: the errors change their sign with the load, and on a single load two meshes can agree by chance. So
-  orders and bands are from all loads, 60 to 900 C, and only the peak pressure, where all loads converge alike, is extrapolated.
-- **The edge of stick is the least certain.** It does not converge evenly, for each pair that closes freezes the slip that it has; on
-  the published mesh it may be off by its nodal spacing, 1.4 cm, and its band is what the finest meshes do.
-- **Plane stress has no zone of slip.** Without the (1 + nu) of plane strain both bodies expand alike; the paper's Fig. 3 has slip, so
-  it means plane strain. Arc or parabola, and the direction of the normals, do not matter. The size of the bodies, their supports and
-  which of them has nu = 0.4 do: each differs from the others by more than all numerical errors.
+  orders and bands are from all loads, 60 to 900 C, and over the mesh only the peak pressure, where all loads converge alike, is extrapolated.
+- **The edge of stick is the least certain.** Each pair that closes freezes the slip that it has, so it does not converge evenly, and on the
+  published mesh smaller increments make it worse rather than better.
+- **Small increments shift the peak pressure** by up to 0.2 MPa, the same at every load. It comes from the first increments, presumably slip
+  that the first pairs freeze near the axis, and it is most of the band.
+- **Plane stress has next to no slip**, at most 0.01 cm wide: without the (1 + nu) of plane strain both bodies expand alike. The paper's Fig. 3 has a
+  zone of slip, which speaks for plane strain.
+- **Size, supports and which body has nu = 0.4 matter** far more than all numerical errors; arc or parabola does not. The direction of the
+  normals moves only the edge of stick, but by about 1 cm at 900 C: the face is inclined by up to 0.07, half of it between the bodies, which is much
+  against a friction of 0.155.
 """
 LEVELS, STEPS_LEVEL = (0, 1, 2, 3, 4), 3
-NORMAL_LEVEL = 2
+NORMAL_LEVELS = 1, 2
 AT = (180, 360, 540, 720, 900)
 FROM = 60.0
 CHOSEN = LOADS >= FROM
 WHERE = [int(np.flatnonzero(LOADS[CHOSEN] == load)[0]) for load in AT]
 HEAD = [f"{name}, {unit}" for name, unit in zip(QUANTITIES, UNITS, strict=True)]
+SAME = 1e-7  # the program iterates omega to 1e-8
 NORMALS = "pair normal global y"
 
 
@@ -52,9 +58,9 @@ def is_edge(quantity):
 
 
 def plus_minus(value, band):
-    """Return a value with its band, to two digits of the band."""
-    digits = max(0, 1 - int(np.floor(np.log10(band))))
-    return f"{value:.{digits}f} ± {band:.{digits}f}"
+    """Return a value with its band, which has one digit and is rounded up."""
+    digits = max(0, -int(np.floor(np.log10(band))))
+    return f"{value:.{digits}f} ± {np.ceil(band * 10**digits) / 10**digits:.{digits}f}"
 
 
 def as_error(quantity, error):
@@ -119,8 +125,8 @@ def along_steps(found, level, quantity):
 
 def values_table(best):
     """Return the table of converged values."""
-    table = Table("Converged values", ["top, C", *HEAD], text="""Bands hold mesh and increments; they are meant to hold the limit
-in nearly all cases, see below.""")
+    table = Table("Converged values", ["top, C", *HEAD], text="""Bands are of mesh and increments together; how
+they are made, and how often such bands hold, stands below.""")
     table.rows = [[load, *(best[q].told(k) for q in QUANTITIES)]
                   for load, k in zip(AT, WHERE, strict=True)]
     return table
@@ -133,9 +139,10 @@ def changes_table(found, best):
                                          "order", "cosine", "value"],
         text="""Root mean square over the loads of what halving the elements, or the increments, changes. Order: by least squares from
 the last three. Cosine: between the last two changes over the loads; 1 where all loads converge alike, negative where errors change
-sign. Above 0.7 the value is extrapolated by Richardson's formula, with the order but at most 2, and the band is 1.25 times that correction, the
-grid convergence index; else the finest grid has the value. Errors of random sign fall by 2^-p, so the last change is sqrt(1 + 4^p) times the
-rms error left, and the band is three times that error, from the loads within 80 C; without an order, three times the largest change.""")
+sign. Above 0.7 the value is extrapolated by Richardson's formula, with the order but at most 2, and the band is the grid convergence index: that
+correction times 3, or times 1.25 where the order is 1.8 to 2.2. Else the finest grid has the value. Errors of random sign fall by 2^-p, so the last
+change is sqrt(1 + 4^p) times the rms error left, and the band is three times that error, from the loads within 80 C; with an order
+below 0.5, three times the largest change. The bands of mesh and increments are added.""")
     for quantity in QUANTITIES:
         series = {"mesh": best[quantity].mesh,
                   "increments, published mesh": along_steps(found, 0, quantity),
@@ -162,8 +169,8 @@ def published_table(found, best):
 
 def coverage_table(found, best):
     """Return the table of how often bands from coarser meshes hold what the finest says."""
-    table = Table("How often the bands hold", ["meshes", *QUANTITIES], text="""Bands as if the finer meshes were not there, against the
-converged values: share of the 43 loads from 60 to 900 C that lie within, and the rms of the bands.""")
+    table = Table("How often the bands hold", ["meshes", *QUANTITIES], text="""Bands of the mesh as if finer meshes were not there, against what
+the finest says: share of the 43 loads from 60 to 900 C that lie within, and the rms of the bands.""")
     for last in (2, 3):
         cells = []
         for q in QUANTITIES:
@@ -174,54 +181,73 @@ converged values: share of the 43 loads from 60 to 900 C that lie within, and th
     return table
 
 
-def independent_table(folder, best):
+def independent_table(folder, found):
     """Return the table of the independent solver on meshes of another grading."""
+    mine = {q: converged(along_mesh(found), q) for q in QUANTITIES}
     table = Table("Against the independent solver", ["top, C", *HEAD, "verdict"],
                   text="""`tests/reference/cylinder_reference.py` shares only the deck with the program. Here it solves other meshes: the nodes of the
-face moved, x to 0.9 x, refined once to three times. Its values, with bands of their own; they pass where the two bands meet.""")
+face moved, x to 0.9 x, refined once to three times. Its values in increments of 20 C, with bands of the mesh of their own; they pass where these bands
+meet those of the program in such increments.""")
     courses = [independent_course(folder, OTHER_GRADING, level) for level in (1, 2, 3)]
     other = {q: converged(courses, q) for q in QUANTITIES}
     for load, k in zip(AT, WHERE, strict=True):
-        meet = all(abs(best[q].off(other[q].value * other[q].scale)[k])
-                   <= best[q].band[k] + other[q].band[k] for q in QUANTITIES)
+        meet = all(abs(mine[q].off(other[q].value * other[q].scale)[k])
+                   <= mine[q].band[k] + other[q].band[k] for q in QUANTITIES)
         table.rows.append([load, *(other[q].told(k) for q in QUANTITIES), verdict(meet)])
+    return table
+
+
+def same_mesh_table(folder, found):
+    """Return the table of the independent solver on one mesh, in large and in small increments."""
+    table = Table("Against the independent solver on one mesh", ["increments", *QUANTITIES, "verdict"],
+                  text="20 elements along the contact: largest difference at the loads from 60 to 900 C.")
+    for count in INCREMENTS[0], INCREMENTS[-1]:
+        other = independent_course(folder, level=1, increments=count)
+        differences = {}
+        for q in QUANTITIES:
+            values, _ = grids([other, found[1, count]], q)
+            differences[q] = float(np.abs(values[0] - values[1]).max())
+        table.rows.append([count, *(as_error(q, differences[q]) for q in QUANTITIES),
+                           verdict(max(differences.values()) < SAME)])
     return table
 
 
 # Readings
 
-def solve_readings(folder, best):
-    """Return the converged quantities of each reading, and the profiles of the finest meshes."""
-    results, profiles = {"ours": best}, {}
+def solve_readings(folder):
+    """Return the quantities of each reading, all on the same meshes and increments, and the
+    profiles of the finest."""
+    results, profiles = {}, {}
     for name, reading in READINGS.items():
         courses = [course(folder, reading, level) for level in (1, 2, 3)]
         profiles[name] = courses[-1]
-        if name != "ours":
-            found = [each.values for each in courses]
-            results[name] = {q: converged(found, q) for q in QUANTITIES}
-    results[NORMALS] = with_normals(folder, best)
+        found = [each.values for each in courses]
+        results[name] = {q: converged(found, q) for q in QUANTITIES}
+    results[NORMALS] = with_normals(folder, results["ours"])
     return results, profiles
 
 
-def with_normals(folder, best):
+def with_normals(folder, ours):
     """Return the quantities with normals along y: ours, and what the independent solver says that
-    these change."""
-    common, vertical = (independent_course(folder, level=NORMAL_LEVEL, vertical=v)
-                        for v in (False, True))
+    these change; how its last two meshes differ in that goes into the band."""
+    courses = [[independent_course(folder, level=level, vertical=v) for v in (False, True)]
+               for level in NORMAL_LEVELS]
     changed = {}
     for q in QUANTITIES:
-        scale = 1.0 if is_edge(q) else common[q][CHOSEN]
-        shift = (vertical[q] - common[q])[CHOSEN] / scale
-        changed[q] = Converged(best[q].mesh, best[q].scale, best[q].value + shift, best[q].band)
+        coarse, fine = ((vertical[q] - common[q])[CHOSEN] / (1.0 if is_edge(q) else common[q][CHOSEN])
+                        for common, vertical in courses)
+        changed[q] = Converged(ours[q].mesh, ours[q].scale, ours[q].value + fine,
+                               ours[q].band + local_rms(fine - coarse))
     return changed
 
 
 def reading_tables(results):
     """Return a table for each temperature, a row for each reading."""
-    text = """What the text leaves open, converged: 20 to 80 elements along the contact, increments of 20 C, bands of the mesh as above. Ours: plane strain;
-each body 30 wide from the axis, 60 high; parabola; top and bottom free along x; normals common to both faces. "60 wide, 30 high": 30 wide from the
-axis; "30 wide as a whole": 15 from the axis. The program has the normals of pairs from the faces; what normals along y change is measured
-with the independent solver, 40 elements along the contact."""
+    text = """What the text leaves open, from 20, 40 and 80 elements along the contact in increments of 20 C, with bands of the mesh as above. Ours:
+plane strain; each body 30 wide from the axis, 60 high; parabola; top and bottom free along x; normals common to both faces. "60 wide, 30
+high": 30 wide from the axis; "30 wide as a whole": 15 from the axis. The program has the normals of pairs from the faces; what normals along y
+change is measured with the independent solver, 20 and 40 elements along the contact. Increments may add what the table of changes says, 0.06 cm
+for the edge of stick."""
     tables = []
     for load, k in zip(AT, WHERE, strict=True):
         table = Table(f"Readings of the paper at {load} C", ["reading", *HEAD],
@@ -238,8 +264,8 @@ def figure_table(profiles):
         "Fig. 2 of the paper, 540 C", ["reading", "pressure at x = 0, MPa", "largest friction, MPa",
                                        "at x, cm", "flux at x = 0, W/cm2",
                                        "at half the contact", "at 0.8 of it"],
-        text="""Profiles of the readings, 80 elements along the contact; known to about 1 %. The flux at its peak is left out: it grows with
-each refinement.""")
+        text="""Profiles of the readings, 80 elements along the contact; known to about 1 %. The flux at its peak, just inside the edge of contact, is left out: it
+differs from mesh to mesh by a third.""")
     at = int(np.flatnonzero(LOADS == 540.0)[0])
     for name, each in profiles.items():
         pressure, shear, flux = (each.profiles[n][at] for n in ("pressure", "shear", "heat_flux"))
@@ -270,18 +296,21 @@ def tables(folder):
     best = {q: converged(along_mesh(found), q, along_steps(found, STEPS_LEVEL, q))
             for q in QUANTITIES}
     off = {q: [best[q].off(each[q][CHOSEN]) for each in along_mesh(found)] for q in QUANTITIES}
-    steps = {q: along_steps(found, STEPS_LEVEL, q).sizes for q in QUANTITIES}
-    results, profiles = solve_readings(folder, best)
+    steps = {q: [along_steps(found, level, q).sizes for level in (0, STEPS_LEVEL)]
+             for q in QUANTITIES}
+    results, profiles = solve_readings(folder)
     return [
         values_table(best),
         Picture("cylinder-convergence.png", "Errors of the cylinder against mesh and increments",
                 partial(cylinder_pictures.convergence, off, best, steps, WHERE, AT)),
-        """The published mesh stands left in each picture: 10 elements, increments of 20 C. Lines: the five temperatures; black: root mean square
-over all loads; grey: the band.""",
+        """Error: deviation from the converged values. Black: root mean square over all loads, symbols: single temperatures, grey: within the band as
+it would be on each mesh. (f): root mean square of what halving the increments changes; dotted: on the published mesh.""",
         published_table(found, best), changes_table(found, best), coverage_table(found, best),
-        independent_table(folder, best), *reading_tables(results),
+        independent_table(folder, found),
+        same_mesh_table(folder, found), *reading_tables(results),
         Picture("cylinder-readings.png", "Readings of the paper against ours",
                 partial(cylinder_pictures.readings, results, WHERE, AT)),
+        "Bars: the bands of the reading and of ours together.",
         figure_table(profiles), all_values(found)]
 
 
@@ -303,7 +332,8 @@ def test_the_document_tells_what_the_coarse_meshes_say(tmp_path):
     best = {row["top, C"]: row for row in rows("Converged values")}
     errors = {row["top, C"]: row for row in rows("Error of the published mesh and increments")}
     for name, quantity in zip(HEAD, QUANTITIES, strict=True):
-        sizes = Series(grids([found[level, INCREMENTS[0]] for level in (0, 1, 2)], quantity)[0]).sizes
+        coarse = [found[level, INCREMENTS[0]] for level in (0, 1, 2)]
+        sizes = Series(grids(coarse, quantity)[0]).sizes
         steps = along_steps(found, 0, quantity).sizes
         for row, values in (("mesh", sizes), ("increments, published mesh", steps)):
             for column, value in zip(("1st", "2nd", "3rd"), values, strict=False):
@@ -317,22 +347,26 @@ def test_the_document_tells_what_the_coarse_meshes_say(tmp_path):
 
 
 def test_readings_on_a_coarse_mesh_are_near_what_the_document_tells(tmp_path):
-    """20 elements along the contact, with the errors that such a mesh has on our reading."""
-    allowed = dict(zip(QUANTITIES, (0.01, 0.025, 0.015, 0.15, 0.6), strict=True))
+    """20 elements along the contact: heat rate and edges within what such a mesh has on our reading;
+    force and pressure within 2 %, for the stress is singular in the corners of ends that are held.
+    """
+    allowed = dict(zip(QUANTITIES, (0.02, 0.025, 0.02, 0.15, 0.6), strict=True))
     told = {load: {row["reading"]: row for row in rows(f"Readings of the paper at {load} C")}
             for load in AT}
     for reading_name, reading in READINGS.items():
         found = course(tmp_path, reading, level=1).values
         for load in AT:
             for name, quantity in zip(HEAD, QUANTITIES, strict=True):
-                value, limit = found[quantity][LOADS == load][0], number(told[load][reading_name][name])
+                value = found[quantity][LOADS == load][0]
+                limit = number(told[load][reading_name][name])
                 error = value - limit if is_edge(quantity) else value / limit - 1
                 assert abs(error) < allowed[quantity], (reading_name, load, quantity, value, limit)
 
 
 def test_the_independent_solver_is_within_the_bands():
-    """What the document tells: no row of the comparison fails."""
-    assert all(row["verdict"] == "pass" for row in rows("Against the independent solver"))
+    """What the document tells: no row of the comparisons fails."""
+    for title in "Against the independent solver", "Against the independent solver on one mesh":
+        assert all(row["verdict"] == "pass" for row in rows(title))
 
 
 def test_bands_of_series_with_known_limits():

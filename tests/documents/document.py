@@ -35,7 +35,7 @@ class Table:
 
 @dataclass
 class Picture:
-    """A picture of the document; draw(path) draws it, and does so only where the document is written."""
+    """A picture of the document; draw(path) draws it, only where the document is written."""
 
     file: str
     title: str
@@ -69,7 +69,7 @@ def masked(lines):
 
 @dataclass
 class Document:
-    """A file of docs/, the folder of its themes, their names in order, and what stands before them."""
+    """A file of docs/, the folder of its themes, their names in order, and what comes first."""
 
     file: str
     folder: Path

@@ -1,0 +1,1 @@
+"""post/compare: results against each other and against those of other programs."""

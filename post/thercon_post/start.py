@@ -1,0 +1,32 @@
+"""How the programs of this folder start: in build/venv, or saying what is missing."""
+
+import os
+import signal
+import sys
+from importlib import import_module
+from pathlib import Path
+
+PYTHON = Path(__file__).resolve().parents[2] / "build" / "venv" / "bin" / "python"
+
+
+def run(script, module, failed):
+    """Run `main` of a module of this package as the program `script`; return its exit status.
+
+    Begins again with the Python of build/venv where that is there; `failed` is the exit status
+    where a package is missing.
+    """
+    sys.dont_write_bytecode = True  # the source tree stays as it is
+    script = Path(script).resolve()
+    if PYTHON.exists() and Path(sys.executable) != PYTHON:
+        os.execv(PYTHON, [str(PYTHON), str(script), *sys.argv[1:]])
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # end quietly where `| head` has read enough
+    try:
+        main = import_module(f"thercon_post.{module}").main
+    except ModuleNotFoundError as missing:
+        print(
+            f"{script.name}: error: the Python package '{missing.name}' is missing; "
+            "`./setup.sh build` prepares build/venv with all that is needed",
+            file=sys.stderr,
+        )
+        return failed
+    return main()

@@ -1,0 +1,67 @@
+"""Parts of the model and of the output: the modules, and procedures (`module:procedure`) of modules
+that all decks need, which exist for that part only."""
+
+CONTACT_FOLDER = {
+    "active_set", "axis_limits", "chain_geometry", "closing_instant", "closing_path",
+    "contact_pairs", "contact_states", "contact_system", "contact_tangent", "friction",
+    "loose_motions", "pair_checks", "pair_rings", "pair_warnings", "ring_links", "surface_chains",
+    "zone_edges",
+}
+COUPLING = {
+    "accelerators", "anderson", "conductance_graph", "contact_operator:contact_operator_pass",
+    "contact_operator:residual_floor", "contact_tangent", "coupled_increment", "coupling_gains",
+    "fixed_point", "increment_iteration", "interface_operators:form_jump_load", "newton",
+    "opening_slopes", "resting_pairs",
+}
+PARTS = {
+    "heat": {
+        "balances:heat_residual", "balances:scheme_pair_heat", "body_names:cold_bodies",
+        "element_conduction", "element_fields:element_heat_flux",
+        "field_recovery:recover_heat_flux", "films", "heat_balance",
+        "increment_checks:check_heat", "increment_solution:conduct",
+        "increment_solution:load_heat", "interface_operators:reduce_heat",
+        "interface_operators:set_film", "load_integrals:unit_heat", "loads:card_heat",
+        "loads:film_matrix", "loads:heat_load", "point_properties:conductivity_in",
+        "scheme_properties", "scheme_start", "thermal_matrix",
+    },
+    "strain by heat": {
+        "contact_operator:thermal_forces", "element_elasticity:element_thermal_load",
+        "interface_operators:condense_thermal_load", "point_properties:thermal_modulus_in",
+        "stiffness_matrix:assemble_thermal_load",
+    },
+    "mechanics": CONTACT_FOLDER - {
+        # Pairs conduct, whether bodies move or not: these make them and their results.
+        "axis_limits", "chain_geometry", "contact_pairs", "pair_checks", "pair_rings",
+        "pair_warnings", "ring_links", "surface_chains", "zone_edges"} | {
+        "balances:contact_violation", "balances:force_residual", "contact_reduction",
+        "element_elasticity", "element_fields:element_stress", "field_recovery:recover_stress",
+        "increment_checks:check_violation", "increment_checks:warn_of_choices",
+        "increment_records:balance_forces", "increment_records:settle_slip",
+        "increment_solution:load_mechanics", "point_properties:elasticity_in",
+        "stiffness_matrix",
+    },
+    "contact": CONTACT_FOLDER | COUPLING | {
+        "balances:contact_violation", "conductance_laws", "contact_operator:law_conductance",
+        "contact_operator:temperature_jumps", "contact_reduction", "deck_builder_contact",
+        "deck_builder_gap_laws", "deck_builder_interactions", "increment_records:contact_record",
+        "increment_records:settle_slip", "increment_solution:conduct",
+        "listing_increments:print_interface", "listing_tables:print_contact_table",
+        "pair_reports", "pair_rows", "result_fields:face_values", "result_fields:find_faces",
+        "zone_diagram",
+    },
+    "friction": {
+        "contact_system:friction_rows", "friction", "zone_edges:stick_edges",
+    },
+    "coupling": COUPLING,
+    "rings of pairs": {"pair_rings", "ring_links"},
+    "paths to a contact zone": {"closing_path"},
+    "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",
+                                  "loose_motions"},
+    "films": {"films", "loads:film_matrix", "loads:integrate_films"},
+    "refinement": {"load_refinement", "mesh_division", "refinement"},
+    "printed tables": {"element_points", "listing_prints",
+                                "listing_tables:print_contact_table"},
+    "checks of the deck": {"deck_builder_verify", "verification", "verify_places",
+                           "verify_values"},
+    "MUMPS": {"metis", "mumps_solver"},
+}

@@ -1,0 +1,150 @@
+"""The theme of what is needed only: what each part of a model costs, and what one that is off does."""
+
+import os
+import resource
+import shutil
+import statistics
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import report  # isort: skip, it makes the modules below known
+import h5py
+import pytest
+from instructions import PROGRAM, Profile, profile
+from needed_decks import CASES, COUPLED, FIELDS, TABLES, Case, write_deck
+from program_parts import PARTS
+
+TITLE = "Only what is needed"
+TEXT = """
+The mesh of the published cylinder, with heat, contact, friction and coupling switched on one by one. Instructions are
+those of callgrind on the program as users have it, which are the same from run to run; CPU seconds, user and system
+together from start to end of the process, are medians. Without heat the top is pushed down, with heat it is held and heated;
+`heat, mechanics, contact, friction` has a constant conductance, `the same, coupled` that of the paper.
+"""
+ALLOWED = 0.02   # of all instructions, for a part that is off
+RUNS = 5         # of which CPU seconds are the median
+# Uniform refinements, increments, and the decks: of the finer mesh those in which most is off.
+SIZES = ((0, 20, CASES), (2, 2, tuple(CASES[k] for k in (0, 3, 6))))
+MEASURED = pytest.mark.skipif(
+    os.environ.get("THERCON_BUILD_TYPE", "Release") != "Release" or not shutil.which("valgrind"),
+    reason="instructions are those of a release build under valgrind")
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A deck that was run: its profile, CPU seconds, attributes of /run, bytes of the results."""
+
+    case: Case
+    profile: Profile
+    seconds: float
+    run: dict
+    bytes: int
+
+
+def cpu_seconds(deck):
+    """Return the median of the CPU seconds of some runs of a deck."""
+    taken = []
+    for _ in range(RUNS):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([PROGRAM, "run", "--quiet", deck, "--out", deck.parent], check=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        taken.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return statistics.median(taken)
+
+
+def measured(cases, folder, levels, increments):
+    """Run the decks of cases under callgrind, side by side, then without it, one by one."""
+    decks = [write_deck(case, folder / f"deck-{levels}-{k}.inp", levels, increments)
+             for k, case in enumerate(cases)]
+
+    def profiled(deck):
+        return profile("run", "--quiet", deck, "--out", folder, path=deck.with_suffix(".out"))
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        profiles = list(pool.map(profiled, decks))
+    return [of_result(case, profile, deck)
+            for case, profile, deck in zip(cases, profiles, decks, strict=True)]
+
+
+def of_result(case, profiled, deck):
+    """Return what a deck that was run under callgrind costs without it, and its sizes."""
+    seconds, result = cpu_seconds(deck), deck.with_suffix(".vtkhdf")
+    with h5py.File(result) as file:
+        return Measured(case, profiled, seconds, dict(file["run"].attrs), result.stat().st_size)
+
+
+def costs(runs, levels, increments):
+    """Return the table of what runs cost and of the unknowns that they carry."""
+    table = report.Table(
+        f"Cost of parts that are on, *REFINE, LEVELS={levels}, {increments} increments",
+        ["deck", "unknown temperatures", "displacements", "contact unknowns", "kB of factors",
+         "million instructions", "CPU s"])
+    for run in runs:
+        sizes = [int(run.run[name]) for name in (
+            "equations_thermal", "equations_mechanical", "contact_unknowns", "factor_bytes")]
+        table.rows.append([run.case.name, *sizes[:3], sizes[3] // 1000, run.profile.total / 1e6,
+                           run.seconds])
+    return table
+
+
+def per_cent(shares):
+    """Return the largest of some shares in per cent, or a dash where there are none."""
+    return f"{100 * max(shares):.2f} %" if shares else "-"
+
+
+def off(groups):
+    """Return the table of what parts take where they are off, at most, and where they are on."""
+    table = report.Table(
+        "Parts that are off",
+        ["part", *(f"off, LEVELS={levels}" for levels, *_ in SIZES), "on", "verdict"], text="""
+Largest part of a run's instructions over all decks above in which a part is off, or on: those spent in lines of modules and
+procedures that exist for that part only (`tests/accuracy/program_parts.py`), inlined ones too, and in whatever these call.""".strip())
+    for part, names in PARTS.items():
+        shares = {is_on: [[run.profile.share(names) for run in runs
+                           if (part in run.case.on or (part == "refinement" and levels > 0)) is is_on]
+                          for (levels, *_), runs in zip(SIZES, groups, strict=True)]
+                  for is_on in (False, True)}
+        largest = max(max(of_size, default=0.0) for of_size in shares[False])
+        table.rows.append([part, *map(per_cent, shares[False]), per_cent(sum(shares[True], [])),
+                           report.verdict(largest < ALLOWED)])
+    return table
+
+
+def outputs(runs, levels, increments):
+    """Return the table of what the output of the coupled deck costs."""
+    table = report.Table(
+        f"Output of the coupled deck, *REFINE, LEVELS={levels}, {increments} increments",
+        ["output", "million instructions", "CPU s", "kB of the result file"])
+    names = ("fields of all increments", "fields of the last increment only",
+             "fields of all increments, *CONTACT PRINT")
+    for name, run in zip(names, runs, strict=True):
+        table.rows.append([name, run.profile.total / 1e6, run.seconds, run.bytes // 1000])
+    return table
+
+
+def tables(folder):
+    """Run all decks and return the tables of the theme."""
+    levels, increments, _ = SIZES[0]
+    written = [replace(COUPLED, output=tuple(cards)) for cards in (FIELDS, TABLES)]
+    groups = [measured(cases, folder, *size) for *size, cases in SIZES]
+    more = measured(written, folder, levels, increments)
+    return [*(costs(runs, *size) for runs, (*size, _) in zip(groups, SIZES, strict=True)),
+            off(groups), outputs([groups[0][-1], *more], levels, increments)]
+
+
+@MEASURED
+def test_parts_that_are_off_cost_next_to_nothing(tmp_path):
+    """A part that is off takes less than 2 % of the instructions; the document tells the same."""
+    report.check_parts(tables(tmp_path))
+
+
+def test_parts_name_what_the_program_has():
+    """Every module and procedure of the parts is there, so that none is left out by a new name."""
+    from instructions import SOURCES, procedures
+
+    modules = {path.stem for path in SOURCES.glob("*/*.f90")}
+    for name in set().union(*PARTS.values()):
+        module, _, procedure = name.partition(":")
+        assert module in modules, name
+        assert not procedure or procedure in procedures(module), name
