@@ -27,10 +27,11 @@ ones, which thercon measures as the paper does. CalculiX was given every advanta
 `./setup.sh bench` repeats the runs.
 
 - **At 10 and 3 % both take elements of first order** (in thercon also what `ORDER=1` makes of a mesh of second order), and CalculiX its reduced ones,
-  with hourglass control, which thercon has not. Of thercon's 20-odd milliseconds starting, reading and writing are more than a third there.
-- **At 1 % and below contact edge and heat rate decide.** Heat crosses mainly near the edge, so that both err with the place of the edge between two
-  nodes, and some meshes do better than finer ones. Friction needs the increments: where the first is 180 C it is 10 % off, and with a size by the
-  load (16 increments of 11 to 90 C) a few tenths.
+  with hourglass control, which thercon has not. thercon spends more of its 20 milliseconds there on starting, reading, writing and recovered stresses than on
+  solving.
+- **Below 1 % thercon's heat rate decides.** Heat crosses mainly near the edge, and errs with the place of the edge between two nodes, so that some
+  meshes do better than finer ones. Friction needs the increments: where the first is 180 C it is 10 % off, and with a size by the load (16
+  increments of 11 to 90 C) a few tenths.
 - **CalculiX has two more numbers to choose**, and they count: a penalty K of 1e5 MPa/cm is 0.7 % in force, a stick slope of a tenth of K 2-3 % in friction on
   finer meshes. Its best runs were found with the limit known; with K a third larger the friction of its run at 0.3 % is off by 1.8 %.
 """
