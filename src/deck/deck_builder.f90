@@ -25,6 +25,7 @@ module deck_builder
    use deck_structure, only: card_count, check_structure
    use load_checks, only: first_heat
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
+   use mesh, only: set_type
    use model, only: model_type
    use refinement, only: refine
    use steps, only: analysis_coupled, analysis_static, solves_heat
@@ -41,6 +42,7 @@ contains
       type(model_type), intent(out) :: model              !! the model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
       type(deck_context_type) :: context
+      type(set_type), allocatable :: sets(:)
       integer :: i, deck_nodes, errors
 
       if (size(cards%keywords) == 0) return
@@ -55,10 +57,14 @@ contains
       call build_elements(cards, context, model%mesh, report)
       call find_dropped(context, model%mesh)
       errors = report%error_count()
-      call build_sets('node', cards, context%node_index, report, model%mesh%node_sets)
-      call build_sets('element', cards, context%element_index, report, model%mesh%element_sets)
+      call build_sets('element', cards, context%element_index, model%mesh, report, sets)
+      call move_alloc(sets, model%mesh%element_sets)
       context%sets_sound = report%error_count() == errors
       call build_surfaces(cards, context, model%mesh, report)
+      errors = report%error_count()
+      call build_sets('node', cards, context%node_index, model%mesh, report, sets)
+      call move_alloc(sets, model%mesh%node_sets)
+      context%sets_sound = context%sets_sound .and. report%error_count() == errors
       call build_materials(cards, context, model, report)
       call build_orientations(cards, model, report)
       call build_sections(cards, context, model, report)

@@ -42,7 +42,7 @@ contains
                call build_solver(card, model, report)
             case ('REFINE')
                call build_levels(card, context, report)
-            case ('CONTROLS', 'SPECIFIC HEAT')
+            case ('CONTROLS', 'SPECIFIC HEAT', 'RESTART')
                call context%note('*'//card%name//' is read and not needed')
             case default
                cycle
