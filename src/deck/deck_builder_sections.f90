@@ -5,7 +5,8 @@ module deck_builder_sections
    use cards, only: cards_type, keyword_card_type
    use deck_builder_materials, only: find_material
    use deck_builder_orientations, only: find_orientation
-   use deck_context, only: deck_context_type, find_set, report_unknown, set_names
+   use deck_context, only: deck_context_type, find_set, report_lines, report_unknown, &
+      set_names
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, is_misspelt
    use kinds, only: dp
@@ -104,6 +105,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: name
       integer :: set
+      logical :: valid
 
       if (.not. has_parameter(card, 'ELSET')) then
          call report%error(card%place, '*SOLID SECTION needs ELSET=')
@@ -116,6 +118,10 @@ contains
             nearest_known(name, set_names(mesh%element_sets)))
          return
       end if
+      valid = .true.
+      if (mesh%element_sets(set)%of_lines) call report_lines(name, &
+         parameter_place(card, 'ELSET'), report, valid)
+      if (.not. valid) return
       associate (members => mesh%element_sets(set)%members)
          if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
             'this section replaces an earlier one; elements concerned: '// &
