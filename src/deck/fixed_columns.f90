@@ -33,7 +33,7 @@ contains
       integer, intent(in) :: most                                 !! fields that are due
       integer, intent(inout) :: edit                              !! where the format goes on
       type(field_type), allocatable, intent(out) :: fields(:)     !! the fields of this line
-      logical, intent(out) :: sound       !! whether all whole numbers stand before the first error
+      logical, intent(out) :: sound       !! whether all whole numbers stand well before an error
       type(deck_report_type), intent(inout) :: report             !! receives an error
       type(column_field_type) :: places(size(format%edits))
       integer :: owner(last_text(line) + 1), n, i, bad
@@ -55,7 +55,8 @@ contains
             places(i)%edit%kind == edit_real)
          if (len(fault) == 0) cycle
          if (places(i)%edit%kind == edit_real) fields(i)%text = '0'
-         if (places(i)%edit%kind == edit_whole .and. bad <= places(i)%last + 1) sound = .false.
+         if (places(i)%edit%kind /= edit_whole) cycle
+         sound = sound .and. bad > places(i)%last + 1 .and. len(fields(i)%text) > 0
       end do
       if (len(fault) > 0) call report%error(place_type(image, bad), fault)
    end subroutine cut_line
