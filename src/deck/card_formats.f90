@@ -4,7 +4,7 @@ module card_formats
    implicit none
    private
    public :: card_format_type, edit_type, parse_format
-   public :: edit_whole, edit_real, edit_skip, edit_tab, edit_card
+   public :: edit_whole, edit_real, edit_skip, edit_tab, edit_card, unquoted_format
 
    integer, parameter :: edit_whole = 1   !! I: a whole number
    integer, parameter :: edit_real = 2    !! F, E, D, G: a number
@@ -15,6 +15,10 @@ module card_formats
    integer, parameter :: most_edits = 1000   !! so that a slip in a repeat count is told
    integer, parameter :: most_columns = 10000   !! and one in a width
    integer, parameter :: most_depth = 8      !! groups in each other
+
+   !> What is wrong with a format that does not begin as one.
+   character(*), parameter :: unquoted_format = &
+      'a format stands in brackets and quotes, as in FORMAT="(I5,2F10.0)"'
 
    !> One edit descriptor.
    type :: edit_type
@@ -47,7 +51,7 @@ contains
       upper = to_upper(string)
       call skip_blanks(upper, position)
       if (character_at(upper, position) /= '(') then
-         fault = 'a format stands in brackets and quotes, as in FORMAT="(I5,2F10.0)"'
+         fault = unquoted_format
          return
       end if
       n = 0

@@ -1,6 +1,6 @@
 !> Data cards of *NODE and *ELEMENT in the fixed columns of FORMAT=: lines -> fields.
 module fixed_cards
-   use card_formats, only: card_format_type, edit_real, edit_whole, parse_format
+   use card_formats, only: card_format_type, edit_real, edit_whole, parse_format, unquoted_format
    use card_parameters, only: has_parameter, parameter_place, parameter_text
    use cards, only: field_type, keyword_card_type
    use deck_report, only: deck_report_type
@@ -40,6 +40,7 @@ contains
       character(:), allocatable :: fault
       type(place_type) :: place
       integer :: position, n
+      logical :: quoted
 
       valid = .true.
       self%open = has_parameter(card, 'FORMAT')
@@ -49,6 +50,7 @@ contains
       if (allocated(self%fields)) deallocate(self%fields)
       call parse_format(parameter_text(card, 'FORMAT'), self%format, position, fault)
       place = parameter_place(card, 'FORMAT')
+      quoted = report%source%images(place%image)%value(place%column:place%column) == '"'
       if (len(fault) == 0) then
          associate (kinds => self%format%edits%kind)
             n = count(kinds == edit_whole .or. kinds == edit_real)
@@ -62,8 +64,10 @@ contains
                if (any(kinds == edit_real)) fault = 'FORMAT= of *ELEMENT reads whole numbers, I'
             end if
          end associate
-      else if (report%source%images(place%image)%value(place%column:place%column) == '"') then
+      else if (quoted) then
          place%column = place%column + position
+      else
+         fault = unquoted_format
       end if
       valid = len(fault) == 0
       if (.not. valid) call report%error(place, fault)

@@ -51,6 +51,9 @@ def write(path, *parts):
     """Write a deck of texts and lists of cards; return its path."""
     lines = []
     for part in parts:
-        lines += part.strip().splitlines() if isinstance(part, str) else part
-    path.write_text("\n".join(line.strip() for line in lines) + "\n")
+        if isinstance(part, str):
+            lines += [line.strip() for line in part.strip().splitlines()]
+        else:
+            lines += part
+    path.write_text("\n".join(lines) + "\n")
     return path
