@@ -36,7 +36,7 @@ contains
          n = n + 1
          call build_section(cards, cards%keywords(k), context, model, report, model%sections(n))
          errors = report%error_count()
-         call give_section(cards%keywords(k), n, model%mesh, report)
+         call give_section(cards%keywords(k), n, context, model%mesh, report)
          if (report%error_count() > errors) context%sections_sound = .false.
       end do
    end subroutine build_sections
@@ -98,9 +98,10 @@ contains
          report)
    end subroutine take_orientation
 
-   subroutine give_section(card, section, mesh, report)
+   subroutine give_section(card, section, context, mesh, report)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: section
+      type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(inout) :: mesh
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: name
@@ -122,6 +123,9 @@ contains
       if (mesh%element_sets(set)%of_lines) call report_lines(name, &
          parameter_place(card, 'ELSET'), report, valid)
       if (.not. valid) return
+      if (find_set(context%line_sets, name) > 0) call report%warning( &
+         parameter_place(card, 'ELSET'), 'element set '//name// &
+         ' holds lines, too, which are passed over: bars are not modelled')
       associate (members => mesh%element_sets(set)%members)
          if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
             'this section replaces an earlier one; elements concerned: '// &
