@@ -2,10 +2,11 @@
 program thercon
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
-   use command_line, only: command_check, command_help, command_type, &
+   use command_line, only: command_check, command_help, command_trade, command_type, &
       command_version, read_command, usage
    use deck_check, only: check_deck
    use deck_run, only: base_name, run_deck
+   use deck_trade, only: trade_deck
    use errors, only: error_type, status_deck, status_interrupted
    use interruption, only: catch_signals, caught_signal
    use progress, only: deck_outcome_type, print_batch_summary
@@ -36,6 +37,9 @@ program thercon
       call print_versions(output_unit)
    case (command_check)
       call check_all(status)
+   case (command_trade)
+      call catch_signals()
+      call trade_deck(command%decks(1)%value, command, status)
    case default
       call run_all(status)
    end select

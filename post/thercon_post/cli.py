@@ -4,7 +4,7 @@ import argparse
 import sys
 from contextlib import ExitStack
 
-from . import convergence, fields, mesh, profiles, style, zones
+from . import convergence, fields, mesh, profiles, style, trade, zones
 from .errors import UserError
 from .result import FIELD_SOURCES, Result
 
@@ -50,10 +50,8 @@ def parser():
     several.add_argument(
         "results", nargs="+", metavar="RESULT", help="result file; several are compared"
     )
-    trade = pictures.add_parser(
-        "trade", help="speed against accuracy (not built yet)", add_help=False
-    )
-    trade.add_argument("rest", nargs=argparse.REMAINDER)
+    table = add_picture(pictures, "trade", "errors over CPU seconds of the rows of thercon trade")
+    table.add_argument("table", metavar="FILE", help="NAME.trade.csv of `thercon trade`")
     for name in ("profiles", "fields"):
         add_loads(added[name])
     for name in ("profiles", "zones"):
@@ -170,9 +168,9 @@ SEVERAL = {"--load": is_number, "--increment": is_number, "--quantity": FIELD_SO
 def run(arguments):
     """Draw what the arguments ask for; return the files written."""
     options = parser().parse_args(spread(arguments))
-    if options.picture == "trade":
-        raise UserError("trade: not built yet")
     style.apply()
+    if options.picture == "trade":
+        return trade.draw(options.table, options)
     with ExitStack() as stack:
         results = [stack.enter_context(Result(path)) for path in options.results]
         if options.picture == "convergence":

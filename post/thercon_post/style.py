@@ -63,19 +63,21 @@ def apply():
 
 
 def write(figure, columns, folder, name):
-    """Write figure and curves as folder/name.png, .svg and .csv; return what was written."""
+    """Write figure and curves as folder/name.png, .svg and .csv, without curves the first two alone;
+    return what was written."""
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         figure.savefig(folder / f"{name}.png")
         # No date in the file: the same result gives the same picture.
         figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
-        write_table(folder / f"{name}.csv", columns)
+        if columns is not None:
+            write_table(folder / f"{name}.csv", columns)
     except OSError as reason:
         raise UserError(f"{folder / name}: cannot be written ({reason})") from None
     finally:
         plt.close(figure)
-    return [folder / f"{name}.{kind}" for kind in ("png", "svg", "csv")]
+    return [folder / f"{name}.{kind}" for kind in ("png", "svg", "csv")[: 2 + bool(columns)]]
 
 
 def file_name(result, picture, *parts):

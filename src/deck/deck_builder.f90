@@ -31,6 +31,7 @@ module deck_builder
    use refinement, only: refine
    use steps, only: analysis_coupled, analysis_static, solves_heat
    use text, only: to_text
+   use variations, only: apply_variation, variation_type
    implicit none
    private
    public :: build_model
@@ -38,10 +39,12 @@ module deck_builder
 contains
 
    !> Builds the model that a deck describes; it is usable only if the report then has no errors.
-   subroutine build_model(cards, model, report)
+   subroutine build_model(cards, model, report, variation)
       type(cards_type), intent(in) :: cards               !! the cards, as read_deck left them
       type(model_type), intent(out) :: model              !! the model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
+      !> What is to be other than the cards say, once they are found sound
+      type(variation_type), intent(in), optional :: variation
       type(deck_context_type) :: context
       type(set_type), allocatable :: sets(:)
       integer :: i, deck_nodes, errors
@@ -80,6 +83,8 @@ contains
       call build_load_axis(context, model, report)
       call check_model(context, model, report)
       if (.not. report%has_errors()) then
+         if (present(variation)) call apply_variation(variation, context%order, context%levels, &
+            model)
          call drop_idle_heat(context, model)
          call check_heat_quantities(model, report)
          call apply_loads(context, model, report)

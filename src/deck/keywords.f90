@@ -47,7 +47,8 @@ module keywords
 
    type(known_keyword_type), parameter :: model_keywords(26) = [ &
       known_keyword_type('HEADING', built, in_model, 0, many, ''), &
-      known_keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER='), &
+      known_keyword_type('OPTIONS', built, in_model, 0, 0, &
+         'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       known_keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
       known_keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
       known_keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &

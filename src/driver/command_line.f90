@@ -1,16 +1,18 @@
 !> The command line: what is to be done with which decks.
 module command_line
    use errors, only: error_type, set_error, status_deck
-   use text, only: append, string_type
+   use kinds, only: dp
+   use text, only: append, read_integer, read_real, string_type
    implicit none
    private
    public :: command_type, read_command, usage
-   public :: command_run, command_check, command_help, command_version
+   public :: command_run, command_check, command_trade, command_help, command_version
 
    integer, parameter :: command_run = 1       !! solve
    integer, parameter :: command_check = 2     !! read and check only
    integer, parameter :: command_help = 3      !! print the usage
    integer, parameter :: command_version = 4   !! print versions
+   integer, parameter :: command_trade = 5     !! measure speed against accuracy
 
    !> What the command line asks for.
    type :: command_type
@@ -20,22 +22,35 @@ module command_line
       character(:), allocatable :: folder             !! --out, the current folder unless given
       integer :: width = 0                            !! --width, 0 unless given
       logical :: quiet = .false.                      !! --quiet
+      integer :: jobs = 1                             !! --jobs, rows at a time
+      real(dp) :: limit = 30.0_dp                     !! --limit, CPU seconds of a row [s]
    end type command_type
 
    character(*), parameter :: usage = &
       'usage: thercon run DECK... [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]'// &
       new_line('a')// &
       '       thercon check DECK... [--width N] [--set NAME=VALUE]'//new_line('a')// &
+      '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]'// &
+      new_line('a')// &
+      '                          [--limit SECONDS] [--jobs N]'//new_line('a')// &
       '       thercon --help | --version'//new_line('a')//new_line('a')// &
       '  run      solve each deck a/b.inp; results are DIR/b.vtkhdf, .lst, .sta and .cvg'// &
       new_line('a')// &
       '  check    read each deck, report every mistake at once, solve nothing'// &
+      new_line('a')// &
+      '  trade    run a deck with other meshes, increments and methods; measure CPU seconds,'// &
+      new_line('a')// &
+      '           memory and errors, recommend for 10, 1 and 0.1 %; table DIR/b.trade.csv'// &
       new_line('a')//new_line('a')// &
       '  --out DIR          folder of the results, made if missing (the current one)'// &
       new_line('a')// &
       '  --width N          columns of a card (80)'//new_line('a')// &
       '  --set NAME=VALUE   value of a *PARAMETER, before the deck''s own'//new_line('a')// &
       '  --quiet            no progress, no summary; errors and warnings all the same'// &
+      new_line('a')// &
+      '  --limit SECONDS    trade: rows that would take more CPU are left out (30)'// &
+      new_line('a')// &
+      '  --jobs N           trade: rows at a time (1); their times then disturb each other'// &
       new_line('a')//new_line('a')// &
       'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,'// &
       new_line('a')// &
@@ -67,8 +82,7 @@ contains
          command%action = command_version
          return
       case ('trade')
-         call set_error(error, status_deck, 'command trade is not built yet')
-         return
+         command%action = command_trade
       case default
          call set_error(error, status_deck, 'unknown command '//word//'; see thercon --help')
          return
@@ -78,7 +92,11 @@ contains
          call read_argument(command, i, error)
          if (allocated(error)) return
       end do
-      if (size(command%decks) == 0) call set_error(error, status_deck, 'no deck is named')
+      if (size(command%decks) == 0) then
+         call set_error(error, status_deck, 'no deck is named')
+      else if (size(command%decks) > 1 .and. command%action == command_trade) then
+         call set_error(error, status_deck, 'trade takes one deck')
+      end if
    end subroutine read_command
 
    !> Reads the argument at a place, with its value where it has one.
@@ -94,10 +112,7 @@ contains
       case ('--quiet')
          command%quiet = .true.
          return
-      case ('--jobs')
-         call set_error(error, status_deck, 'option --jobs is not built yet')
-         return
-      case ('--out', '--width', '--set')
+      case ('--out', '--width', '--set', '--jobs', '--limit')
          if (i > command_argument_count()) then
             call set_error(error, status_deck, 'option '//word//' needs a value')
             return
@@ -112,8 +127,13 @@ contains
          end if
          return
       end select
-      if (command%action == command_check .and. word == '--out') then
-         call set_error(error, status_deck, 'option --out does not go with check')
+      if (command%action == command_check .and. word == '--out' .or. &
+         command%action == command_check .and. word == '--jobs' .or. &
+         command%action /= command_trade .and. word == '--limit') then
+         call set_error(error, status_deck, 'option '//word//' does not go with '//argument(1))
+         return
+      else if (command%action == command_run .and. word == '--jobs') then
+         call set_error(error, status_deck, 'option --jobs is not built yet')
          return
       end if
       call take_value(command, word, value, error)
@@ -124,8 +144,17 @@ contains
       character(*), intent(in) :: word, value
       type(error_type), allocatable, intent(out) :: error
       integer :: status
+      logical :: valid
 
       select case (word)
+      case ('--jobs')
+         call read_integer(value, command%jobs, valid)
+         if (.not. valid .or. command%jobs < 1) call set_error(error, status_deck, &
+            'option --jobs needs a whole number of at least 1, not '//value)
+      case ('--limit')
+         call read_real(value, command%limit, valid)
+         if (.not. valid .or. command%limit <= 0.0_dp) call set_error(error, status_deck, &
+            'option --limit needs a number of seconds above 0, not '//value)
       case ('--out')
          command%folder = value
          if (len(value) > 1 .and. index(value, '/', back=.true.) == len(value)) then

@@ -11,6 +11,7 @@ module deck_preparation
    use model, only: model_type
    use pair_reports, only: pair_all
    use support_checks, only: check_over_constrained, check_supports
+   use variations, only: variation_type
    use verify_places, only: check_arc_lengths
    implicit none
    private
@@ -19,19 +20,20 @@ module deck_preparation
 contains
 
    !> Reads a deck and prepares its run. Warnings and errors go to stderr.
-   subroutine prepare_deck(path, command, cards, model, simulation, status)
+   subroutine prepare_deck(path, command, cards, model, simulation, status, variation)
       character(*), intent(in) :: path                    !! the deck as given
       type(command_type), intent(in) :: command           !! options of the command line
       type(cards_type), intent(out) :: cards              !! its cards
       type(model_type), intent(out) :: model              !! its model
       type(simulation_type), intent(inout) :: simulation  !! a fresh run
       integer, intent(out) :: status                      !! exit status so far
+      type(variation_type), intent(in), optional :: variation   !! what is other than in the deck
       type(deck_report_type) :: report
       type(error_type), allocatable :: error
 
       status = 0
       call read_deck(path, command%width, command%settings, cards, report)
-      call build_model(cards, model, report)
+      call build_model(cards, model, report, variation)
       if (.not. report%has_errors()) then
          call pair_all(model, simulation%operators%interfaces, report)
       end if

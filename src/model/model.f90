@@ -51,8 +51,11 @@ module model
       type(verify_type), allocatable :: verifications(:)         !! *VERIFY cards
       type(unit_labels_type) :: units                            !! labels of units
       integer :: solver = solver_skyline                         !! solver_skyline or solver_mumps
+      logical :: estimates_errors = .true.                       !! ERRORS= of *OPTIONS
       integer :: refinement_levels = 0                           !! *REFINE, already applied
       integer :: element_order = 2                               !! *OPTIONS, ORDER=, applied
+      integer :: written_levels = 0                              !! *REFINE, where it was varied
+      integer :: written_order = 2                               !! ORDER=, where it was varied
       integer :: load_node = 0                                   !! LOAD=: node index, 0 for time
       integer :: load_dof = 0                                    !! LOAD=: 1, 2, dof_temperature
       character(:), allocatable :: load_label                    !! label of the load axis

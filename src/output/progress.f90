@@ -25,6 +25,7 @@ module progress
    contains
       procedure :: start
       procedure :: show
+      procedure :: say
       procedure :: clear
    end type progress_type
 
@@ -74,12 +75,22 @@ contains
       line = line//'  load '//to_text(record%load)
       if (sum(zones) > 0) line = line//'  I '//to_text(zones(1))//' II '//to_text(zones(2))// &
          ' III '//to_text(zones(3))
-      line = line(:min(len(line), line_length))
-      write (error_unit, '(3a)', advance='no') achar(13), line, &
-         repeat(' ', max(0, self%length - len(line)))
-      flush (error_unit)
-      self%length = len(line)
+      call self%say(line)
    end subroutine show
+
+   !> Shows a line of words in place of the last one.
+   subroutine say(self, words)
+      class(progress_type), intent(inout) :: self   !! the line
+      character(*), intent(in) :: words             !! what it says
+      integer :: length
+
+      if (.not. self%is_shown) return
+      length = min(len(words), line_length)
+      write (error_unit, '(3a)', advance='no') achar(13), words(:length), &
+         repeat(' ', max(0, self%length - length))
+      flush (error_unit)
+      self%length = length
+   end subroutine say
 
    !> Wipes the line away.
    subroutine clear(self)

@@ -466,11 +466,10 @@ def test_mistakes_on_the_command_line_have_status_1(fail, result):
     assert "invalid choice: 'zone'" in fail("zone", result)
     assert "--lod" in fail("profiles", result, "--lod", 540)
     assert "no field 'flux_x'" in fail("fields", result, "--quantity", "flux_x")
-    assert "trade: not built yet" in fail("trade", result, "--out", "x")
 
 
 def test_help_of_every_picture(capsys):
-    for picture in ([], ["mesh"], ["profiles"], ["zones"], ["fields"], ["convergence"]):
+    for picture in ([], ["mesh"], ["profiles"], ["zones"], ["fields"], ["convergence"], ["trade"]):
         with pytest.raises(SystemExit) as ended:
             main([*picture, "--help"])
         assert ended.value.code == 0
@@ -534,3 +533,50 @@ def test_launcher_takes_the_python_of_the_build_and_names_missing_packages(tmp_p
     python.chmod(0o755)
     told = subprocess.run([post / "plot", "mesh", "a"], capture_output=True, text=True, check=False)
     assert told.stdout == f"build: {post / 'plot'} mesh a\n"
+
+
+def write_trade(path, change=None):
+    """Write a made-up table of a trade; `change` alters its rows."""
+    head = ("row,default,elements,level,increment_factor,varied,status,reason,increments,passes,"
+            "runs,cpu_seconds,peak_megabytes,error_normal_force,error_heat_rate,"
+            "error_peak_pressure,error_edge_contact,error_edge_stick,error_temperature,"
+            "error_worst,pareto,recommended_10,recommended_1,recommended_0.1")  # fmt: skip
+    rows = [
+        "1,0,Q4,0,2,,0,,4,9,7,0.01,10,0.1,,0.2,0,,,0.2,1,all,,",
+        "2,1,Q8,1,1,,0,,8,20,7,0.1,12,0.01,,0.004,1e-12,,,0.01,1,,all,",
+        "3,0,Q8,1,1,MUMPS,0,,8,20,7,0.2,14,0.01,,0.004,1e-12,,,0.01,0,,,",
+        '4,0,Q8,1,1,PICARD,2,"it fails, here",0,50,1,0.1,12,,,,,,,,0,,,',
+        "reference,,,,,,,,,,,,,0.001,,0.002,0,,,0.002,,,,",
+    ]
+    path.write_text("\n".join([head, *(change(rows) if change else rows)]) + "\n")
+    return path
+
+
+def test_trade_draws_the_quantities_that_there_are(kept, tmp_path):
+    (figure,) = kept("trade", write_trade(tmp_path / "deck.trade.csv"))
+    titles = [axes.get_title(loc="left") for axes in figure.axes if axes.lines]
+    assert titles == ["(a) worst of all", "(b) normal force", "(c) peak pressure",
+                      "(d) edge of contact"]  # fmt: skip
+    force = figure.axes[1]
+    points = {(line.get_xdata()[0], line.get_ydata()[0]) for line in force.lines
+              if len(line.get_xdata()) == 1}  # fmt: skip
+    assert points == {(0.01, 10.0), (0.1, 1.0), (0.2, 1.0)}
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "failed, not drawn: 1" in labels
+
+
+def test_trade_leaves_its_table_alone(draw, tmp_path):
+    table = write_trade(tmp_path / "deck.trade.csv")
+    before = table.read_text()
+    assert draw("trade", table) == ["deck.trade.png", "deck.trade.svg"]
+    assert table.read_text() == before
+
+
+def test_what_is_no_trade_is_refused(fail, result, tmp_path):
+    assert "cannot be read" in fail("trade", tmp_path / "none.csv")
+    assert "cannot be read" in fail("trade", result)
+    other = tmp_path / "other.csv"
+    other.write_text("load,edge\n1,2\n")
+    assert "no table of thercon trade: no column row" in fail("trade", other)
+    empty = write_trade(tmp_path / "empty.trade.csv", lambda rows: [rows[3], rows[4]])
+    assert "nothing to draw" in fail("trade", empty)

@@ -1,0 +1,145 @@
+"""Speed against accuracy: the rows of `thercon trade` as errors over CPU seconds."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from . import style
+from .errors import UserError
+from .style import plt
+
+PANELS = {
+    "error_worst": "worst of all",
+    "error_normal_force": "normal force",
+    "error_heat_rate": "heat rate",
+    "error_peak_pressure": "peak pressure",
+    "error_edge_contact": "edge of contact",
+    "error_edge_stick": "edge of stick",
+    "error_temperature": "temperatures",
+}
+NEEDED = ["row", "default", "elements", "level", "increment_factor", "varied", "status", "pareto"]
+NEEDED += ["cpu_seconds", *PANELS]
+SHAPES = {"Q8": "o", "Q4": "s"}
+SMALLEST = 1e-6  # percent: errors below it are drawn here
+COLUMNS = 3
+
+
+class Trade:
+    """The table of one trade."""
+
+    def __init__(self, path):
+        path = Path(path)
+        self.name = path.name.removesuffix(".csv").removesuffix(".trade")
+        try:
+            with open(path, newline="", encoding="utf-8") as file:
+                table = list(csv.DictReader(file))
+        except (OSError, UnicodeDecodeError, csv.Error) as reason:
+            raise UserError(f"{path}: cannot be read ({reason})") from None
+        missing = [name for name in NEEDED if not table or name not in table[0]]
+        if missing:
+            raise UserError(f"{path}: no table of thercon trade: no column {missing[0]}")
+        self.uncertainty = next((row for row in table if row["row"] == "reference"), {})
+        table = [row for row in table if row["row"] != "reference"]
+        self.failed = [row for row in table if row["status"] != "0"]
+        self.rows = [row for row in table if row["status"] == "0"]
+        if not any(row["error_worst"] for row in self.rows):
+            raise UserError(f"{path}: no row has an error: there is nothing to draw")
+
+    def panels(self):
+        """Return the columns that hold errors."""
+        return [name for name in PANELS if any(row[name] for row in self.rows)]
+
+
+def draw(path, options):
+    """Draw a table; return the files written."""
+    trade = Trade(path)
+    return style.write(figure_of(trade), None, options.out, f"{trade.name}.trade")
+
+
+def figure_of(trade):
+    """Return the figure of a trade: a panel a quantity."""
+    panels = trade.panels()
+    rows = -(-len(panels) // COLUMNS)
+    figure, axes = plt.subplots(
+        rows, COLUMNS, figsize=(style.DOUBLE_COLUMN, 2.1 * rows + 0.5), sharex=True, squeeze=False,
+        layout="constrained",
+    )  # fmt: skip
+    for number, (name, panel) in enumerate(zip(panels, axes.flat, strict=False)):
+        draw_panel(panel, trade, name)
+        style.panel_title(panel, PANELS[name], "abcdefg"[number])
+    for panel in axes.flat[len(panels) :]:
+        panel.set_axis_off()
+    for panel in axes.flat[max(len(panels) - COLUMNS, 0) : len(panels)]:
+        panel.tick_params(labelbottom=True)
+        panel.set_xlabel("CPU time, s")
+    for line in axes:
+        line[0].set_ylabel("error, %")
+    figure.legend(handles=legend(trade), loc="outside lower center", ncols=5)
+    return figure
+
+
+def draw_panel(axes, trade, name):
+    """Draw the errors of one quantity."""
+    levels = sorted({int(row["level"]) for row in trade.rows})
+    colours = dict(zip(levels, style.shades(max(len(levels), 2)), strict=False))
+    for row in trade.rows:
+        if not row[name]:
+            continue
+        at = float(row["cpu_seconds"]), percent(row[name])
+        if row["varied"]:
+            axes.plot(*at, "x", color=style.GREY, ms=3, zorder=2)
+            continue
+        factor = float(row["increment_factor"])
+        axes.plot(
+            *at, SHAPES.get(row["elements"], "o"), color=colours[int(row["level"])],
+            ms=3.2 - 0.5 * np.log2(factor), mfc="none" if factor > 1 else None, zorder=3,
+        )  # fmt: skip
+        if row["default"] == "1":
+            axes.plot(*at, "o", ms=9, mfc="none", mec=style.VERMILION, mew=0.9, zorder=4)
+    if name == "error_worst":
+        best = sorted(
+            (float(row["cpu_seconds"]), percent(row[name]))
+            for row in trade.rows
+            if row["pareto"] == "1"
+        )
+        axes.step(*zip(*best, strict=True), where="post", color=style.BLUE, lw=0.8, zorder=1)
+    if trade.uncertainty.get(name):
+        axes.axhline(percent(trade.uncertainty[name]), color=style.GREY, lw=0.7, ls="--", zorder=1)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    if high / low < 10:  # a decade at least, so that equal errors look equal
+        axes.set_ylim(low / 4, high * 4)
+
+
+def percent(text):
+    """Return a relative error in percent, not below what is drawn."""
+    return max(100 * float(text), SMALLEST)
+
+
+def legend(trade):
+    """Return the handles of the legend."""
+    levels = sorted({int(row["level"]) for row in trade.rows})
+    colours = dict(zip(levels, style.shades(max(len(levels), 2)), strict=False))
+
+    def handle(label, **look):
+        return Line2D([], [], **({"ls": "none", "color": "black", "ms": 4} | look), label=label)
+
+    handles = [
+        handle(kind, marker=shape)
+        for kind, shape in SHAPES.items()
+        if any(row["elements"] == kind for row in trade.rows)
+    ]
+    handles += [handle(f"mesh / {2**k}", marker="o", color=colours[k]) for k in levels]
+    handles.append(handle("longer increments", marker="o", mfc="none"))
+    if any(row["varied"] for row in trade.rows):
+        handles.append(handle("other method", marker="x", color=style.GREY))
+    handles.append(handle("deck as written", marker="o", ms=8, mfc="none", color=style.VERMILION))
+    handles.append(handle("none beats it", ls="-", color=style.BLUE))
+    if trade.uncertainty:
+        handles.append(handle("reference uncertain by", ls="--", color=style.GREY))
+    if trade.failed:
+        handles.append(handle(f"failed, not drawn: {len(trade.failed)}", alpha=0))
+    return handles

@@ -1,0 +1,151 @@
+!> `thercon trade`: speed against accuracy of one deck, measured.
+module deck_trade
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use cards, only: cards_type
+   use command_line, only: command_type
+   use deck_preparation, only: prepare_deck
+   use deck_run, only: base_name
+   use element_kinds, only: element_corner_count
+   use errors, only: error_type
+   use increments, only: simulation_type
+   use kinds, only: dp
+   use model, only: model_type
+   use recommendation, only: judge_rows
+   use sorting, only: unique_sorted
+   use system_calls, only: make_folder
+   use trade_errors, only: state_errors
+   use trade_file, only: write_trade
+   use trade_instants, only: common_instants
+   use trade_limits, only: check_affordable, note_left_out
+   use trade_measurement, only: measurement_type
+   use trade_plan, only: add_level, add_singles, longest_factor, make_room, most_levels
+   use trade_reference, only: find_reference, reference_type
+   use trade_rows, only: trade_type
+   use trade_table, only: print_trade
+   use variations, only: variation_type
+   implicit none
+   private
+   public :: trade_deck
+
+   integer, parameter :: most_nodes = 2000   !! whose temperatures are compared
+
+contains
+
+   !> Measures a deck and prints and writes the table. What goes wrong is printed on stderr. A deck
+   !> that does not run as it is written has a table all the same.
+   subroutine trade_deck(path, command, status)
+      character(*), intent(in) :: path             !! the deck as given
+      type(command_type), intent(in) :: command    !! options of the command line
+      integer, intent(out) :: status               !! exit status
+      type(cards_type) :: cards
+      type(model_type) :: model
+      type(simulation_type) :: simulation
+      type(trade_type) :: trade
+      type(reference_type) :: reference
+      type(error_type), allocatable :: error
+      character(:), allocatable :: results
+      integer :: i
+
+      call prepare_deck(path, command, cards, model, simulation, status, &
+         variation_type(order=2, levels=0))
+      call simulation%release()
+      if (status /= 0) return
+      call make_folder(command%folder)
+      results = command%folder//'/'//base_name(path)//'.trade'
+      trade%instants = common_instants(model, longest_factor)
+      call measure(path, command, results, model, trade, error)
+      if (.not. allocated(error)) then
+         call find_reference(trade, reference)
+         call state_errors(reference, model%initial_temperature, trade)
+         call judge_rows(trade)
+         call write_trade(results//'.csv', trade, error)
+      end if
+      if (allocated(error)) then
+         status = error%status
+         write (error_unit, '(3a)') path, ': error: ', error%message
+         return
+      end if
+      if (.not. command%quiet) then
+         call print_trade(output_unit, path, trade)
+         write (output_unit, '(/, 3a)') 'table: ', results, '.csv'
+      end if
+      i = findloc(trade%rows(:trade%count)%is_default, .true., dim=1)
+      status = trade%rows(i)%status
+      if (status /= 0) write (error_unit, '(3a)') path, ': error: the deck as it is written '// &
+         'fails: ', trade%rows(i)%reason
+   end subroutine trade_deck
+
+   !> Runs the grid level by level, as long as that is affordable, then the single variations.
+   subroutine measure(path, command, results, model, trade, error)
+      character(*), intent(in) :: path, results
+      type(command_type), intent(in) :: command
+      type(model_type), intent(in) :: model
+      type(trade_type), intent(inout) :: trade
+      type(error_type), allocatable, intent(out) :: error
+      type(measurement_type) :: measurement
+      integer :: level, first
+
+      measurement%task%path = path
+      measurement%task%command = command
+      measurement%task%instants = trade%instants
+      measurement%task%nodes = compared_nodes(model)
+      measurement%scratch = results
+      measurement%jobs = command%jobs
+      measurement%limit = command%limit
+      call measurement%progress%start(command%quiet)
+      call make_room(model, trade)
+      do level = 0, model%written_levels + most_levels
+         first = trade%count + 1
+         call add_level(model, level, trade)
+         call keep_affordable(trade, first, command)
+         call measurement%run(trade, first, trade%count, error)
+         if (allocated(error)) return
+         if (trade%count < first .and. level >= model%written_levels) exit
+      end do
+      first = trade%count + 1
+      call add_singles(model, trade)
+      call measurement%run(trade, first, trade%count, error)
+   end subroutine measure
+
+   !> Takes the rows out again that would cost too much, but never the deck as it is written.
+   subroutine keep_affordable(trade, first, command)
+      type(trade_type), intent(inout) :: trade
+      integer, intent(in) :: first
+      type(command_type), intent(in) :: command
+      character(:), allocatable :: reason
+      integer :: i, kept
+
+      kept = first - 1
+      do i = first, trade%count
+         reason = ''
+         if (.not. trade%rows(i)%is_default) call check_affordable(trade, i, command%limit, &
+            command%jobs, reason)
+         if (len(reason) > 0) then
+            call note_left_out(trade%rows(i), reason, trade%left_out)
+         else
+            kept = kept + 1
+            if (kept < i) trade%rows(kept) = trade%rows(i)
+         end if
+      end do
+      trade%count = kept
+   end subroutine keep_affordable
+
+   !> Numbers of the nodes whose temperatures are compared: corners of the deck's own elements,
+   !> which all rows have; some of them where they are many.
+   pure function compared_nodes(model) result(numbers)
+      type(model_type), intent(in) :: model
+      integer, allocatable :: numbers(:)
+      logical :: is_corner(size(model%mesh%node_number))
+      integer :: e
+
+      is_corner = .false.
+      associate (mesh => model%mesh)
+         do e = 1, size(mesh%element_kind)
+            is_corner(mesh%element_nodes(:element_corner_count(mesh%element_kind(e)), e)) = .true.
+         end do
+         numbers = unique_sorted(pack(mesh%node_number, is_corner))
+      end associate
+      numbers = numbers(::1 + (size(numbers) - 1)/most_nodes)
+   end function compared_nodes
+
+end module deck_trade

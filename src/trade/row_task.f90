@@ -1,0 +1,109 @@
+!> One row of a trade, solved in a process of its own.
+module row_task
+   use cards, only: cards_type
+   use command_line, only: command_type
+   use deck_preparation, only: prepare_deck
+   use errors, only: error_type, set_error, status_deck, status_interrupted, &
+      status_no_convergence
+   use increments, only: simulation_type
+   use interruption, only: caught_signal
+   use kinds, only: dp
+   use model, only: model_type
+   use processes, only: task_type
+   use records, only: increment_record_type
+   use sorting, only: number_index_type
+   use steps, only: solves_heat
+   use trade_instants, only: instant_at
+   use trade_quantities, only: row_values_type
+   use variations, only: variation_type
+   implicit none
+   private
+   public :: row_task_type
+
+   !> What a row needs. It solves, and recovers all fields, but writes no results.
+   type, extends(task_type) :: row_task_type
+      character(:), allocatable :: path          !! the deck as given
+      type(command_type) :: command              !! options of the command line
+      type(variation_type) :: variation          !! what is other than in the deck
+      real(dp), allocatable :: instants(:)       !! total times of comparison [time]
+      integer, allocatable :: nodes(:)           !! numbers of nodes whose temperature is compared
+      character(:), allocatable :: values_path   !! file for the values
+   contains
+      procedure :: execute
+   end type row_task_type
+
+contains
+
+   !> Solves the row and leaves its values in a file.
+   subroutine execute(self, status)
+      class(row_task_type), intent(inout) :: self   !! the row
+      integer, intent(out) :: status                !! exit status
+      type(cards_type) :: cards
+      type(model_type) :: model
+      type(simulation_type) :: simulation
+      type(row_values_type) :: values
+      type(error_type), allocatable :: error
+
+      call prepare_deck(self%path, self%command, cards, model, simulation, status, self%variation)
+      if (status /= 0) return   ! the parent finds the message in what was printed
+      call solve(self, model, simulation, values, error)
+      if (allocated(error)) then
+         status = error%status
+         if (status == status_deck) status = status_no_convergence
+         call values%save(self%values_path, status, error%message)
+      else
+         call values%save(self%values_path, status, '')
+      end if
+   end subroutine execute
+
+   subroutine solve(self, model, simulation, values, error)
+      type(row_task_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(inout) :: simulation
+      type(row_values_type), intent(inout) :: values
+      type(error_type), allocatable, intent(out) :: error
+      type(increment_record_type) :: record
+      integer, allocatable :: nodes(:)
+      integer :: instant
+
+      call simulation%reduce(model, error)
+      if (allocated(error)) return
+      nodes = node_indexes(model, self%nodes)
+      associate (pairs => simulation%operators%interfaces)
+         call values%prepare(size(pairs), size(nodes), size(self%instants))
+         do while (.not. simulation%finished(model))
+            if (caught_signal() /= '') then
+               call set_error(error, status_interrupted, 'ended by '//caught_signal())
+               return
+            end if
+            call simulation%advance(model, record, error)
+            if (allocated(record%iterations)) values%passes = values%passes + &
+               size(record%iterations)
+            if (allocated(error)) return
+            values%increments = values%increments + 1
+            instant = instant_at(self%instants, record%time)
+            if (instant > 0) call values%sample(record, pairs, nodes, instant)
+         end do
+      end associate
+   end subroutine solve
+
+   !> Indexes of nodes by their numbers; none where no step solves heat.
+   pure function node_indexes(model, numbers) result(indexes)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: numbers(:)
+      integer, allocatable :: indexes(:)
+      type(number_index_type) :: index
+      integer :: i
+
+      if (.not. any(solves_heat(model%steps%analysis))) then
+         allocate (indexes(0))
+         return
+      end if
+      call index%build(model%mesh%node_number)
+      allocate (indexes(size(numbers)))
+      do i = 1, size(numbers)
+         indexes(i) = index%find(numbers(i))
+      end do
+   end function node_indexes
+
+end module row_task

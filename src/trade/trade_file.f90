@@ -1,0 +1,141 @@
+!> The table of a trade as a CSV file.
+module trade_file
+   use errors, only: error_type, set_error, status_internal
+   use kinds, only: dp
+   use text, only: to_text
+   use trade_quantities, only: is_there, quantity_count, quantity_names
+   use trade_rows, only: trade_row_type, trade_type, wish_count
+   use trade_table, only: elements_of
+   implicit none
+   private
+   public :: write_trade
+
+   character(*), parameter :: first_columns = 'row,default,elements,level,increment_factor,'// &
+      'varied,status,reason,increments,passes,runs,cpu_seconds,peak_megabytes'
+   character(3), parameter :: wish_names(wish_count) = ['10 ', '1  ', '0.1']
+
+contains
+
+   !> Writes the table. The last row, named `reference`, has what the reference is uncertain by;
+   !> errors are relative, and fields of what there is not are empty.
+   !> Error: status_internal, when the file cannot be written.
+   subroutine write_trade(path, trade, error)
+      character(*), intent(in) :: path                     !! the file
+      type(trade_type), intent(in) :: trade                !! the trade
+      type(error_type), allocatable, intent(out) :: error  !! see above
+      integer :: unit, status, i
+
+      open (newunit=unit, file=path, status='replace', action='write', iostat=status)
+      if (status == 0) then
+         write (unit, '(a)', iostat=status) heading()
+         do i = 1, trade%count
+            if (status /= 0) exit
+            write (unit, '(a)', iostat=status) row_text(i, trade%rows(i), trade)
+         end do
+         if (status == 0) write (unit, '(a)', iostat=status) reference_text(trade)
+         if (status == 0) then
+            close (unit, iostat=status)
+         else
+            close (unit)
+         end if
+      end if
+      if (status /= 0) call set_error(error, status_internal, 'cannot write "'//path//'"')
+   end subroutine write_trade
+
+   pure function heading() result(line)
+      character(:), allocatable :: line
+      integer :: i
+
+      line = first_columns
+      do i = 1, quantity_count
+         line = line//',error_'//trim(quantity_names(i))
+      end do
+      line = line//',error_worst,pareto'
+      do i = 1, wish_count
+         line = line//',recommended_'//trim(wish_names(i))
+      end do
+   end function heading
+
+   pure function row_text(number, row, trade) result(line)
+      integer, intent(in) :: number
+      type(trade_row_type), intent(in) :: row
+      type(trade_type), intent(in) :: trade
+      character(:), allocatable :: line
+      integer :: i
+
+      line = to_text(number)//','//flag(row%is_default)//','//elements_of(row)//','// &
+         to_text(row%level)//','//to_text(row%variation%increments)//','//row%varied//','// &
+         to_text(row%status)//','//quoted(row%reason)//','//to_text(row%values%increments)//','// &
+         to_text(row%values%passes)//','//to_text(size(row%cpu))//','// &
+         scientific(row%cpu_seconds)//','//scientific(row%peak_bytes/1.0e6_dp)// &
+         errors_text(row%errors)//','// &
+         number_or_empty(row%worst)//','//flag(row%is_optimal)
+      do i = 1, wish_count
+         line = line//','
+         if (.not. row%is_recommended(i)) cycle
+         if (len(trade%remarks(i)%value) == 0) then
+            line = line//'all'
+         else
+            line = line//quoted('but not for '//trade%remarks(i)%value)
+         end if
+      end do
+   end function row_text
+
+   pure function reference_text(trade) result(line)
+      type(trade_type), intent(in) :: trade
+      character(:), allocatable :: line
+
+      line = 'reference'//repeat(',', 12)//errors_text(trade%uncertainty)//','// &
+         number_or_empty(maxval(trade%uncertainty))//repeat(',', wish_count + 1)
+   end function reference_text
+
+   pure function errors_text(errors) result(text)
+      real(dp), intent(in) :: errors(:)
+      character(:), allocatable :: text
+      integer :: q
+
+      text = ''
+      do q = 1, size(errors)
+         text = text//','//number_or_empty(errors(q))
+      end do
+   end function errors_text
+
+   pure function number_or_empty(number) result(text)
+      real(dp), intent(in) :: number
+      character(:), allocatable :: text
+
+      text = ''
+      if (is_there(number)) text = scientific(number)
+   end function number_or_empty
+
+   pure function scientific(number) result(text)
+      real(dp), intent(in) :: number
+      character(:), allocatable :: text
+      character(16) :: buffer
+
+      write (buffer, '(es12.5)') number
+      text = trim(adjustl(buffer))
+   end function scientific
+
+   pure character(1) function flag(holds)
+      logical, intent(in) :: holds
+
+      flag = merge('1', '0', holds)
+   end function flag
+
+   !> A text between double quotes, those inside it doubled.
+   pure function quoted(words) result(field)
+      character(*), intent(in) :: words
+      character(:), allocatable :: field
+      integer :: i
+
+      field = ''
+      if (len(words) == 0) return
+      do i = 1, len(words)
+         field = field//words(i:i)
+         if (words(i:i) == '"') field = field//'"'
+      end do
+      field = '"'//field//'"'
+   end function quoted
+
+end module trade_file

@@ -1,0 +1,249 @@
+!> Rows are run in processes of their own, as often as their times ask for.
+module trade_measurement
+   use clock, only: wall_seconds
+   use command_line, only: command_type
+   use errors, only: error_type, set_error, status_deck, status_internal, status_interrupted
+   use interruption, only: caught_signal
+   use kinds, only: dp
+   use processes, only: collect_process, describe_end, kill_process, pause_briefly, &
+      process_end_type, start_process
+   use progress, only: progress_type
+   use row_task, only: row_task_type
+   use system_calls, only: remove_file
+   use text, only: to_text
+   use trade_rows, only: trade_row_type, trade_type
+   implicit none
+   private
+   public :: measurement_type, median
+
+   !> Runs of a row by the CPU seconds of its first: times of a moment scatter most.
+   real(dp), parameter :: moments(3) = [0.1_dp, 1.0_dp, 5.0_dp]   !! [s]
+   integer, parameter :: runs_within(4) = [7, 5, 3, 1]             !! up to each, and beyond
+   real(dp), parameter :: patience = 5.0_dp       !! a row may take so many times the limit
+   real(dp), parameter :: least_patience = 20.0_dp !! and this [s]
+
+   !> A run of a row that is under way.
+   type :: slot_type
+      integer :: row = 0            !! the row, 0 where the slot is free
+      integer :: process = 0        !! its process
+      real(dp) :: since = 0.0_dp    !! when it began [s]
+      logical :: is_late = .false.  !! whether it was ended for taking too long
+   end type slot_type
+
+   !> What all runs have in common.
+   type :: measurement_type
+      type(row_task_type) :: task              !! deck, options, instants and nodes
+      type(progress_type) :: progress          !! progress line
+      character(:), allocatable :: scratch     !! path that temporary files begin with
+      real(dp) :: limit = 0.0_dp               !! CPU seconds that a row should take at most [s]
+      integer :: jobs = 1                      !! rows that run at a time
+   contains
+      procedure :: run
+   end type measurement_type
+
+contains
+
+   !> Runs some rows of a trade. A row that fails keeps its reason.
+   !> Errors: status_interrupted after a signal; status_internal where no process can be started.
+   subroutine run(self, trade, first, last, error)
+      class(measurement_type), intent(inout) :: self      !! what the runs have in common
+      type(trade_type), intent(inout) :: trade            !! the trade
+      integer, intent(in) :: first                        !! first row to be run
+      integer, intent(in) :: last                         !! last row to be run
+      type(error_type), allocatable, intent(out) :: error !! see above
+      type(slot_type) :: slots(self%jobs)
+      integer :: queue((last - first + 1)*maxval(runs_within))
+      integer :: queued, next, s, i
+
+      queued = last - first + 1
+      queue(:queued) = [(i, i=first, last)]
+      next = 1
+      do while (next <= queued .or. any(slots%row > 0))
+         do s = 1, size(slots)
+            if (slots(s)%row > 0 .or. next > queued) cycle
+            call begin(self, trade, queue(next), s, slots(s), error)
+            if (allocated(error)) exit
+            next = next + 1
+         end do
+         if (.not. allocated(error)) call wait_for_one(self, trade, slots, queue, queued)
+         if (caught_signal() /= '') call set_error_once(error)
+         if (allocated(error)) exit
+      end do
+      do s = 1, size(slots)
+         if (slots(s)%row > 0) call kill_process(slots(s)%process)
+         call remove_file(messages_path(self, s))
+         call remove_file(values_path(self, s))
+      end do
+      call self%progress%clear()
+      do i = first, last
+         if (.not. allocated(trade%rows(i)%cpu)) cycle
+         trade%rows(i)%cpu_seconds = median(trade%rows(i)%cpu)
+      end do
+   end subroutine run
+
+   subroutine set_error_once(error)
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (.not. allocated(error)) call set_error(error, status_interrupted, 'ended by '// &
+         caught_signal())
+   end subroutine set_error_once
+
+   !> Begins a run of a row.
+   subroutine begin(self, trade, row, place, slot, error)
+      class(measurement_type), intent(inout) :: self
+      type(trade_type), intent(in) :: trade
+      integer, intent(in) :: row, place
+      type(slot_type), intent(out) :: slot
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: line
+
+      self%task%variation = trade%rows(row)%variation
+      self%task%values_path = values_path(self, place)
+      line = 'row '//to_text(row)//' of level '//to_text(trade%rows(row)%level)
+      if (allocated(trade%rows(row)%cpu)) line = line//', run '// &
+         to_text(size(trade%rows(row)%cpu) + 1)
+      call self%progress%say(line)
+      call start_process(self%task, messages_path(self, place), slot%process, error)
+      if (allocated(error)) return
+      slot%row = row
+      slot%since = wall_seconds()
+   end subroutine begin
+
+   !> Waits until a run has ended, or a signal has come.
+   subroutine wait_for_one(self, trade, slots, queue, queued)
+      class(measurement_type), intent(in) :: self
+      type(trade_type), intent(inout) :: trade
+      type(slot_type), intent(inout) :: slots(:)
+      integer, intent(inout) :: queue(:), queued
+      type(process_end_type) :: ended
+      logical :: has_ended
+      integer :: s
+
+      has_ended = .false.
+      do while (.not. has_ended .and. caught_signal() == '')
+         call collect_process(has_ended, ended)
+         if (has_ended) exit
+         do s = 1, size(slots)
+            if (slots(s)%row == 0) cycle
+            if (wall_seconds() - slots(s)%since < max(patience*self%limit, least_patience)) cycle
+            call kill_process(slots(s)%process)
+            slots(s)%is_late = .true.
+            ended = process_end_type(process=slots(s)%process)
+            has_ended = .true.
+            exit
+         end do
+         if (.not. has_ended) call pause_briefly()
+      end do
+      if (.not. has_ended) return
+      s = findloc(slots%process == ended%process .and. slots%row > 0, .true., dim=1)
+      if (s == 0) return
+      call take(self, trade%rows(slots(s)%row), slots(s), s, ended, queue, queued)
+      slots(s) = slot_type()
+   end subroutine wait_for_one
+
+   !> Takes what a run left; after the first one its repetitions are queued.
+   subroutine take(self, row, slot, place, ended, queue, queued)
+      class(measurement_type), intent(in) :: self
+      type(trade_row_type), intent(inout) :: row
+      type(slot_type), intent(in) :: slot
+      integer, intent(in) :: place
+      type(process_end_type), intent(in) :: ended
+      integer, intent(inout) :: queue(:), queued
+      integer :: again
+
+      row%peak_bytes = max(row%peak_bytes, ended%peak_bytes)
+      if (allocated(row%cpu)) then
+         if (ended%signal == 0 .and. .not. slot%is_late) row%cpu = [row%cpu, ended%cpu_seconds]
+         return
+      end if
+      row%cpu = [ended%cpu_seconds]
+      call take_outcome(self, row, slot, place, ended)
+      if (row%status /= 0) return
+      again = runs_within(count(ended%cpu_seconds > moments) + 1) - 1
+      queue(queued + 1:queued + again) = slot%row
+      queued = queued + again
+   end subroutine take
+
+   subroutine take_outcome(self, row, slot, place, ended)
+      class(measurement_type), intent(in) :: self
+      type(trade_row_type), intent(inout) :: row
+      type(slot_type), intent(in) :: slot
+      integer, intent(in) :: place
+      type(process_end_type), intent(in) :: ended
+      type(error_type), allocatable :: error
+
+      if (slot%is_late) then
+         row%status = status_internal
+         row%reason = 'took longer than '//to_text(max(patience*self%limit, least_patience))//' s'
+      else if (ended%signal /= 0) then
+         row%status = status_internal
+         row%reason = describe_end(ended)
+      else
+         call row%values%load(values_path(self, place), row%status, row%reason, error)
+         if (.not. allocated(error)) return
+         row%status = max(ended%status, status_deck)
+         row%reason = line_with(': error: ', messages_path(self, place))
+         if (len(row%reason) > 0) return
+         row%status = status_internal
+         row%reason = 'ended with status '//to_text(ended%status)//': '// &
+            line_with('', messages_path(self, place))
+      end if
+   end subroutine take_outcome
+
+   !> What stands behind a mark in the first line that a child printed with it.
+   function line_with(mark, path) result(words)
+      character(*), intent(in) :: mark, path
+      character(:), allocatable :: words
+      character(500) :: line
+      integer :: unit, io, at
+
+      words = ''
+      open (newunit=unit, file=path, action='read', status='old', iostat=io)
+      if (io /= 0) return
+      do
+         read (unit, '(a)', iostat=io) line
+         if (io /= 0) exit
+         at = index(line, mark)
+         if (at == 0 .or. len_trim(line) == 0) cycle
+         words = trim(line(at + len(mark):))
+         exit
+      end do
+      close (unit)
+   end function line_with
+
+   pure function messages_path(self, place) result(path)
+      class(measurement_type), intent(in) :: self
+      integer, intent(in) :: place
+      character(:), allocatable :: path
+
+      path = self%scratch//'.'//to_text(place)//'.messages.tmp'
+   end function messages_path
+
+   pure function values_path(self, place) result(path)
+      class(measurement_type), intent(in) :: self
+      integer, intent(in) :: place
+      character(:), allocatable :: path
+
+      path = self%scratch//'.'//to_text(place)//'.values.tmp'
+   end function values_path
+
+   !> The median of some numbers.
+   pure real(dp) function median(numbers)
+      real(dp), intent(in) :: numbers(:)   !! at least one
+      real(dp) :: sorted(size(numbers)), number
+      integer :: i, k, n
+
+      n = size(numbers)
+      sorted = numbers
+      do i = 2, n
+         number = sorted(i)
+         do k = i - 1, 1, -1
+            if (sorted(k) <= number) exit
+            sorted(k + 1) = sorted(k)
+         end do
+         sorted(k + 1) = number
+      end do
+      median = 0.5_dp*(sorted((n + 1)/2) + sorted(n/2 + 1))
+   end function median
+
+end module trade_measurement

@@ -1,0 +1,191 @@
+!> Which rows a trade has: the grid over mesh, increments and elements, level by level, and one
+!> thing at a time around the deck as it is written.
+module trade_plan
+   use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
+      method_names, solver_mumps, solver_skyline, thermal_scheme_type
+   use element_kinds, only: quad8, quad8_reduced, triangle6
+   use kinds, only: dp
+   use model, only: model_type
+   use steps, only: analysis_coupled, solves_heat
+   use text, only: to_text
+   use trade_rows, only: trade_row_type, trade_type
+   use variations, only: varied_increment
+   implicit none
+   private
+   public :: make_room, add_level, add_singles, find_row
+   public :: factors, longest_factor, most_levels
+
+   !> Factors on the increments of the deck, each half the one before.
+   real(dp), parameter :: factors(5) = [4.0_dp, 2.0_dp, 1.0_dp, 0.5_dp, 0.25_dp]
+   real(dp), parameter :: longest_factor = 4.0_dp   !! the first of them
+   integer, parameter :: most_levels = 3            !! refinements beyond those of the deck
+   real(dp), parameter :: tolerances(4) = [1.0e-3_dp, 1.0e-5_dp, 1.0e-8_dp, 1.0e-11_dp]
+   integer, parameter :: most_singles = 16          !! rows that vary one thing
+   type(thermal_scheme_type), parameter :: schemes(4) = [implicit_scheme, galerkin_scheme, &
+      crank_nicolson_scheme, explicit_scheme]
+
+contains
+
+   !> Makes room for all rows that there can be.
+   pure subroutine make_room(model, trade)
+      type(model_type), intent(in) :: model        !! the model on the deck's mesh
+      type(trade_type), intent(inout) :: trade     !! receives the room
+
+      allocate (trade%rows(2*size(factors)*(model%written_levels + most_levels + 1) + most_singles))
+      allocate (trade%left_out(0))
+   end subroutine make_room
+
+   !> Adds the rows of the grid on one level: elements by increments. What has no effect on the deck
+   !> is not varied.
+   pure subroutine add_level(model, level, trade)
+      type(model_type), intent(in) :: model       !! the model on the deck's mesh
+      integer, intent(in) :: level                !! refinements of that mesh
+      type(trade_type), intent(inout) :: trade    !! receives the rows
+      type(trade_row_type) :: row
+      integer :: order, f
+
+      do order = 1, merge(2, 1, is_quadratic(model))
+         do f = 1, size(factors)
+            if (.not. is_new(model, f)) cycle
+            row = trade_row_type()
+            row%order = order
+            row%level = level
+            row%variation%order = order
+            row%variation%levels = level
+            row%variation%increments = factors(f)
+            row%varied = ''
+            row%reason = ''
+            row%is_default = order == default_order(model) .and. level == model%written_levels &
+               .and. abs(factors(f) - 1.0_dp) <= 0.0_dp
+            call add(trade, row)
+         end do
+      end do
+   end subroutine add_level
+
+   !> Adds the rows that vary one thing, each where the deck has a use for it.
+   pure subroutine add_singles(model, trade)
+      type(model_type), intent(in) :: model        !! the model on the deck's mesh
+      type(trade_type), intent(inout) :: trade     !! receives the rows
+      integer :: i
+
+      associate (fixed_point => model%steps(first_coupled(model))%fixed_point, &
+         scheme => model%steps(first_heat(model))%scheme)
+         do i = 1, size(tolerances)
+            if (.not. is_coupled(model)) exit
+            if (abs(tolerances(i)/fixed_point%tolerance - 1.0_dp) < 0.5_dp) cycle
+            call add_single(model, trade, 'TOL='//to_text(tolerances(i)), tolerance=tolerances(i))
+         end do
+         do i = 1, size(schemes)
+            if (.not. any(solves_heat(model%steps%analysis))) exit
+            if (schemes(i)%name == scheme%name) cycle
+            call add_single(model, trade, trim(schemes(i)%name), scheme=schemes(i))
+         end do
+         do i = 1, size(method_names)
+            if (.not. is_coupled(model)) exit
+            if (i == fixed_point%method) cycle
+            call add_single(model, trade, trim(method_names(i)), method=i)
+         end do
+      end associate
+      if (model%solver == solver_skyline) then
+         call add_single(model, trade, 'MUMPS', solver=solver_mumps)
+      else
+         call add_single(model, trade, 'SKYLINE', solver=solver_skyline)
+      end if
+   end subroutine add_singles
+
+   pure subroutine add_single(model, trade, varied, tolerance, scheme, method, solver)
+      type(model_type), intent(in) :: model
+      type(trade_type), intent(inout) :: trade
+      character(*), intent(in) :: varied
+      real(dp), intent(in), optional :: tolerance
+      type(thermal_scheme_type), intent(in), optional :: scheme
+      integer, intent(in), optional :: method, solver
+      type(trade_row_type) :: row
+
+      row%order = default_order(model)
+      row%level = model%written_levels
+      row%variation%order = row%order
+      row%variation%levels = row%level
+      row%is_grid = .false.
+      row%varied = varied
+      row%reason = ''
+      if (present(tolerance)) row%variation%tolerance = tolerance
+      if (present(scheme)) row%variation%scheme = scheme
+      if (present(method)) row%variation%method = method
+      if (present(solver)) row%variation%solver = solver
+      call add(trade, row)
+   end subroutine add_single
+
+   pure subroutine add(trade, row)
+      type(trade_type), intent(inout) :: trade
+      type(trade_row_type), intent(in) :: row
+
+      trade%count = trade%count + 1
+      trade%rows(trade%count) = row
+   end subroutine add
+
+   !> Index of the row of the grid with these elements, mesh and increments; 0 for none.
+   pure integer function find_row(trade, order, level, factor)
+      type(trade_type), intent(in) :: trade   !! the trade
+      integer, intent(in) :: order            !! order of the elements
+      integer, intent(in) :: level            !! refinements
+      real(dp), intent(in) :: factor          !! factor on the increments
+
+      do find_row = trade%count, 1, -1
+         associate (row => trade%rows(find_row))
+            if (row%is_grid .and. row%order == order .and. row%level == level .and. &
+               abs(row%variation%increments - factor) <= 0.0_dp) return
+         end associate
+      end do
+   end function find_row
+
+   !> Whether a factor gives other increments than the one half of it.
+   pure logical function is_new(model, f)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: f
+
+      is_new = f == size(factors)
+      if (is_new) return
+      associate (first => model%steps%first_increment, period => model%steps%period)
+         is_new = any(varied_increment(first, period, factors(f)) > &
+            1.001_dp*varied_increment(first, period, factors(f + 1)))
+      end associate
+   end function is_new
+
+   pure logical function is_quadratic(model)
+      type(model_type), intent(in) :: model
+      integer :: e
+
+      is_quadratic = .false.
+      do e = 1, size(model%mesh%element_kind)
+         is_quadratic = is_quadratic .or. &
+            any(model%mesh%element_kind(e) == [quad8, quad8_reduced, triangle6])
+      end do
+   end function is_quadratic
+
+   !> Order of the elements as the deck is written.
+   pure integer function default_order(model)
+      type(model_type), intent(in) :: model
+
+      default_order = min(model%written_order, merge(2, 1, is_quadratic(model)))
+   end function default_order
+
+   pure logical function is_coupled(model)
+      type(model_type), intent(in) :: model
+
+      is_coupled = size(model%contacts) > 0 .and. any(model%steps%analysis == analysis_coupled)
+   end function is_coupled
+
+   pure integer function first_coupled(model)
+      type(model_type), intent(in) :: model
+
+      first_coupled = max(findloc(model%steps%analysis == analysis_coupled, .true., dim=1), 1)
+   end function first_coupled
+
+   pure integer function first_heat(model)
+      type(model_type), intent(in) :: model
+
+      first_heat = max(findloc(solves_heat(model%steps%analysis), .true., dim=1), 1)
+   end function first_heat
+
+end module trade_plan

@@ -1,0 +1,161 @@
+!> What rows of a trade are compared by: figures of every contact pair and temperatures, at instants
+!> that all rows meet.
+module trade_quantities
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use contact_pairs, only: contact_pairs_type
+   use errors, only: error_type, set_error, status_internal
+   use kinds, only: dp
+   use records, only: contact_record_type, increment_record_type, status_open
+   implicit none
+   private
+   public :: row_values_type, is_there
+   public :: quantity_count, figure_count, quantity_names, quantity_heads
+   public :: normal_force, heat_rate, peak_pressure, edge_contact, edge_stick, temperature, absent
+
+   integer, parameter :: quantity_count = 6   !! quantities that rows are judged by
+   integer, parameter :: figure_count = 5     !! of them, those that are one number a contact pair
+   integer, parameter :: normal_force = 1     !! sum of the nodal contact forces
+   integer, parameter :: heat_rate = 2        !! through the contact; without contact into the model
+   integer, parameter :: peak_pressure = 3    !! largest pressure at a node
+   integer, parameter :: edge_contact = 4     !! outer edge of the contact zone
+   integer, parameter :: edge_stick = 5       !! outer edge of the stick zone
+   integer, parameter :: temperature = 6      !! of the nodes, the worst of them
+   character(13), parameter :: quantity_names(quantity_count) = [character(13) :: &
+      'normal_force', 'heat_rate', 'peak_pressure', 'edge_contact', 'edge_stick', 'temperature'] !!
+   character(7), parameter :: quantity_heads(quantity_count) = [character(7) :: 'force', 'heat', &
+      'peak', 'contact', 'stick', 'temp.']   !! heads of the columns of the table
+
+   real(dp), parameter :: absent = -1.0e300_dp   !! in place of what there is none of
+
+   !> What a row found.
+   type :: row_values_type
+      integer :: increments = 0                        !! increments that were accepted
+      integer :: passes = 0                            !! passes of the fixed point in all of them
+      !> (figure_count, contact pairs or 1 without, instants); absent where there is none
+      real(dp), allocatable :: figures(:, :, :)
+      real(dp), allocatable :: length(:, :)            !! (pairs, instants) closed length [length]
+      real(dp), allocatable :: temperatures(:, :)      !! (nodes, instants), 0 nodes without heat
+   contains
+      procedure :: prepare
+      procedure :: sample
+      procedure :: save => save_values
+      procedure :: load => load_values
+   end type row_values_type
+
+contains
+
+   !> Whether there is a value.
+   elemental logical function is_there(value)
+      real(dp), intent(in) :: value   !! a value, or absent
+
+      is_there = value > 0.5_dp*absent
+   end function is_there
+
+   !> Makes room; nothing is there yet.
+   pure subroutine prepare(self, interfaces, nodes, instants)
+      class(row_values_type), intent(inout) :: self   !! the values
+      integer, intent(in) :: interfaces               !! number of contact pairs of surfaces
+      integer, intent(in) :: nodes                    !! nodes whose temperature is compared
+      integer, intent(in) :: instants                 !! instants at which rows are compared
+
+      allocate (self%figures(figure_count, max(interfaces, 1), instants), source=absent)
+      allocate (self%length(max(interfaces, 1), instants), source=0.0_dp)
+      allocate (self%temperatures(nodes, instants), source=absent)
+   end subroutine prepare
+
+   !> Takes what there is at an instant.
+   subroutine sample(self, record, pairs, nodes, instant)
+      class(row_values_type), intent(inout) :: self         !! the values
+      type(increment_record_type), intent(in) :: record     !! the increment that ends there
+      type(contact_pairs_type), intent(in) :: pairs(:)      !! pairs of every interface
+      integer, intent(in) :: nodes(:)                       !! (nodes) indexes
+      integer, intent(in) :: instant                        !! which instant
+      integer :: i
+
+      self%temperatures(:, instant) = record%fields%temperature(nodes)
+      if (size(pairs) == 0) self%figures(heat_rate, 1, instant) = finite(record%heat_in)
+      do i = 1, size(pairs)
+         call figures_of(record%contacts(i), pairs(i)%arc_length, self%figures(:, i, instant), &
+            self%length(i, instant))
+      end do
+   end subroutine sample
+
+   subroutine figures_of(contact, s, figures, length)
+      type(contact_record_type), intent(in) :: contact
+      real(dp), intent(in) :: s(:)
+      real(dp), intent(out) :: figures(:), length
+      integer :: k
+
+      figures(normal_force) = finite(contact%normal_force)
+      figures(heat_rate) = finite(contact%heat_rate)
+      figures(peak_pressure) = finite(maxval(contact%pressure))
+      figures(edge_contact) = finite(contact%edge_contact)
+      figures(edge_stick) = finite(contact%edge_stick)
+      length = 0.0_dp
+      do k = 1, size(s)
+         if (contact%status(k) == status_open) cycle
+         length = length + 0.5_dp*(s(min(k + 1, size(s))) - s(max(k - 1, 1)))
+      end do
+   end subroutine figures_of
+
+   !> A number, or absent in place of none.
+   elemental real(dp) function finite(number)
+      real(dp), intent(in) :: number
+
+      finite = absent
+      if (ieee_is_finite(number)) finite = number
+   end function finite
+
+   !> Writes the values with how the row ended into a file, which a parent process reads.
+   subroutine save_values(self, path, status, reason)
+      class(row_values_type), intent(in) :: self   !! the values
+      character(*), intent(in) :: path             !! the file
+      integer, intent(in) :: status                !! one of the status_* constants
+      character(*), intent(in) :: reason           !! why it ended so; empty for none
+      integer :: unit, io
+
+      open (newunit=unit, file=path, access='stream', form='unformatted', status='replace', &
+         action='write', iostat=io)
+      if (io /= 0) return
+      write (unit, iostat=io) status, len(reason), reason, self%increments, self%passes, &
+         allocated(self%figures)
+      if (io == 0 .and. allocated(self%figures)) write (unit, iostat=io) shape(self%figures), &
+         size(self%temperatures, 1), self%figures, self%length, self%temperatures
+      if (io == 0) then
+         close (unit)
+      else
+         close (unit, status='delete')
+      end if
+   end subroutine save_values
+
+   !> Reads what save_values wrote, and removes the file.
+   !> Error: status_internal, when there is no whole file.
+   subroutine load_values(self, path, status, reason, error)
+      class(row_values_type), intent(inout) :: self          !! the values
+      character(*), intent(in) :: path                       !! the file
+      integer, intent(out) :: status                         !! how the row ended
+      character(:), allocatable, intent(out) :: reason       !! why; empty for none
+      type(error_type), allocatable, intent(out) :: error    !! see above
+      integer :: unit, io, n(4)
+      logical :: has_figures
+
+      status = status_internal
+      open (newunit=unit, file=path, access='stream', form='unformatted', status='old', iostat=io)
+      if (io == 0) then
+         read (unit, iostat=io) status, n(1)
+         if (io == 0) then
+            allocate (character(n(1)) :: reason)
+            read (unit, iostat=io) reason
+         end if
+         if (io == 0) read (unit, iostat=io) self%increments, self%passes, has_figures
+         if (io == 0 .and. has_figures) then
+            read (unit, iostat=io) n
+            if (io == 0) call self%prepare(n(2), n(4), n(3))
+            if (io == 0) read (unit, iostat=io) self%figures, self%length, self%temperatures
+         end if
+         close (unit, status='delete')
+      end if
+      if (io /= 0) call set_error(error, status_internal, 'a row left no values')
+   end subroutine load_values
+
+end module trade_quantities

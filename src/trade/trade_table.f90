@@ -1,0 +1,178 @@
+!> The table of a trade as a person reads it.
+module trade_table
+   use kinds, only: dp
+   use text, only: to_text
+   use trade_quantities, only: is_there, quantity_count, quantity_heads
+   use trade_rows, only: trade_row_type, trade_type, wish_count, wishes
+   implicit none
+   private
+   public :: print_trade, elements_of, factor_text
+
+   real(dp), parameter :: megabyte = 1.0e6_dp    !! [byte]
+
+contains
+
+   !> Prints the table, what was left out, and the rows that are recommended.
+   subroutine print_trade(unit, name, trade)
+      integer, intent(in) :: unit               !! where to
+      character(*), intent(in) :: name          !! the deck
+      type(trade_type), intent(in) :: trade     !! the trade
+      integer :: i, q
+
+      write (unit, '(3a)') name, ': speed against accuracy; errors in %, those of the reference', &
+         ' included'
+      write (unit, '(/, a)', advance='no') &
+         ' row  mesh      incr.   steps  varied           CPU s      MB'
+      do q = 1, quantity_count
+         write (unit, '(a9)', advance='no') trim(quantity_heads(q))
+      end do
+      write (unit, '(a)') '    worst'
+      do i = 1, trade%count
+         call print_row(unit, i, trade%rows(i))
+      end do
+      write (unit, '(a, t62)', advance='no') '      reference uncertain by'
+      do q = 1, quantity_count
+         write (unit, '(a9)', advance='no') percent(trade%uncertainty(q))
+      end do
+      write (unit, '(/, /, a)') '* no row is both cheaper and better (worst error); = the deck'// &
+         ' as it is written'
+      call print_instants(unit, trade)
+      do i = 1, size(trade%left_out)
+         write (unit, '(2a)') 'left out by --limit or memory: ', trade%left_out(i)%value
+      end do
+      write (unit, '(a)') ''
+      do i = 1, wish_count
+         call print_wish(unit, trade, i)
+      end do
+   end subroutine print_trade
+
+   subroutine print_row(unit, number, row)
+      integer, intent(in) :: unit, number
+      type(trade_row_type), intent(in) :: row
+      integer :: q
+
+      write (unit, '(i4, 2a, 2x, a8, 2x, a6)', advance='no') number, &
+         merge('*', ' ', row%is_optimal), merge('=', ' ', row%is_default), &
+         elements_of(row)//' x '//to_text(2**row%level), factor_text(row%variation%increments)
+      if (row%status == 0) then
+         write (unit, '(i7)', advance='no') row%values%increments
+      else
+         write (unit, '(a7)', advance='no') '-'
+      end if
+      write (unit, '(2x, a14, f9.3, f8.1)', advance='no') shown(row%varied), row%cpu_seconds, &
+         row%peak_bytes/megabyte
+      if (row%status /= 0) then
+         write (unit, '(4a)') '  failed (', to_text(row%status), '): ', row%reason
+         return
+      end if
+      do q = 1, quantity_count
+         write (unit, '(a9)', advance='no') percent(row%errors(q))
+      end do
+      write (unit, '(a9)') percent(row%worst)
+   end subroutine print_row
+
+   pure function shown(words) result(field)
+      character(*), intent(in) :: words
+      character(14) :: field
+
+      field = words
+   end function shown
+
+   subroutine print_instants(unit, trade)
+      integer, intent(in) :: unit
+      type(trade_type), intent(in) :: trade
+      character(:), allocatable :: times
+      integer :: i
+
+      times = ''
+      do i = 1, size(trade%instants)
+         times = times//' '//to_text(trade%instants(i))
+      end do
+      write (unit, '(2a)') 'compared at the times', times
+   end subroutine print_instants
+
+   subroutine print_wish(unit, trade, wish)
+      integer, intent(in) :: unit, wish
+      type(trade_type), intent(in) :: trade
+      integer :: i
+
+      associate (rows => trade%rows(:trade%count), remark => trade%remarks(wish)%value)
+         i = findloc(rows%is_recommended(wish), .true., dim=1)
+         write (unit, '(3a)', advance='no') 'for ', to_text(100.0_dp*wishes(wish)), ' %: '
+         if (i == 0) then
+            write (unit, '(2a)') 'no row; ', remark
+            return
+         end if
+         write (unit, '(a, i0, 8a)') 'row ', i, ' (', elements_of(rows(i)), ' x ', &
+            to_text(2**rows(i)%level), ', increments ', &
+            trim(factor_text(rows(i)%variation%increments))//comma(rows(i)%varied)//'), ', &
+            seconds_text(rows(i)%cpu_seconds), ' s of CPU'
+         if (len(remark) > 0) write (unit, '(7x, 2a)') 'but not for ', remark
+      end associate
+   end subroutine print_wish
+
+   pure function seconds_text(seconds) result(text)
+      real(dp), intent(in) :: seconds
+      character(:), allocatable :: text
+      character(12) :: buffer
+
+      write (buffer, '(f12.3)') seconds
+      text = trim(adjustl(buffer))
+   end function seconds_text
+
+   pure function comma(words) result(text)
+      character(*), intent(in) :: words
+      character(:), allocatable :: text
+
+      text = ''
+      if (len(words) > 0) text = ', '//words
+   end function comma
+
+   !> Elements of a row by their order.
+   pure function elements_of(row) result(name)
+      type(trade_row_type), intent(in) :: row   !! the row
+      character(2) :: name                      !! Q8 or Q4
+
+      name = merge('Q8', 'Q4', row%order == 2)
+   end function elements_of
+
+   !> A factor on the increments as one writes it.
+   pure function factor_text(factor) result(text)
+      real(dp), intent(in) :: factor    !! a power of two
+      character(6) :: text              !! such as x 1/4
+
+      if (factor < 1.0_dp) then
+         text = 'x 1/'//to_text(nint(1.0_dp/factor))
+      else
+         text = 'x '//to_text(nint(factor))
+      end if
+   end function factor_text
+
+   !> An error in percent with two digits, or - for none.
+   pure function percent(error) result(text)
+      real(dp), intent(in) :: error
+      character(:), allocatable :: text
+      character(16) :: buffer
+
+      text = '-'
+      if (.not. is_there(error)) return
+      associate (hundreds => 100.0_dp*error)
+         if (hundreds >= 1000.0_dp) then
+            text = '> 1000'
+            return
+         else if (hundreds >= 9.95_dp) then
+            write (buffer, '(i0)') nint(hundreds)
+         else if (hundreds >= 0.995_dp) then
+            write (buffer, '(f0.1)') hundreds
+         else if (hundreds >= 0.0995_dp) then
+            write (buffer, '(f4.2)') hundreds
+         else if (hundreds >= 0.00995_dp) then
+            write (buffer, '(f5.3)') hundreds
+         else
+            write (buffer, '(1p, e8.1)') hundreds
+         end if
+      end associate
+      text = trim(adjustl(buffer))
+   end function percent
+
+end module trade_table
