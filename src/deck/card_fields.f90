@@ -49,8 +49,8 @@ contains
       last_text = verify(line, blanks, back=.true.)
    end function last_text
 
-   !> Splits a line at its commas. Quotes stay in the fields; a comma inside quotes, but for those of
-   !> FORMAT=, and a quote without its end are errors.
+   !> Splits a line at its commas. Quotes stay in the fields; a comma inside quotes, but for those
+   !> of FORMAT=, and a quote without its end are errors.
    subroutine split_fields(line, image, report, fields)
       character(*), intent(in) :: line                            !! card image
       integer, intent(in) :: image                                !! its running number

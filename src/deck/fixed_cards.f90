@@ -56,8 +56,9 @@ contains
             n = count(kinds == edit_whole .or. kinds == edit_real)
             if (card%name == 'NODE') then
                self%due = n
-               if (.not. reads_node(pack(kinds, kinds == edit_whole .or. kinds == edit_real))) &
+               if (.not. reads_node(pack(kinds, kinds == edit_whole .or. kinds == edit_real))) then
                   fault = 'FORMAT= of *NODE reads a whole number, I, and x, y and perhaps z, F'
+               end if
             else
                self%due = element_fields
                if (self%due == 0) self%due = n
@@ -117,7 +118,7 @@ contains
    !> can be used.
    subroutine release(self, fields)
       class(fixed_cards_type), intent(inout) :: self               !! the format
-      type(field_type), allocatable, intent(out) :: fields(:)      !! the fields; unallocated for none
+      type(field_type), allocatable, intent(out) :: fields(:)  !! the fields; unallocated for none
 
       if (self%sound) call move_alloc(self%fields, fields)
       if (allocated(self%fields)) deallocate(self%fields)

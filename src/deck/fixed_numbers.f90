@@ -89,8 +89,9 @@ contains
       signed = number
       mark = scan(number, 'EeDd')
       if (mark == 0 .or. mark + 1 >= len(number)) return
-      if (number(mark + 1:mark + 1) == ' ' .and. scan(number(mark + 2:mark + 2), digits) == 1) &
+      if (number(mark + 1:mark + 1) == ' ' .and. scan(number(mark + 2:mark + 2), digits) == 1) then
          signed(mark + 1:mark + 1) = '+'
+      end if
    end function with_signed_exponent
 
 end module fixed_numbers
