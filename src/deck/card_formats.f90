@@ -78,7 +78,7 @@ contains
       type(edit_type), intent(inout) :: edits(:)
       integer, intent(inout) :: n, again, position
       character(:), allocatable, intent(inout) :: fault
-      integer :: repeats, start, i
+      integer :: repeats, start
 
       do
          call skip_separators(string, position)
@@ -115,7 +115,7 @@ contains
       character(:), allocatable, intent(inout) :: fault
       character :: letter
       type(edit_type) :: edit
-      integer :: times
+      integer :: times, exponent_digits
 
       letter = character_at(string, position)
       times = repeats
@@ -131,8 +131,7 @@ contains
          call take_decimals(string, position, edit%decimals)
          if (letter /= 'F' .and. character_at(string, position) == 'E') then
             position = position + 1
-            call take_number(string, 0, position, times)
-            times = repeats
+            call take_number(string, 0, position, exponent_digits)
          end if
       case ('X')
          edit = edit_type(edit_skip, repeats, 0)
