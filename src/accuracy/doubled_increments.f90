@@ -78,6 +78,7 @@ contains
       self%has_doubled = self%has_doubled .or. time - self%time > 1.5_dp*accepted%increment_size
       doubled = model%steps(number)
       doubled%start = start_type()
+      doubled%fixed_point%finds_gain = .false.
       doubled%fixed_point%tolerance = max(tolerance, &
          doubled%fixed_point%tolerance)
       next = self%state

@@ -71,6 +71,7 @@ contains
       estimate_step = step
       estimate_step%scheme = implicit_scheme
       estimate_step%start = start_type()
+      estimate_step%fixed_point%finds_gain = .false.
       estimate_step%fixed_point%tolerance = max(tolerance, step%fixed_point%tolerance)
       fields%coarse = next
       if (solves_heat(step%analysis)) then
