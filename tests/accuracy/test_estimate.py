@@ -56,38 +56,52 @@ CASES = (Case("cylinder", CYLINDER, "FACE", True),
          Case("press fit", INPUT / "examples" / "press_fit.inp", "SEAT"))
 
 
-def run_case(case, level, parts, folder, estimate=True):
-    """Return the rows of /errors at the end of a run, by quantity."""
+def solve_case(case, level, parts, folder, estimates):
+    """Return the result file of a run."""
     text = case.deck.read_text()
     text = re.sub(r"^\*REFINE.*\n", "", text, flags=re.M)
     text = text.split("*VERIFY")[0]
     text = re.sub(r"INC=\d+", "INC=10000", text)
     text = ANALYSIS.sub(lambda found: f"{found[1]}{float(found[2]) / parts!r}", text)
     cards = f"*REFINE, LEVELS={level}\n" + ("*SOLVER, TYPE=MUMPS\n" if level > 2 else "")
+    cards += f"*OPTIONS, ERRORS={'YES' if estimates else 'NO'}\n"
     text = re.sub(r"^\*STEP", cards + "*STEP", text, count=1, flags=re.M | re.I)
     text = re.sub(r"^(\*(?:NODE|EL|CONTACT) FILE)", r"\1, FREQUENCY=0", text, flags=re.M | re.I)
     for mesh in case.deck.parent.glob("*.mesh"):
         (folder / mesh.name).write_text(mesh.read_text())
     deck = folder / f"{case.name.replace(' ', '_')}_{level}_{parts}.inp"
     deck.write_text(text)
-    result = solve(deck, seconds=900)
-    with h5py.File(result) as file:
+    return solve(deck, seconds=900)
+
+
+def run_case(case, level, parts, folder):
+    """Return the rows of /errors at the end of a run, by quantity."""
+    with h5py.File(solve_case(case, level, parts, folder, True)) as file:
         return {name: data[-1] for name, data in file[f"errors/{case.face}"].items()}
+
+
+def values_of(case, level, parts, folder):
+    """Return the quantities at the end of a run that estimates nothing."""
+    with h5py.File(solve_case(case, level, parts, folder, False)) as file:
+        face = file[f"contact/{case.face}"]
+        found = {name: face[name][-1] for name in ("normal_force", *EDGES)}
+        found["heat_rate"] = face["heat_rate"][-1] if "heat_rate" in face else 0.0
+        return found | {"peak_pressure": face["pressure"][-1].max()}
 
 
 def limits(case, folder):
     """Return the converged values of the quantities: over the mesh, and with what smaller increments
     change on the second mesh."""
-    runs = [run_case(case, level, 1, folder) for level in (2, 3, 4)]
-    fine = run_case(case, 1, FINEST_PARTS, folder) if case.has_path else None
-    coarse = run_case(case, 1, 1, folder)
+    runs = [values_of(case, level, 1, folder) for level in (2, 3, 4)]
+    fine = values_of(case, 1, FINEST_PARTS, folder) if case.has_path else None
+    coarse = values_of(case, 1, 1, folder)
     found = {}
     for name in (*QUANTITIES, *EDGES):
-        values = [run[name][0] for run in runs]
+        values = [run[name] for run in runs]
         last, before = values[2] - values[1], values[1] - values[0]
         ratio = last / before if before else 0.0
         left = last * ratio / (1.0 - ratio) if 0.0 < ratio < MOST and name in QUANTITIES else 0.0
-        path = fine[name][0] - coarse[name][0] if fine and name in QUANTITIES else 0.0
+        path = fine[name] - coarse[name] if fine and name in QUANTITIES else 0.0
         found[name] = values[2] + left + path
     return found
 
