@@ -10,6 +10,7 @@ module batch_ends
    public :: take_end
 
    character(*), parameter :: mark = ': error: '   !! before what went wrong, in a message
+   character(*), parameter :: ran_out = 'memory ran out'
    !> What the run-time library and the solvers' libraries say where there is no memory left.
    character(*), parameter :: signs_of_memory(4) = [character(24) :: 'Error allocating', &
       'Cannot allocate memory', 'Memory allocation', 'emory allocation failed']
@@ -37,6 +38,7 @@ contains
          outcome%seconds = account%seconds
          outcome%reason = ''
          if (outcome%status /= 0) outcome%reason = first_error(printed)
+         if (index(outcome%reason, ran_out) == 1) outcome%ending = 'out of memory'
          return
       end if
       call explain(ended, printed, is_killed, outcome)
@@ -56,11 +58,11 @@ contains
       if (is_killed) then
          outcome%status = status_interrupted
          outcome%ending = 'interrupted'
-         outcome%reason = outcome%reason//' because a second signal came'
+         outcome%reason = 'killed because a second signal came'
       else if (says_out_of_memory(printed)) then
          outcome%ending = 'out of memory'
-         if (ended%signal == 0) outcome%reason = 'memory ran out'
-         if (ended%signal /= 0) outcome%reason = 'memory ran out; '//outcome%reason
+         if (ended%signal == 0) outcome%reason = ran_out
+         if (ended%signal /= 0) outcome%reason = ran_out//'; '//outcome%reason
       else if (ended%signal == 0) then
          outcome%reason = 'its process ended with status '//to_text(ended%status)// &
             ' before the deck did'

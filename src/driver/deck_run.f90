@@ -1,6 +1,7 @@
 !> One deck to its results.
 module deck_run
    use, intrinsic :: iso_fortran_env, only: error_unit
+   use blas_memory, only: reserve_blas_memory
    use cards, only: cards_type
    use clock, only: wall_seconds
    use command_line, only: command_type
@@ -45,6 +46,11 @@ contains
          path(index(path, '/', back=.true.) + 1:) == table_name) then
          write (error_unit, '(2a)') path, ': error: a deck cannot have the name of a result file'
          outcome%status = status_deck
+         return
+      end if
+      call reserve_blas_memory(error)
+      if (allocated(error)) then
+         call report_failure(path, error, outcome)
          return
       end if
       call prepare_deck(path, command, cards, model, simulation, outcome%status)
