@@ -75,8 +75,9 @@ contains
          call collect(self)
          call pass_on_signals(self)
          call show_progress(self)
-         if (wall_seconds() - self%written > table_pause .and. self%ended > self%in_file) &
+         if (wall_seconds() - self%written > table_pause .and. self%ended > self%in_file) then
             call write_table(self, error)
+         end if
       end do
       call self%progress%clear()
       call leave_out_the_rest(self)
@@ -217,8 +218,9 @@ contains
          if (outcome%status /= 0) self%failed = self%failed + 1
          call self%progress%clear()
          if (len(printed) > 0) write (error_unit, '(a)') printed
-         if (.not. self%command%quiet .and. outcome%status /= status_deck) &
+         if (.not. self%command%quiet .and. outcome%status /= status_deck) then
             call outcome%print(self%command%folder//'/'//base_name(outcome%path))
+         end if
          flush (output_unit)
          slot%deck = 0
       end associate

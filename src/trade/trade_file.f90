@@ -67,9 +67,9 @@ contains
       line = to_text(number)//','//flag(row%is_default)//','//elements_of(row)//','// &
          to_text(row%level)//','//to_text(row%variation%increments)//','//row%varied//','// &
          to_text(row%status)//','//quoted(row%reason)//','//to_text(row%values%increments)//','// &
-         to_text(row%values%passes)//','//to_text(size(row%cpu))//','//scientific(row%cpu_seconds)// &
-         ','//scientific(row%peak_bytes/1.0e6_dp)//errors_text(row%errors)//','// &
-         number_or_empty(row%worst)//','//flag(row%is_optimal)
+         to_text(row%values%passes)//','//to_text(size(row%cpu))//','// &
+         scientific(row%cpu_seconds)//','//scientific(row%peak_bytes/1.0e6_dp)// &
+         errors_text(row%errors)//','//number_or_empty(row%worst)//','//flag(row%is_optimal)
       do i = 1, wish_count
          line = line//','
          if (.not. row%is_recommended(i)) cycle
