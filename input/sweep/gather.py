@@ -29,7 +29,7 @@ def failure(log):
     reasons = re.findall(r": error: (.*)", text)
     if status:
         return OUTCOMES.get(status[-1], f"exit status {status[-1]}"), reasons[0] if reasons else ""
-    return ("broken off", "") if log.exists() else ("not run", "")
+    return "no result", ""
 
 
 def gather(settings):
