@@ -147,7 +147,8 @@ def test_a_crash_is_named_and_takes_no_other_deck_along(tmp_path, single, long):
     assert "crash: SIGSEGV" in output
     with h5py.File(tmp_path / "long.vtkhdf") as file:
         written = len(file["history/time"])
-    assert 10 < len(lines_of(tmp_path / "long.sta")) <= written <= int(row["increments"])
+    # The signal may come between an increment's file and its count.
+    assert 10 < len(lines_of(tmp_path / "long.sta")) <= written <= int(row["increments"]) + 1
 
 
 def test_memory_that_runs_out_takes_no_other_deck_along(tmp_path, single):
