@@ -9,7 +9,8 @@ program=$build/release/thercon
 
 build_packages=(gfortran cmake ninja-build libopenblas-serial-dev libmumps-seq-dev libmetis-dev
    libhdf5-dev python3 python3-venv)
-test_packages=(valgrind)
+test_packages=(valgrind calculix-ccx)
+bench_packages=(calculix-ccx)
 requirements=("$root/post/requirements.txt" "$root/tests/requirements.txt")
 sweep_requirements=("$root/input/sweep/requirements.txt")
 
@@ -21,7 +22,7 @@ usage: ./setup.sh COMMAND
    test        install what is missing, build, check the sources, run every test
    build       install what is missing, build build/release/thercon
    lint        check the sources: fortitude, findent, shellcheck; with --fix mend what can be mended
-   bench       run the benchmarks
+   bench       run thercon and CalculiX at equal error again, against the figures on record
 
 What is installed: Debian packages with apt-get, as root or with sudo; without either, the command
 that is needed is printed. Python packages live in build/venv, those of Snakemake
@@ -225,6 +226,16 @@ run_test() {
    return "$status"
 }
 
+# Half an hour, most of it CalculiX.
+run_bench() {
+   run_build
+   install_packages "${bench_packages[@]}"
+   say "runs on record, again"
+   mkdir -p "$build/bench"
+   THERCON=$program "$venv/bin/python" "$root/tests/bench/bench.py" "$build/bench"
+   say "what came out is in build/bench/runs.csv, what was on record in tests/bench/runs.csv"
+}
+
 command=${1-}
 (($# == 0)) || shift
 case $command in
@@ -236,7 +247,7 @@ case $command in
    test) run_test ;;
    build) run_build ;;
    lint) run_lint "$@" ;;
-   bench) fail "the benchmarks are not built yet" ;;
+   bench) run_bench ;;
    help | --help | -h) usage ;;
    *)
       usage >&2

@@ -1,8 +1,10 @@
 !> Edges of the contact and stick zones, sharpened below the nodal spacing.
 !>
 !> Edge of contact, between a closed and an open pair: near it p goes like sqrt(a - s) and the gap
-!> like (s - a)^(3/2), so that p^2 from inside and gap^(2/3) from outside go linearly to zero; the
-!> edge is the mean of both zeros, each kept between the two pairs.
+!> like (s - a)^(3/2), so that p^2 from inside and gap^(2/3) from outside go to zero smoothly. The
+!> pairs next to the edge err most, pressures more than gaps: the edge is the zero of a parabola
+!> through gap^(2/3) of the second to fourth open pair, kept between the two pairs. Where there are
+!> not so many, it is the mean of the zeros of straight lines through the two pairs on each side.
 !>
 !> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
 !> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
@@ -62,6 +64,26 @@ contains
       real(dp), intent(in) :: s(:), pressure(:), gap(:)
       integer, intent(in) :: status(:), k
       real(dp) :: edge
+      real(dp) :: g(3)
+
+      if (k + 4 <= size(s)) then
+         g = max(gap(k + 2:k + 4), 0.0_dp)**(2.0_dp/3.0_dp)
+         if (all(status(k + 2:k + 4) == status_open) .and. g(1) < g(2) .and. g(2) < g(3)) then
+            edge = s(k + 2)*g(2)*g(3)/((g(2) - g(1))*(g(3) - g(1))) - &
+               s(k + 3)*g(1)*g(3)/((g(2) - g(1))*(g(3) - g(2))) + &
+               s(k + 4)*g(1)*g(2)/((g(3) - g(1))*(g(3) - g(2)))
+            edge = min(max(edge, s(k)), s(k + 1))
+            return
+         end if
+      end if
+      edge = end_of_lines(s, status, pressure, gap, k)
+   end function contact_end
+
+   !> The same by straight lines through at most two pairs on each side.
+   pure function end_of_lines(s, status, pressure, gap, k) result(edge)
+      real(dp), intent(in) :: s(:), pressure(:), gap(:)
+      integer, intent(in) :: status(:), k
+      real(dp) :: edge
       real(dp) :: before, here, inside, outside
       logical :: has_inside, has_outside
 
@@ -89,7 +111,7 @@ contains
       if (has_inside .and. has_outside) edge = 0.5_dp*(inside + outside)
       if (has_inside .and. .not. has_outside) edge = inside
       if (has_outside .and. .not. has_inside) edge = outside
-   end function contact_end
+   end function end_of_lines
 
    !> Edges of the stick zones, ascending, padded with NaN, and the outer edge of the widest zone.
    pure subroutine stick_edges(s, weight, status, pressure, shear, gap, friction, edges, outer)

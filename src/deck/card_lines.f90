@@ -2,11 +2,14 @@
 module card_lines
    use card_fields, only: append_fields, drop_empty_end, first_text, is_blank, is_comment, &
       is_keyword, last_text, split_fields, without_quotes
-   use cards, only: add_data, add_keyword, cards_type, field_type, keyword_card_type
+   use card_parameters, only: parameter_text
+   use cards, only: add_data, add_keyword, cards_type, extend_data, field_type, keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use keyword_cards, only: make_keyword_card
+   use element_types, only: element_type_fields
+   use fixed_cards, only: fixed_cards_type
+   use keyword_cards, only: is_parameter, make_keyword_card
    use keywords, only: built, known_keywords
    use text, only: read_integer, to_text
    implicit none
@@ -14,7 +17,7 @@ module card_lines
    public :: card_lines_type, default_width
 
    integer, parameter :: default_width = 80   !! columns of a card
-   integer, parameter :: element_fields = 9   !! an *ELEMENT data card of eight nodes is complete
+   integer, parameter :: most_fields = 9   !! an *ELEMENT data card of eight nodes is complete
 
    !> What is open while lines are read.
    type :: card_lines_type
@@ -26,6 +29,9 @@ module card_lines
       logical, private :: pending_keyword = .false.         !! that card is a keyword card
       character(:), allocatable, private :: keyword         !! keyword to which data cards belong
       logical, private :: skips_data = .false.              !! its data cards are of no use
+      character(:), allocatable, private :: refusal_of_data !! error at its first data card
+      integer, private :: element_fields = 0                !! of a complete *ELEMENT data card
+      type(fixed_cards_type), private :: fixed              !! data cards in fixed columns
    contains
       procedure :: take_line
       procedure :: finish
@@ -41,6 +47,7 @@ contains
       type(cards_type), intent(inout) :: cards             !! receives the card that it completes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
+      logical :: continues
 
       if (is_blank(line)) return
       if (is_comment(line)) return
@@ -48,17 +55,25 @@ contains
          call self%finish(cards, report)
          call split_fields(line, image, report, fields)
          call take_fields(self, fields, .true., image, cards, report)
-      else if (allocated(self%pending)) then
-         call split_fields(line, image, report, fields)
-         call append_fields(self%pending, fields)
-         call move_alloc(self%pending, fields)
-         call take_fields(self, fields, self%pending_keyword, image, cards, report)
-      else
-         call take_data_line(self, line, image, cards, report)
+         return
       end if
+      if (allocated(self%pending)) then
+         call split_fields(line, image, report, fields)
+         continues = .not. self%pending_keyword
+         if (.not. continues) continues = is_parameter(self%pending(1)%text, fields(1)%text)
+         if (.not. continues) then
+            call self%finish(cards, report)
+         else
+            call append_fields(self%pending, fields)
+            call move_alloc(self%pending, fields)
+            call take_fields(self, fields, self%pending_keyword, image, cards, report)
+            return
+         end if
+      end if
+      call take_data_line(self, line, image, cards, report)
    end subroutine take_line
 
-   !> Ends a card that waits for its continuation.
+   !> Ends a card that waits for its continuation, which a keyword card need not have.
    subroutine finish(self, cards, report)
       class(card_lines_type), intent(inout) :: self        !! what is open
       type(cards_type), intent(inout) :: cards             !! receives the card
@@ -66,15 +81,22 @@ contains
       type(field_type), allocatable :: fields(:)
       type(place_type) :: place
 
+      if (self%fixed%is_open()) then
+         call self%fixed%release(fields)
+         if (allocated(fields)) then
+            if (size(fields) > 0) call take_data(self, fields, fields(size(fields))%place%image, &
+               cards, report)
+         end if
+      end if
       if (.not. allocated(self%pending)) return
       call move_alloc(self%pending, fields)
       place = fields(size(fields))%place
-      call report%error(place_type(place%image, place%column - 1), &
-         'the card ends in a comma, but nothing continues it')
       call drop_empty_end(fields)
       if (self%pending_keyword) then
          call take_keyword(self, fields, cards, report)
       else
+         call report%error(place_type(place%image, place%column - 1), &
+            'the card ends in a comma, but nothing continues it')
          call take_data(self, fields, place%image, cards, report)
       end if
    end subroutine finish
@@ -90,7 +112,7 @@ contains
       logical :: continues
 
       continues = size(fields) > 1 .and. len(fields(size(fields))%text) == 0
-      if (.not. keyword) continues = continues .and. size(fields) <= element_fields
+      if (.not. keyword) continues = continues .and. size(fields) <= most_fields
       if (continues) then
          self%pending_keyword = keyword
          call move_alloc(fields, self%pending)
@@ -110,6 +132,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(keyword_card_type) :: card
       integer :: i
+      logical :: valid
 
       do i = 2, size(fields)
          call self%parameters%substitute(fields(i), report)
@@ -120,9 +143,16 @@ contains
          return
       end if
       if (card%name == 'OPTIONS') call take_width(self, card, report)
+      if (card%name == 'ELEMENT') self%element_fields = &
+         element_type_fields(parameter_text(card, 'TYPE'))
       self%keyword = card%name
+      if (allocated(self%refusal_of_data)) deallocate(self%refusal_of_data)
+      if (allocated(card%refusal_of_data)) self%refusal_of_data = card%refusal_of_data
       self%skips_data = card%known == 0
       if (card%known > 0) self%skips_data = known_keywords(card%known)%status /= built
+      call self%fixed%begin(card, self%element_fields, report, valid)
+      self%skips_data = self%skips_data .or. .not. valid
+      card%data_lost = .not. valid
       call add_keyword(cards, card)
    end subroutine take_keyword
 
@@ -174,6 +204,10 @@ contains
          self%keyword = ''
          self%skips_data = .true.
       end if
+      if (allocated(self%refusal_of_data)) then
+         call report%error(place_type(image, first_text(line)), self%refusal_of_data)
+         deallocate(self%refusal_of_data)
+      end if
       if (self%skips_data) return
       if (self%keyword == 'HEADING') then
          allocate(fields(1))
@@ -182,13 +216,58 @@ contains
          call add_data(cards, fields, place_type(image, last_text(line) + 1))
          return
       end if
+      if (self%fixed%is_open()) then
+         call take_fixed(self, line, image, cards, report)
+         return
+      end if
       call split_fields(line, image, report, fields)
       if (self%keyword == 'ELEMENT') then
+         if (completes_element(self, fields, cards)) then
+            call extend_data(cards, fields)
+            return
+         end if
          call take_fields(self, fields, .false., image, cards, report)
       else
          call take_data(self, fields, image, cards, report)
       end if
    end subroutine take_data_line
+
+   !> One line in fixed columns.
+   subroutine take_fixed(self, line, image, cards, report)
+      type(card_lines_type), intent(inout) :: self
+      character(*), intent(in) :: line
+      integer, intent(in) :: image
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      type(field_type), allocatable :: fields(:)
+      logical :: complete
+
+      call self%fixed%take(line, image, report, complete)
+      if (.not. complete) return
+      call self%fixed%release(fields)
+      if (allocated(fields)) then
+         call take_data(self, fields, image, cards, report)
+      else
+         cards%keywords(cards%keyword_count)%data_lost = .true.
+      end if
+   end subroutine take_fixed
+
+   !> Whether a line has just the nodes that the element before it lacks: in CalculiX a card may go
+   !> on without a comma at its end.
+   pure logical function completes_element(self, fields, cards)
+      type(card_lines_type), intent(in) :: self
+      type(field_type), intent(in) :: fields(:)
+      type(cards_type), intent(in) :: cards
+      integer :: before, i
+
+      completes_element = .false.
+      associate (card => cards%keywords(cards%keyword_count))
+         if (card%last_data < card%first_data) return
+         before = size(cards%data(card%last_data)%fields)
+      end associate
+      completes_element = before < self%element_fields .and. &
+         before + count([(len(fields(i)%text) > 0, i=1, size(fields))]) == self%element_fields
+   end function completes_element
 
    !> A complete data card.
    subroutine take_data(self, fields, image, cards, report)

@@ -1,6 +1,6 @@
 !> Vectors on data cards: three components, or a magnitude and a direction in the plane.
 module card_vectors
-   use card_values, only: field_place, need_field
+   use card_values, only: field_place, need_field, take_field
    use cards, only: data_card_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
@@ -27,7 +27,7 @@ contains
       end do
    end subroutine need_vector
 
-   !> Reads a magnitude and the three components of a direction, of which z must be 0.
+   !> Reads a magnitude and the components of a direction, of which z may be left out and must be 0.
    subroutine need_plane_vector(data, first, report, vector, valid)
       type(data_card_type), intent(in) :: data             !! the card
       integer, intent(in) :: first                         !! position of the magnitude
@@ -35,10 +35,16 @@ contains
       real(dp), intent(out) :: vector(2)                   !! x and y, zero after an error
       logical, intent(inout) :: valid                      !! becomes false after an error
       real(dp) :: magnitude, direction(3)
+      integer :: i
 
       vector = 0.0_dp
+      direction = 0.0_dp
       call need_field(data, first, 'magnitude', report, magnitude, valid)
-      call need_vector(data, first + 1, 'direction', report, direction, valid)
+      do i = 1, 2
+         if (valid) call need_field(data, first + i, 'direction '//'xy'(i:i), report, &
+            direction(i), valid)
+      end do
+      if (valid) call take_field(data, first + 3, 'direction z', report, direction(3), valid)
       if (.not. valid) return
       if (abs(direction(3)) > 0.0_dp) then
          call report%error(field_place(data, first + 3), &

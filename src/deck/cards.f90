@@ -5,7 +5,7 @@ module cards
    implicit none
    private
    public :: cards_type, keyword_card_type, data_card_type, parameter_type, field_type
-   public :: add_keyword, add_data, add_note, trim_cards
+   public :: add_keyword, add_data, extend_data, add_note, trim_cards
 
    !> One field of a card.
    type :: field_type
@@ -26,10 +26,12 @@ module cards
       character(:), allocatable :: name                    !! as in the table; empty when unknown
       character(:), allocatable :: meant                   !! what an unknown one is close to
       integer :: known = 0                                 !! index into known_keywords, or 0
+      character(:), allocatable :: refusal_of_data         !! the error if data cards follow
       type(place_type) :: place                            !! where it begins
       type(parameter_type), allocatable :: parameters(:)   !! those that are known
       integer :: first_data = 1                            !! its data cards: index into cards%data
       integer :: last_data = 0                             !! the last of them
+      logical :: data_lost = .false.   !! whether data cards were left out after an error in them
    end type keyword_card_type
 
    !> One data card, continuations included.
@@ -83,6 +85,28 @@ contains
       cards%keywords(cards%keyword_count)%last_data = cards%data_count
    end subroutine add_data
 
+   !> Adds fields to the last data card.
+   subroutine extend_data(cards, fields)
+      type(cards_type), intent(inout) :: cards       !! the cards
+      type(field_type), intent(in) :: fields(:)      !! what is added; empty ones are left out
+      type(field_type), allocatable :: all(:)
+      integer :: i, n
+
+      associate (card => cards%data(cards%data_count))
+         n = size(card%fields)
+         allocate(all(n + count([(len(fields(i)%text) > 0, i=1, size(fields))])))
+         do i = 1, n
+            all(i) = card%fields(i)
+         end do
+         do i = 1, size(fields)
+            if (len(fields(i)%text) == 0) cycle
+            n = n + 1
+            all(n) = fields(i)
+         end do
+         call move_alloc(all, card%fields)
+      end associate
+   end subroutine extend_data
+
    !> Adds a note for the listing.
    subroutine add_note(notes, line)
       type(string_type), allocatable, intent(inout) :: notes(:)   !! the notes
@@ -119,9 +143,11 @@ contains
          call move_alloc(list(i)%meant, other(i)%meant)
          call move_alloc(list(i)%parameters, other(i)%parameters)
          other(i)%known = list(i)%known
+         call move_alloc(list(i)%refusal_of_data, other(i)%refusal_of_data)
          other(i)%place = list(i)%place
          other(i)%first_data = list(i)%first_data
          other(i)%last_data = list(i)%last_data
+         other(i)%data_lost = list(i)%data_lost
       end do
       call move_alloc(other, list)
    end subroutine resize_keywords

@@ -1,16 +1,17 @@
 !> Data cards of *DLOAD, *DFLUX and *FILM: element or set, label, values.
 module deck_builder_element_loads
-   use card_vectors, only: need_plane_vector, need_vector
-   use card_values, only: check_extra, field_place, need_field
+   use card_values, only: check_extra, field_place, field_text, need_field
    use cards, only: data_card_type
-   use deck_context, only: deck_context_type, read_target
+   use deck_builder_mass_loads, only: build_gravity, build_rotation
+   use deck_context, only: deck_context_type, find_set, read_target
    use deck_report, only: deck_report_type
    use element_kinds, only: element_corner_count
    use kinds, only: dp
    use load_requests, only: request_type
+   use mesh, only: mesh_type, surface_type
    use model, only: model_type
-   use steps, only: load_body_force, load_body_heat, load_centrifugal, load_face_heat, &
-      load_film_coefficient, load_film_sink, load_gravity, load_pressure
+   use steps, only: load_body_force, load_body_heat, load_face_heat, load_film_coefficient, &
+      load_film_sink, load_pressure
    use text, only: append, nearest_known, string_type, to_text, to_upper
    implicit none
    private
@@ -28,15 +29,16 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives the requests
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: label, labels
+      integer :: surface
       logical :: valid
 
       valid = .true.
-      call read_target(data, 1, 'element', context%element_index, model%mesh%element_sets, report, &
-         request%item, request%set, valid)
+      surface = named_surface(data, model%mesh)
+      if (surface == 0) call read_target(data, 1, 'element', context%element_index, &
+         model%mesh%element_sets, report, request%item, request%set, valid)
       call need_field(data, 2, 'label of the load', report, label, valid)
       if (len(label) == 0) return
       label = to_upper(label)
-      request%component = 1
       select case (keyword)
       case ('DLOAD')
          labels = 'P1/P2/P3/P4/BX/BY/GRAV/CENTRIF'
@@ -45,14 +47,75 @@ contains
       case default
          labels = 'F1/F2/F3/F4'
       end select
-      if (index('/'//labels//'/', '/'//label//'/') == 0) then
+      if (surface > 0) then
+         if (label(1:1) == labels(1:1) .and. len(label) <= 2) then
+            call build_on_faces(labels(1:2), model%mesh%surfaces(surface), data, request, &
+               film_amplitude, context, report)
+         else
+            call report_label(keyword, label, labels(1:1), data, report)
+         end if
+         return
+      else if (index('/'//labels//'/', '/'//label//'/') == 0) then
          call report_label(keyword, label, labels, data, report)
          return
       end if
+      request%component = 1
       if (scan(label(2:), '1234') == 1) then
          request%component = index('1234', label(2:2))
          call check_face(data, request, model, context, report, valid)
       end if
+      call build_values(label, data, request, film_amplitude, context, report, valid)
+   end subroutine build_element_load
+
+   !> Index of the surface that a card names in place of an element or a set; else 0.
+   integer function named_surface(data, mesh)
+      type(data_card_type), intent(in) :: data
+      type(mesh_type), intent(in) :: mesh
+      character(:), allocatable :: name
+      integer :: set
+
+      name = to_upper(field_text(data, 1))
+      do named_surface = size(mesh%surfaces), 1, -1
+         if (mesh%surfaces(named_surface)%name == name .and. len(name) > 0) exit
+      end do
+      set = find_set(mesh%element_sets, name)
+      if (set == 0) return
+      if (.not. mesh%element_sets(set)%of_lines) named_surface = 0
+   end function named_surface
+
+   !> A load on the faces of a surface, as in CalculiX: a number in the label does not count.
+   subroutine build_on_faces(label, surface, data, request, film_amplitude, context, report)
+      character(*), intent(in) :: label
+      type(surface_type), intent(in) :: surface
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request
+      integer, intent(in) :: film_amplitude
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      integer :: i, errors
+      logical :: valid
+
+      errors = report%error_count()
+      request%set = 0
+      do i = 1, size(surface%faces, 2)
+         request%item = surface%faces(1, i)
+         request%component = surface%faces(2, i)
+         valid = .true.
+         call build_values(label, data, request, film_amplitude, context, report, valid)
+         if (report%error_count() > errors) exit
+      end do
+   end subroutine build_on_faces
+
+   !> The values behind a label.
+   subroutine build_values(label, data, request, film_amplitude, context, report, valid)
+      character(*), intent(in) :: label
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request
+      integer, intent(in) :: film_amplitude
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+
       select case (label)
       case ('GRAV')
          call build_gravity(data, request, context, report, valid)
@@ -63,7 +126,7 @@ contains
       case default
          call build_simple_load(label, data, request, context, report, valid)
       end select
-   end subroutine build_element_load
+   end subroutine build_values
 
    !> Reports a label that a keyword does not know.
    subroutine report_label(keyword, label, labels, data, report)
@@ -141,57 +204,6 @@ contains
       call check_extra(data, 3, 'element or set, '//label//', '//what, report)
       if (valid) call context%loads%add(request)
    end subroutine build_simple_load
-
-   !> Magnitude and direction; along x and along y the gravity is a load of its own.
-   subroutine build_gravity(data, request, context, report, valid)
-      type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      logical, intent(inout) :: valid
-      real(dp) :: vector(2)
-      integer :: i
-
-      call need_plane_vector(data, 3, report, vector, valid)
-      call check_extra(data, 6, 'element or set, GRAV, magnitude, direction x, y, z', report)
-      if (.not. valid) return
-      request%kind = load_gravity
-      do i = 1, 2
-         if (abs(vector(i)) <= 0.0_dp) cycle
-         request%component = i
-         request%value = vector(i)
-         call context%loads%add(request)
-      end do
-   end subroutine build_gravity
-
-   !> Speed squared, a point and the direction of the axis, which must be the y axis.
-   subroutine build_rotation(data, request, context, report, valid)
-      type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      logical, intent(inout) :: valid
-      real(dp) :: point(3), direction(3)
-
-      call need_field(data, 3, 'speed squared', report, request%value, valid)
-      call need_vector(data, 4, 'point of the axis', report, point, valid)
-      call need_vector(data, 7, 'direction of the axis', report, direction, valid)
-      call check_extra(data, 9, &
-         'element or set, CENTRIF, speed squared, point x, y, z, direction x, y, z', report)
-      if (.not. valid) return
-      if (request%value < 0.0_dp) then
-         call report%error(field_place(data, 3), 'the square of a speed is not negative')
-      else if (norm2(point([1, 3])) > 0.0_dp) then
-         call report%error(field_place(data, 4), 'the axis must be the y axis: x and z are 0 on it')
-      else if (norm2(direction) <= 0.0_dp) then
-         call report%error(field_place(data, 7), 'the direction is zero')
-      else if (norm2(direction([1, 3])) > 0.0_dp) then
-         call report%error(field_place(data, 7), 'the axis must be the y axis')
-      else
-         request%kind = load_centrifugal
-         call context%loads%add(request)
-      end if
-   end subroutine build_rotation
 
    !> Sink temperature and film coefficient, each with its amplitude.
    subroutine build_film(data, request, film_amplitude, context, report, valid)

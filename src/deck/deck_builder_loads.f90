@@ -96,7 +96,8 @@ contains
          case ('BOUNDARY')
             step%ends_boundaries = .true.
          case ('CLOAD')
-            ends(load_force) = .true.
+            ! In CalculiX it ends all that acts on nodes, while that of *CFLUX ends heat alone.
+            ends([load_force, load_nodal_heat]) = .true.
          case ('DLOAD')
             ends([load_pressure, load_traction, load_body_force, load_gravity, &
                load_centrifugal]) = .true.

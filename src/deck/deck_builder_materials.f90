@@ -1,6 +1,6 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY.
 module deck_builder_materials
-   use card_parameters, only: choose, need_parameter, parameter_place
+   use card_parameters, only: need_parameter, parameter_place
    use cards, only: cards_type, keyword_card_type
    use deck_builder_elasticity, only: build_elasticity
    use deck_context, only: deck_context_type
@@ -9,7 +9,7 @@ module deck_builder_materials
    use kinds, only: dp
    use materials, only: material_type
    use model, only: model_type
-   use property_constants, only: read_constants, refuse_not_positive
+   use property_constants, only: choose_symmetry, read_constants, refuse_not_positive
    implicit none
    private
    public :: build_materials, find_material
@@ -103,7 +103,7 @@ contains
       logical :: valid
 
       kind = 'ISO'
-      call choose(card, 'TYPE', 'ISO/ORTHO', report, kind)
+      call choose_symmetry(card, 'ISO/ORTHO', report, kind)
       material%has_expansion = .true.
       if (kind == 'ORTHO') then
          call read_constants(cards, card, names, context, report, material%expansion, valid)
@@ -129,7 +129,7 @@ contains
       logical :: valid
 
       kind = 'ISO'
-      call choose(card, 'TYPE', 'ISO/ORTHO', report, kind)
+      call choose_symmetry(card, 'ISO/ORTHO', report, kind)
       material%has_conductivity = .true.
       if (kind == 'ORTHO') then
          n = min(max(size(cards%data(card%first_data)%fields), 2), 3)

@@ -3,17 +3,20 @@ module deck_builder_mesh
    use card_parameters, only: need_parameter, parameter_place
    use card_values, only: check_extra, field_place, has_field, need_field, take_field
    use cards, only: cards_type, data_card_type
+   use deck_builder_lines, only: element_card_count, is_line_card
    use deck_context, only: deck_context_type, plane_by_element
    use deck_report, only: deck_report_type
    use element_kinds, only: element_corner_count, element_node_count, plane_strain, quad8
    use element_types, only: take_element_type
    use kinds, only: dp
-   use mesh, only: mesh_type, nodes_per_element
+   use mesh, only: extent_of, mesh_type, nodes_per_element
    use sorting, only: repeated
    use text, only: to_text
    implicit none
    private
    public :: build_nodes, build_elements, data_card_count
+
+   real(dp), parameter :: height_rounding = 1.0e-9_dp   !! of z, by the extent of the model
 
 contains
 
@@ -37,11 +40,12 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives the numbers
       type(mesh_type), intent(inout) :: mesh               !! receives the nodes
       type(deck_report_type), intent(inout) :: report      !! receives errors
+      real(dp), allocatable :: heights(:)
       integer, allocatable :: card(:)
       integer :: k, j, n
 
       n = data_card_count(cards, 'NODE')
-      allocate(mesh%node_number(n), mesh%coordinates(2, n), card(n))
+      allocate(mesh%node_number(n), mesh%coordinates(2, n), card(n), heights(n))
       n = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= 'NODE') cycle
@@ -49,37 +53,62 @@ contains
             n = n + 1
             card(n) = j
             call build_node(cards%data(j), context, report, mesh%node_number(n), &
-               mesh%coordinates(:, n))
+               mesh%coordinates(:, n), heights(n))
          end do
       end do
+      call check_heights(cards, card, heights, mesh%coordinates, report)
       call check_repeated('node', cards, card, mesh%node_number, report)
       call context%node_index%build(mesh%node_number)
    end subroutine build_nodes
 
-   subroutine build_node(data, context, report, number, coordinates)
+   !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what stands behind z
+   !> is the direction of a normal in Abaqus.
+   subroutine build_node(data, context, report, number, coordinates, z)
       type(data_card_type), intent(in) :: data
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: number
       real(dp), intent(out) :: coordinates(2)
-      real(dp) :: z
+      real(dp), intent(out) :: z
+      character(*), parameter :: names = 'xy'
+      integer :: i
       logical :: valid
 
       valid = .true.
       coordinates = 0.0_dp
       z = 0.0_dp
       call read_number(data, 'node number', report, number)
-      call need_field(data, 2, 'x', report, coordinates(1), valid)
-      call need_field(data, 3, 'y', report, coordinates(2), valid)
+      do i = 1, 2
+         call take_field(data, i + 1, names(i:i), report, coordinates(i), valid)
+         if (.not. has_field(data, i + 1)) call report%warning(field_place(data, i + 1), &
+            'node '//to_text(number)//' has no '//names(i:i)//': 0 is taken')
+      end do
       call take_field(data, 4, 'z', report, z, valid)
-      call check_extra(data, 4, 'number, x, y', report)
-      if (.not. has_field(data, 4)) return
-      if (abs(z) > 0.0_dp) then
-         call report%error(field_place(data, 4), 'models are two-dimensional: z must be 0')
-      else
+      if (has_field(data, 4)) then
          call context%note('*NODE: third coordinates of 0 are read and not needed')
       end if
+      call check_extra(data, 7, 'number, x, y', report)
+      if (size(data%fields) > 4) call context%note('*NODE: what stands behind the third '// &
+         'coordinate is read and not needed')
    end subroutine build_node
+
+   !> All nodes lie in the plane z = 0, but for rounding.
+   subroutine check_heights(cards, card, heights, coordinates, report)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: card(:)
+      real(dp), intent(in) :: heights(:), coordinates(:, :)
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: rounding
+      integer :: i
+
+      if (size(heights) == 0) return
+      rounding = height_rounding*extent_of(coordinates)
+      do i = 1, size(heights)
+         if (abs(heights(i)) <= rounding) cycle
+         call report%error(field_place(cards%data(card(i)), 4), &
+            'models are two-dimensional: z must be 0')
+      end do
+   end subroutine check_heights
 
    !> The number of a node or element, from 1; 0 after an error.
    subroutine read_number(data, what, report, number)
@@ -123,7 +152,7 @@ contains
       integer, allocatable :: card(:)
       integer :: k, j, kind, n, plane
 
-      n = data_card_count(cards, 'ELEMENT')
+      n = element_card_count(cards, of_lines=.false.)
       allocate(mesh%element_number(n), mesh%element_section(n), card(n))
       allocate(mesh%element_nodes(nodes_per_element, n), source=0)
       allocate(mesh%element_kind(n), source=quad8)
@@ -133,7 +162,7 @@ contains
       mesh%element_section = 0
       n = 0
       do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'ELEMENT') cycle
+         if (cards%keywords(k)%name /= 'ELEMENT' .or. is_line_card(cards%keywords(k))) cycle
          call need_parameter(cards%keywords(k), 'TYPE', report, name)
          message = ''
          if (len(name) > 0) call take_element_type(name, kind, plane, message)
@@ -152,9 +181,31 @@ contains
                mesh%element_nodes(:element_node_count(kind), n), context%element_valid(n))
          end do
       end do
-      call check_repeated('element', cards, card, mesh%element_number, report)
       call context%element_index%build(mesh%element_number)
+      call check_element_numbers(cards, card, context, mesh, report)
    end subroutine build_elements
+
+   !> Elements and lines have different numbers.
+   subroutine check_element_numbers(cards, card, context, mesh, report)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: card(:)
+      type(deck_context_type), intent(inout) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer :: line_cards(size(context%line_number)), k, j, n
+
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (.not. is_line_card(cards%keywords(k))) cycle
+         do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
+            n = n + 1
+            line_cards(n) = j
+         end do
+      end do
+      call check_repeated('element', cards, [card, line_cards], &
+         [mesh%element_number, context%line_number], report)
+      call context%member_index%build([mesh%element_number, context%line_number])
+   end subroutine check_element_numbers
 
    subroutine read_element_nodes(data, kind, context, report, nodes, valid)
       type(data_card_type), intent(in) :: data

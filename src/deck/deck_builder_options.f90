@@ -42,7 +42,7 @@ contains
                call build_solver(card, model, report)
             case ('REFINE')
                call build_levels(card, context, report)
-            case ('CONTROLS', 'SPECIFIC HEAT')
+            case ('CONTROLS', 'SPECIFIC HEAT', 'RESTART')
                call context%note('*'//card%name//' is read and not needed')
             case default
                cycle
@@ -56,14 +56,17 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(model_type), intent(inout) :: model
       type(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: plane
+      character(:), allocatable :: errors, plane
 
       plane = ''
+      errors = 'YES'
       call choose(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', report, plane)
       if (plane == 'STRAIN') context%plane = plane_strain
       if (plane == 'STRESS') context%plane = plane_stress
       if (plane == 'AXISYMMETRIC') context%plane = axisymmetric
       if (has_parameter(card, 'ORDER')) call build_order(card, context, report)
+      call choose(card, 'ERRORS', 'YES/NO', report, errors)
+      if (has_parameter(card, 'ERRORS')) model%estimates_errors = errors == 'YES'
       if (has_parameter(card, 'UNITS')) call build_units(card, model, report)
       if (.not. has_parameter(card, 'LOAD')) return
       context%load_set = to_upper(parameter_text(card, 'LOAD'))

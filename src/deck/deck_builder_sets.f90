@@ -3,9 +3,11 @@ module deck_builder_sets
    use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
    use card_values, only: check_extra, field_place, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_context, only: read_target
+   use deck_builder_lines, only: is_line_card
+   use deck_builder_set_nodes, only: find_nodes
+   use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
-   use mesh, only: set_type
+   use mesh, only: mesh_type, set_type
    use sorting, only: number_index_type, unique_sorted
    use text, only: read_integer, to_text, to_upper
    implicit none
@@ -21,31 +23,37 @@ module deck_builder_sets
 
 contains
 
-   !> Takes all sets of nodes or of elements; a name that stands on several cards is one set.
-   subroutine build_sets(noun, cards, numbers, report, sets)
+   !> Takes all sets of nodes or of elements, lines among them; a name that stands on several cards
+   !> is one set.
+   subroutine build_sets(noun, cards, context, mesh, report, sets)
       character(*), intent(in) :: noun                           !! node or element
       type(cards_type), intent(in) :: cards                      !! the cards
-      type(number_index_type), intent(in) :: numbers             !! numbers -> indexes
+      type(deck_context_type), intent(in) :: context             !! numbers -> indexes
+      type(mesh_type), intent(in) :: mesh  !! for nodes: has the element sets and surfaces
       type(deck_report_type), intent(inout) :: report            !! receives errors
       type(set_type), allocatable, intent(out) :: sets(:)        !! the sets
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
-      integer :: k, first, i
+      type(number_index_type) :: numbers
+      integer :: k, first(2), kind, i
 
       parameter = merge('NSET ', 'ELSET', noun == 'node')
       parameter = trim(parameter)
       definer = to_upper(noun)
       allocate(draft%items(size(cards%keywords)), draft%counts(size(cards%keywords)))
-      first = 0
+      numbers = context%node_index
+      if (noun == 'element') numbers = context%member_index
+      first = [0, size(mesh%element_number)]
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (card%name == definer) then
                if (has_parameter(card, parameter)) call open_set(card, parameter, report, draft, i)
-               if (has_parameter(card, parameter)) call add_range(draft, i, first + 1, &
-                  first + card%last_data - card%first_data + 1)
-               first = first + card%last_data - card%first_data + 1
+               kind = merge(2, 1, is_line_card(card))
+               if (has_parameter(card, parameter)) call add_range(draft, i, first(kind) + 1, &
+                  first(kind) + card%last_data - card%first_data + 1)
+               first(kind) = first(kind) + card%last_data - card%first_data + 1
             else if (card%name == parameter) then
-               call build_set(noun, cards, card, numbers, report, draft)
+               call build_set(noun, cards, card, context, numbers, mesh, report, draft)
             end if
          end associate
       end do
@@ -107,14 +115,17 @@ contains
    end subroutine add_members
 
    !> Takes one *NSET or *ELSET card.
-   subroutine build_set(noun, cards, card, numbers, report, draft)
+   subroutine build_set(noun, cards, card, context, numbers, mesh, report, draft)
       character(*), intent(in) :: noun
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
       type(number_index_type), intent(in) :: numbers
+      type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
       type(draft_type), intent(inout) :: draft
       character(:), allocatable :: name
+      integer, allocatable :: nodes(:)
       integer :: set, other, item, j, i, known
       logical :: valid
 
@@ -122,6 +133,10 @@ contains
       if (len(name) == 0) return
       known = draft%sets
       call open_set(card, card%name, report, draft, set)
+      if (noun == 'node') then
+         call find_nodes(card, context, mesh, report, nodes)
+         call add_members(draft, set, nodes)
+      end if
       do j = card%first_data, card%last_data
          if (has_parameter(card, 'GENERATE')) then
             call generate(noun, cards%data(j), numbers, report, draft, set)

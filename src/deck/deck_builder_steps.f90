@@ -81,7 +81,8 @@ contains
                if (n > 0) model%steps(n)%scheme = scheme
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'FILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)
-            case ('NODE FILE', 'EL FILE', 'CONTACT FILE')
+            case ('NODE FILE', 'EL FILE', 'CONTACT FILE', 'NODE OUTPUT', 'ELEMENT OUTPUT', &
+               'CONTACT OUTPUT')
                if (n > 0) call build_file_output(card, files, context, report, model%steps(n))
             case ('NODE PRINT')
                node_prints = node_prints + 1
@@ -94,7 +95,8 @@ contains
             case ('CONTACT PRINT')
                if (n > 0) call read_frequency(card, report, model%steps(n)%contact_print_frequency)
             case default
-               cycle
+               ! A slip of the pen or an analysis that is refused is reported already.
+               if (card%meant == 'STATIC') analyses = analyses + 1
             end select
          end associate
       end do
@@ -135,6 +137,7 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
+      character(:), allocatable :: direct
 
       select case (card%name)
       case ('STATIC')
@@ -148,18 +151,43 @@ contains
          call report%error(card%place, '*'//card%name// &
             ' needs STEADY STATE: heat capacity is not modelled')
       end if
-      step%direct = has_parameter(card, 'DIRECT')
+      direct = 'NO'
+      if (has_parameter(card, 'DIRECT')) direct = 'YES'
+      if (len(parameter_text(card, 'DIRECT')) > 0) then
+         call choose(card, 'DIRECT', 'YES/NO', report, direct)
+      end if
+      step%direct = direct == 'YES'
       if (card%last_data >= card%first_data) then
          call build_increments(cards%data(card%first_data), context, report, step)
       else
          call context%note('*'//card%name//' without data: one increment, period 1')
       end if
-      if (step%max_increments < 1) return
-      if (step%period > (step%max_increments + increment_rounding)*step%first_increment) then
-         call report%error(card%place, 'the step takes more increments than the '// &
-            to_text(step%max_increments)//' of INC= on *STEP')
-      end if
+      call fit_increments(card, report, step)
    end subroutine build_analysis
+
+   !> INC= holds for increments that are all as long as the first; CalculiX lengthens those behind
+   !> it, up to the largest. Where the card gives that, the first may be longer.
+   subroutine fit_increments(card, report, step)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: step
+      character(:), allocatable :: too_many
+      real(dp) :: needed
+
+      if (step%max_increments < 1) return
+      needed = step%period/(step%max_increments + increment_rounding)
+      if (needed <= step%first_increment) return
+      too_many = 'the step takes more increments than the '//to_text(step%max_increments)// &
+         ' of INC= on *STEP; '
+      needed = step%period/step%max_increments
+      if (step%direct .or. needed > step%largest_increment) then
+         call report%error(card%place, too_many//'give a larger INC= or a longer first increment')
+      else
+         step%first_increment = needed
+         call report%warning(card%place, too_many//'the first one is lengthened to '// &
+            to_text(needed)//', as CalculiX lengthens those behind it')
+      end if
+   end subroutine fit_increments
 
    !> First increment, period, smallest and largest increment.
    subroutine build_increments(data, context, report, step)
@@ -192,11 +220,16 @@ contains
          step%first_increment = 1.0_dp
          step%period = 1.0_dp
       else if (step%first_increment > step%period) then
-         call report%error(field_place(data, 1), 'the first increment is longer than the period')
+         call report%error(field_place(data, 1), 'the first increment is longer than the '// &
+            'period; give a shorter one')
       else if (step%smallest_increment > step%first_increment) then
-         call report%error(field_place(data, 3), 'the smallest increment is longer than the first')
+         call report%error(field_place(data, 3), 'the smallest increment is longer than the '// &
+            'first; give a shorter one')
       else if (step%largest_increment < step%first_increment) then
-         call report%error(field_place(data, 4), 'the largest increment is shorter than the first')
+         step%first_increment = step%largest_increment
+         step%smallest_increment = min(step%smallest_increment, step%first_increment)
+         call report%warning(field_place(data, 4), 'the first increment is longer than the '// &
+            'largest, and is taken as long as that')
       else if (step%smallest_increment < least_increment*step%period) then
          step%smallest_increment = least_increment*step%period
          call context%note('smallest increment raised to '//to_text(step%smallest_increment)// &

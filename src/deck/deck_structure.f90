@@ -1,7 +1,7 @@
 !> Whether the cards of a deck stand where they may stand, and whether those that every deck needs
 !> are there.
 module deck_structure
-   use card_parameters, only: parameter_text
+   use card_parameters, only: has_parameter, parameter_text
    use card_values, only: field_place
    use cards, only: cards_type, keyword_card_type
    use deck_report, only: deck_report_type
@@ -109,7 +109,8 @@ contains
 
       known = known_keywords(card%known)
       n = card%last_data - card%first_data + 1
-      if (known%status == built .and. n < known%least_data .and. .not. only_ends(card)) then
+      if (known%status == built .and. n < known%least_data .and. .not. &
+         (says_all(card) .or. card%data_lost)) then
          call report%error(card%place, '*'//card%name//' needs a data card')
       else if (n > known%most_data) then
          call report%error(field_place(cards%data(card%first_data + known%most_data), 1), &
@@ -117,12 +118,14 @@ contains
       end if
    end subroutine check_data_count
 
-   !> Whether a card needs no data because OP=NEW says all that it has to say.
-   pure logical function only_ends(card)
+   !> Whether a card needs no data because its parameters say all that it has to say: OP=NEW, or an
+   !> element set or surface of which an *NSET takes the nodes.
+   pure logical function says_all(card)
       type(keyword_card_type), intent(in) :: card
 
-      only_ends = to_upper(parameter_text(card, 'OP')) == 'NEW'
-   end function only_ends
+      says_all = to_upper(parameter_text(card, 'OP')) == 'NEW' .or. (card%name == 'NSET' .and. &
+         (has_parameter(card, 'ELSET') .or. has_parameter(card, 'SURFACE')))
+   end function says_all
 
    pure function most_cards(most) result(words)
       integer, intent(in) :: most

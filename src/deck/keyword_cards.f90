@@ -4,12 +4,14 @@ module keyword_cards
    use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
+   use foreign_keywords, only: find_foreign, foreign_keyword_type, not_printed, passed_over, &
+      refused_always, refused_with_data
    use keywords, only: find_keyword, find_parameter, keyword_names, known_keywords, &
       known_parameter_type, not_needed, parameter_names, refusal, refused
    use text, only: edit_distance, likely_slip, nearest_known, nearest_name, string_type, to_upper
    implicit none
    private
-   public :: make_keyword_card
+   public :: make_keyword_card, is_parameter
 
 contains
 
@@ -28,7 +30,7 @@ contains
       card%known = find_keyword(name)
       allocate(card%parameters(0))
       if (card%known == 0) then
-         call report_unknown_keyword(name, report, card)
+         call take_foreign_keyword(name, report, cards, card)
          return
       end if
       card%name = trim(known_keywords(card%known)%name)
@@ -39,6 +41,56 @@ contains
          call take_parameters(fields(2:), report, cards, card)
       end select
    end subroutine make_keyword_card
+
+   !> Whether the first field of a line behind a keyword card that ends in a comma is a parameter of
+   !> it; else the line is data, as in CalculiX.
+   pure logical function is_parameter(keyword, field)
+      character(*), intent(in) :: keyword   !! the keyword with its star
+      character(*), intent(in) :: field     !! the first field of the line
+      type(known_parameter_type) :: parameter
+      integer :: known
+
+      known = find_keyword(keyword(2:))
+      is_parameter = index(field, '=') > 0
+      if (known == 0) return
+      parameter = find_parameter(known, field)
+      is_parameter = size(parameter_names(known)) > 0 .and. &
+         (is_parameter .or. len(parameter%name) > 0)
+   end function is_parameter
+
+   !> A keyword of CalculiX or Abaqus that is passed over or refused, or one that nobody knows.
+   subroutine take_foreign_keyword(name, report, cards, card)
+      character(*), intent(in) :: name
+      type(deck_report_type), intent(inout) :: report
+      type(cards_type), intent(inout) :: cards
+      type(keyword_card_type), intent(inout) :: card
+      type(foreign_keyword_type) :: foreign
+
+      foreign = find_foreign(name)
+      select case (foreign%status)
+      case (passed_over)
+         call add_note(cards%notes, '*'//trim(foreign%name)//' is read and not needed: '// &
+            trim(foreign%reason))
+      case (not_printed)
+         call report%warning(card%place, '*'//trim(foreign%name)//' is not printed; '// &
+            trim(foreign%reason))
+      case (refused_always)
+         card%meant = trim(foreign%stands_for)
+         call report%error(card%place, refused_foreign(foreign))
+      case (refused_with_data)
+         card%refusal_of_data = refused_foreign(foreign)
+         call add_note(cards%notes, '*'//trim(foreign%name)//' without data is not needed')
+      case default
+         call report_unknown_keyword(name, report, card)
+      end select
+   end subroutine take_foreign_keyword
+
+   pure function refused_foreign(foreign) result(message)
+      type(foreign_keyword_type), intent(in) :: foreign
+      character(:), allocatable :: message
+
+      message = '*'//trim(foreign%name)//' is refused: '//trim(foreign%reason)
+   end function refused_foreign
 
    subroutine report_unknown_keyword(name, report, card)
       character(*), intent(in) :: name

@@ -27,7 +27,7 @@ module keywords
       integer :: section             !! in_model, in_step or in_both
       integer :: least_data          !! fewest data cards
       integer :: most_data           !! most data cards
-      character(72) :: parameters    !! its parameters
+      character(128) :: parameters   !! its parameters
    end type known_keyword_type
 
    !> One parameter of a keyword.
@@ -40,20 +40,23 @@ module keywords
 
    !> Why a keyword, or a parameter of it, is refused.
    type :: refusal_type
-      character(32) :: keyword     !! keyword
-      character(16) :: parameter   !! parameter, blank for the keyword itself
+      character(32) :: keyword     !! keyword; blank for all that have the parameter
+      character(19) :: parameter   !! parameter, blank for the keyword itself
       character(72) :: reason      !! why
    end type refusal_type
 
    type(known_keyword_type), parameter :: model_keywords(26) = [ &
       known_keyword_type('HEADING', built, in_model, 0, many, ''), &
-      known_keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER='), &
+      known_keyword_type('OPTIONS', built, in_model, 0, 0, &
+         'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       known_keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
-      known_keyword_type('NODE', built, in_model, 1, many, 'NSET='), &
-      known_keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET='), &
-      known_keyword_type('NSET', built, in_model, 1, many, 'NSET=/GENERATE'), &
-      known_keyword_type('ELSET', built, in_model, 1, many, 'ELSET=/GENERATE'), &
-      known_keyword_type('SURFACE', built, in_model, 1, many, 'NAME=/TYPE='), &
+      known_keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
+      known_keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
+      known_keyword_type('NSET', built, in_model, 1, many, &
+      'NSET=/GENERATE/ELSET=/SURFACE=/~INTERNAL/~UNSORTED'), &
+      known_keyword_type('ELSET', built, in_model, 1, many, &
+      'ELSET=/GENERATE/~INTERNAL/~UNSORTED'), &
+      known_keyword_type('SURFACE', built, in_model, 1, many, 'NAME=/TYPE=/~INTERNAL'), &
       known_keyword_type('MATERIAL', built, in_model, 0, 0, 'NAME='), &
       known_keyword_type('ELASTIC', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('EXPANSION', built, in_model, 1, many, 'TYPE=/~ZERO='), &
@@ -62,8 +65,9 @@ module keywords
       known_keyword_type('SPECIFIC HEAT', not_needed, in_model, 0, many, ''), &
       known_keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
       known_keyword_type('SOLID SECTION', built, in_model, 0, 1, &
-      'ELSET=/MATERIAL=/ORIENTATION='), &
-      known_keyword_type('AMPLITUDE', built, in_model, 1, many, 'NAME=/TIME='), &
+      'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET='), &
+      known_keyword_type('AMPLITUDE', built, in_model, 1, many, &
+      'NAME=/TIME=/!USER/!SHIFTX=/!SHIFTY='), &
       known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 0, 'NAME='), &
       known_keyword_type('FRICTION', built, in_model, 1, 1, ''), &
@@ -85,57 +89,86 @@ module keywords
       known_keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
       known_keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS='), &
       known_keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &
-      known_keyword_type('CONTROLS', not_needed, in_both, 0, many, 'PARAMETERS=/RESET'), &
+      known_keyword_type('CONTROLS', not_needed, in_both, 0, many, 'PARAMETERS=/FIELD=/RESET'), &
       known_keyword_type('EQUATION', refused, in_model, 0, many, ''), &
       known_keyword_type('MPC', refused, in_model, 0, many, ''), &
       known_keyword_type('RIGID BODY', refused, in_model, 0, many, '')]
 
-   type(known_keyword_type), parameter :: step_keywords(20) = [ &
-      known_keyword_type('STEP', built, in_both, 0, 0, 'INC=/AMPLITUDE=/NLGEOM?'), &
-      known_keyword_type('STATIC', built, in_step, 0, 1, 'DIRECT/~SOLVER='), &
-      known_keyword_type('HEAT TRANSFER', built, in_step, 0, 1, 'STEADY STATE/DIRECT/~SOLVER='), &
+   !> Parameters of the cards that write fields.
+   character(*), parameter :: file_parameters = 'FREQUENCY=/~FREQUENCYF=/~NSET=/~GLOBAL=/'// &
+      '~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/!TIME POINTS='
+
+   type(known_keyword_type), parameter :: step_keywords(24) = [ &
+      known_keyword_type('STEP', built, in_both, 0, 0, 'INC=/AMPLITUDE=/NLGEOM?/!PERTURBATION'), &
+      known_keyword_type('STATIC', built, in_step, 0, 1, &
+      'DIRECT?/~SOLVER=/!EXPLICIT/!TIME RESET/!TOTAL TIME AT START='), &
+      known_keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
+      'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX=/!TIME RESET/!TOTAL TIME AT START='), &
       known_keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
-      'STEADY STATE/DIRECT/~SOLVER='), &
-      known_keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('DLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX=/!TIME RESET/!TOTAL TIME AT START='), &
+      known_keyword_type('BOUNDARY', built, in_both, 1, many, &
+      'OP=/AMPLITUDE=/!TIME DELAY=/!USER/!FIXED/!SUBMODEL/!MASS FLOW'), &
+      known_keyword_type('CLOAD', built, in_step, 1, many, &
+      'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
+      known_keyword_type('DLOAD', built, in_step, 1, many, &
+      'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
       known_keyword_type('DSLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('CFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('DFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('FILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
-      known_keyword_type('TEMPERATURE', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('NODE FILE', built, in_step, 0, many, &
-      'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
-      known_keyword_type('EL FILE', built, in_step, 0, many, &
-      'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
-      known_keyword_type('CONTACT FILE', built, in_step, 0, many, &
-      'FREQUENCY=/~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS'), &
+      known_keyword_type('CFLUX', built, in_step, 1, many, &
+      'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
+      known_keyword_type('DFLUX', built, in_step, 1, many, &
+      'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
+      known_keyword_type('FILM', built, in_step, 1, many, &
+      'OP=/AMPLITUDE=/FILM AMPLITUDE=/!TIME DELAY=/!FILM TIME DELAY='), &
+      known_keyword_type('TEMPERATURE', built, in_step, 1, many, &
+      'OP=/AMPLITUDE=/!TIME DELAY=/!USER/!FILE=/!BSTEP='), &
+      known_keyword_type('NODE FILE', built, in_step, 0, many, file_parameters), &
+      known_keyword_type('EL FILE', built, in_step, 0, many, file_parameters), &
+      known_keyword_type('CONTACT FILE', built, in_step, 0, many, file_parameters), &
+      known_keyword_type('NODE OUTPUT', built, in_step, 0, many, file_parameters), &
+      known_keyword_type('ELEMENT OUTPUT', built, in_step, 0, many, file_parameters), &
+      known_keyword_type('CONTACT OUTPUT', built, in_step, 0, many, file_parameters), &
+      known_keyword_type('RESTART', not_needed, in_both, 0, 0, &
+      '!READ/STEP=/WRITE/FREQUENCY=/OVERLAY'), &
       known_keyword_type('NODE PRINT', built, in_step, 1, many, &
       'NSET=/FREQUENCY=/TOTALS=/~GLOBAL=/~FREQUENCYF=/!TIME POINTS='), &
       known_keyword_type('EL PRINT', built, in_step, 1, many, &
       'ELSET=/FREQUENCY=/GLOBAL=/~TOTALS=/~FREQUENCYF=/!TIME POINTS='), &
       known_keyword_type('CONTACT PRINT', built, in_step, 0, many, &
-      'FREQUENCY=/~SLAVE=/~MASTER=/~NSET=/~GLOBAL=/~TOTALS='), &
+      'FREQUENCY=/~SLAVE=/~MASTER=/~NSET=/~SET=/~GLOBAL=/~TOTALS=/!TIME POINTS='), &
       known_keyword_type('END STEP', built, in_step, 0, 0, ''), &
       known_keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Every keyword of the dialect.
-   type(known_keyword_type), parameter :: known_keywords(56) = &
+   type(known_keyword_type), parameter :: known_keywords(60) = &
       [model_keywords, control_keywords, step_keywords]
 
-   type(refusal_type), parameter :: refusals(12) = [ &
-      refusal_type('TRANSFORM', '', 'displacements and forces are along x and y'), &
+   type(refusal_type), parameter :: refusals(26) = [ &
+      refusal_type('TRANSFORM', '', 'displacements and forces are along x and y; give them so'), &
       refusal_type('EQUATION', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('MPC', '', 'bodies are held by *BOUNDARY and by contact only'), &
-      refusal_type('RIGID BODY', '', 'every body is elastic'), &
+      refusal_type('RIGID BODY', '', 'every body is elastic; give it a high modulus'), &
       refusal_type('GAP CONDUCTANCE', 'USER', 'no routine of the user is called; give the table'), &
       refusal_type('GAP CONDUCTANCE', 'PRESSURE', 'the table is one of pressure without it'), &
       refusal_type('GAP CONDUCTANCE', 'DEPENDENCIES', 'conductance depends on the pressure only'), &
       refusal_type('CONTACT PAIR', 'ADJUST', 'it would move nodes; gaps are those of the mesh'), &
       refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; let the bodies share nodes'), &
-      refusal_type('NODE PRINT', 'TIME POINTS', 'FREQUENCY= says which increments are printed'), &
-      refusal_type('EL PRINT', 'TIME POINTS', 'FREQUENCY= says which increments are printed'), &
-      refusal_type('STEP', 'NLGEOM', 'displacements and strains are small')]
+      refusal_type('', 'TIME POINTS', 'FREQUENCY= says which increments are printed'), &
+      refusal_type('', 'TIME DELAY', 'shift the times of the *AMPLITUDE'), &
+      refusal_type('', 'FILM TIME DELAY', 'shift the times of the *AMPLITUDE'), &
+      refusal_type('', 'USER', 'no routine of the user is called; give the values'), &
+      refusal_type('', 'TIME RESET', 'times of the steps add up'), &
+      refusal_type('', 'TOTAL TIME AT START', 'times of the steps add up, from 0'), &
+      refusal_type('BOUNDARY', 'FIXED', 'give the values'), &
+      refusal_type('BOUNDARY', 'SUBMODEL', 'give the values'), &
+      refusal_type('BOUNDARY', 'MASS FLOW', 'there are no fluids'), &
+      refusal_type('TEMPERATURE', 'FILE', 'give the values, or solve *HEAT TRANSFER before'), &
+      refusal_type('TEMPERATURE', 'BSTEP', 'give the values, or solve *HEAT TRANSFER before'), &
+      refusal_type('STATIC', 'EXPLICIT', 'loads are slow'), &
+      refusal_type('AMPLITUDE', 'SHIFTX', 'add the shift to the times'), &
+      refusal_type('AMPLITUDE', 'SHIFTY', 'add the shift to the factors'), &
+      refusal_type('RESTART', 'READ', 'a run begins with the first step'), &
+      refusal_type('STEP', 'PERTURBATION', 'steps go on from the one before; leave it out'), &
+      refusal_type('STEP', 'NLGEOM', 'displacements and strains are small; leave it out')]
 
 contains
 
@@ -209,8 +242,10 @@ contains
 
       reason = ''
       do i = 1, size(refusals)
-         if (refusals(i)%keyword == keyword .and. refusals(i)%parameter == parameter) then
+         if (refusals(i)%parameter /= parameter) cycle
+         if (any(refusals(i)%keyword == [character(32) :: keyword, ''])) then
             reason = trim(refusals(i)%reason)
+            if (refusals(i)%keyword == keyword) return
          end if
       end do
    end function refusal

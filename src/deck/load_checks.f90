@@ -7,9 +7,9 @@ module load_checks
    use element_kinds, only: axisymmetric
    use load_requests, only: request_type
    use model, only: model_type
-   use steps, only: analysis_static, dof_temperature, load_body_heat, load_centrifugal, &
-      load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
-      load_pressure, load_temperature, solves_heat, solves_mechanics
+   use steps, only: analysis_static, centrifugal_round, dof_temperature, load_body_heat, &
+      load_centrifugal, load_face_heat, load_film_coefficient, load_force, load_gravity, &
+      load_nodal_heat, load_pressure, load_temperature, solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
    private
@@ -125,14 +125,21 @@ contains
       end do
    end subroutine check_density
 
-   !> CENTRIF turns a body of revolution round its axis.
+   !> CENTRIF turns a body of revolution round its axis, and a plane round an axis along z.
    subroutine check_axis(request, model, report)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
 
-      if (all(model%mesh%element_plane(elements_of(request, model)) == axisymmetric)) return
-      call report%error(request%place, 'CENTRIF is for axisymmetric elements only')
+      associate (planes => model%mesh%element_plane(elements_of(request, model)))
+         if (request%component == centrifugal_round) then
+            if (any(planes /= axisymmetric)) call report%error(request%place, &
+               'plane elements turn round an axis along z: point x, y, 0, direction 0, 0, 1')
+         else if (any(planes == axisymmetric)) then
+            call report%error(request%place, 'axisymmetric elements turn round the y axis: '// &
+               'point 0, 0, 0, direction 0, 1, 0')
+         end if
+      end associate
    end subroutine check_axis
 
    pure function elements_of(request, model) result(elements)

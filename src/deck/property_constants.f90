@@ -1,5 +1,6 @@
 !> Constants of a property of a material, as they stand on its data cards.
 module property_constants
+   use card_parameters, only: choose
    use card_values, only: check_extra, field_place, has_field, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_context, only: deck_context_type
@@ -7,7 +8,7 @@ module property_constants
    use kinds, only: dp
    implicit none
    private
-   public :: read_constants, refuse_not_positive
+   public :: choose_symmetry, read_constants, refuse_not_positive
 
    character(*), parameter :: varies = 'properties that vary with temperature are refused: '// &
       'bodies are linear, and reduced once to their contact unknowns'
@@ -15,6 +16,19 @@ module property_constants
    integer, parameter :: per_card = 8   !! constants of a property on a card
 
 contains
+
+   !> Takes TYPE= of a property: how many constants it has. CalculiX reads the first letters only,
+   !> so longer words stand in decks for it.
+   subroutine choose_symmetry(card, choices, report, symmetry)
+      type(keyword_card_type), intent(in) :: card              !! the property
+      character(*), intent(in) :: choices                      !! words, separated by slashes
+      type(deck_report_type), intent(inout) :: report          !! receives the error
+      character(:), allocatable, intent(inout) :: symmetry     !! the word as in choices
+
+      call choose(card, 'TYPE', choices//'/ISOTROPIC/ORTHOTROPIC', report, symmetry)
+      if (symmetry == 'ISOTROPIC') symmetry = 'ISO'
+      if (symmetry == 'ORTHOTROPIC') symmetry = 'ORTHO'
+   end subroutine choose_symmetry
 
    !> Reads the constants of a property, eight on a card, and the temperature behind the last.
    subroutine read_constants(cards, card, names, context, report, constants, valid)

@@ -8,6 +8,7 @@ module deck_run
    use batch_table, only: table_name
    use deck_outcomes, only: deck_outcome_type
    use deck_preparation, only: prepare_deck
+   use error_estimator, only: error_estimator_type
    use errors, only: error_type, set_error, status_deck, status_interrupted, &
       status_no_convergence, status_verify
    use increment_control, only: increment_control_type
@@ -85,19 +86,22 @@ contains
       class(deck_outcome_type), intent(inout) :: outcome
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: output_error
+      type(error_estimator_type) :: estimator
       type(increment_record_type) :: record
 
-      associate (pairs => simulation%operators%interfaces, points => simulation%points)
+      associate (pairs => simulation%operators%interfaces, points => simulation%recovery%points)
          call make_folder(command%folder)
          call output%start(command%folder//'/'//base_name(path), model, pairs, points%node, &
             points%element_points, cards%images, command%quiet, error)
          if (allocated(error)) return
+         call estimator%start(model, simulation)
          do while (.not. simulation%finished(model))
             call check_signals(simulation%control, error)
             if (allocated(error)) then
                record = increment_record_type()
                exit
             end if
+            call estimator%begin_increment(simulation)
             call simulation%advance(model, record, error)
             output%run%seconds_assemble = simulation%seconds%assemble
             output%run%seconds_reduce = simulation%seconds%reduce
@@ -106,6 +110,7 @@ contains
             output%run%factor_bytes = simulation%sizes%factor_bytes
             output%run%smallest_pivot = simulation%sizes%smallest_pivot
             if (allocated(error)) exit
+            call estimator%end_increment(model, simulation, record)
             call output%accept(record, model, pairs, error)
             call outcome%note(record, output%accepted())
             if (allocated(error)) return

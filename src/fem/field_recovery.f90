@@ -2,17 +2,21 @@
 !> nodes, averaged over the elements of one body and section. A node shared by several sections so
 !> is several points.
 module field_recovery
-   use element_fields, only: element_heat_flux, element_stress
-   use element_kinds, only: element_node_count
+   use element_kinds, only: element_node_count, kind_count, quad4, quad8, quad8_reduced, &
+      triangle3, triangle6
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
    use orientations, only: orientation_type
-   use quadrature, only: recovery_points, recovery_weights
+   use point_fields, only: most => most_field_points, point_fields_type
+   use quadrature, only: recovery_count, recovery_points, recovery_weights
    use shape_functions, only: node_position
    implicit none
    private
    public :: point_map_type, make_points, recover_stress, recover_heat_flux
+   public :: prepare_samples, stress_samples, heat_flux_samples, average_samples
+
+   integer, parameter :: kinds(kind_count) = [quad8, quad8_reduced, quad4, triangle6, triangle3]
 
    !> The points at which averaged fields live: one per node and section.
    type :: point_map_type
@@ -20,15 +24,6 @@ module field_recovery
       integer, allocatable :: element_points(:, :)  !! (8, elements) point of each node, or 0
       integer, allocatable :: sharing(:)            !! (points) elements that meet there
    end type point_map_type
-
-   !> How values at the recovery points of a kind of element give those at its nodes.
-   type :: extrapolation_type
-      integer :: kind = 0                     !! kind of the element
-      real(dp), allocatable :: places(:, :)   !! (2, recovery points) xi, eta
-      real(dp), allocatable :: weights(:, :)  !! (recovery points, nodes)
-   contains
-      procedure :: set_kind
-   end type extrapolation_type
 
 contains
 
@@ -73,6 +68,64 @@ contains
       end do
    end function make_points
 
+   !> Prepares the recovery points of all elements.
+   pure subroutine prepare_samples(mesh, sections, materials, orientations, fields)
+      type(mesh_type), intent(in) :: mesh                   !! the mesh
+      type(section_type), intent(in) :: sections(:)         !! sections
+      type(material_type), intent(in) :: materials(:)       !! materials
+      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
+      type(point_fields_type), intent(out) :: fields        !! the points
+      real(dp) :: points(2, most, kind_count), weights(most, kind_count)
+      integer :: i, k
+
+      points = 0.0_dp
+      do i = 1, kind_count
+         k = kinds(i)
+         points(:, :recovery_count(k), k) = recovery_points(k)
+      end do
+      ! Right for the four-node element, whose mean dilatation is that over these points.
+      weights = 1.0_dp
+      call fields%prepare(mesh, sections, materials, orientations, points, weights, &
+         recovery_count)
+   end subroutine prepare_samples
+
+   !> Stress at all recovery points along x and y, eq. (1.5).
+   pure subroutine stress_samples(fields, mesh, displacement, temperature, samples)
+      type(point_fields_type), intent(in) :: fields   !! of prepare_samples
+      type(mesh_type), intent(in) :: mesh             !! the mesh
+      real(dp), intent(in) :: displacement(:, :)      !! (2, nodes) [length]
+      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
+      real(dp), intent(out) :: samples(:, :)          !! (4, recovery points) [stress]
+      real(dp) :: values(most, 4)
+      integer :: e, i
+
+      values = 0.0_dp
+      do e = 1, size(mesh%element_kind)
+         call fields%stress(mesh, e, displacement, temperature, values)
+         do i = fields%first(e), fields%first(e + 1) - 1
+            samples(:, i) = values(i - fields%first(e) + 1, :)
+         end do
+      end do
+   end subroutine stress_samples
+
+   !> Heat flux at all recovery points along x and y, eq. (1.4).
+   pure subroutine heat_flux_samples(fields, mesh, temperature, samples)
+      type(point_fields_type), intent(in) :: fields   !! of prepare_samples
+      type(mesh_type), intent(in) :: mesh             !! the mesh
+      real(dp), intent(in) :: temperature(:)          !! (nodes) [temperature]
+      real(dp), intent(out) :: samples(:, :)          !! (2, recovery points) [power/length^2]
+      real(dp) :: values(most, 2)
+      integer :: e, i
+
+      values = 0.0_dp
+      do e = 1, size(mesh%element_kind)
+         call fields%heat_flux(mesh, e, temperature, values)
+         do i = fields%first(e), fields%first(e + 1) - 1
+            samples(:, i) = values(i - fields%first(e) + 1, :)
+         end do
+      end do
+   end subroutine heat_flux_samples
+
    !> Stress at the points along x and y, eq. (1.5).
    pure function recover_stress(mesh, sections, materials, orientations, points, displacement, &
       temperature) result(stress)
@@ -84,17 +137,13 @@ contains
       real(dp), intent(in) :: displacement(:, :)            !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp) :: stress(4, size(points%node))              !! xx, yy, zz, xy [stress]
-      type(extrapolation_type) :: rule
-      integer :: element
+      type(point_fields_type) :: fields
+      real(dp), allocatable :: samples(:, :)
 
-      stress = 0.0_dp
-      do element = 1, size(mesh%element_number)
-         call rule%set_kind(mesh%element_kind(element))
-         call spread_to_nodes(rule%weights, element_stress(mesh, sections, materials, &
-            orientations, element, rule%places, displacement, temperature), &
-            points%element_points(:, element), stress)
-      end do
-      call average(points, stress)
+      call prepare_samples(mesh, sections, materials, orientations, fields)
+      allocate (samples(4, fields%first(size(fields%first)) - 1))
+      call stress_samples(fields, mesh, displacement, temperature, samples)
+      stress = average_samples(mesh, points, samples)
    end function recover_stress
 
    !> Heat flux at the points along x and y, eq. (1.4).
@@ -107,60 +156,59 @@ contains
       type(point_map_type), intent(in) :: points            !! the points
       real(dp), intent(in) :: temperature(:)                !! (nodes) [temperature]
       real(dp) :: flux(2, size(points%node))                !! x, y [power/length^2]
-      type(extrapolation_type) :: rule
-      integer :: element
+      type(point_fields_type) :: fields
+      real(dp), allocatable :: samples(:, :)
 
-      flux = 0.0_dp
-      do element = 1, size(mesh%element_number)
-         call rule%set_kind(mesh%element_kind(element))
-         call spread_to_nodes(rule%weights, element_heat_flux(mesh, sections, materials, &
-            orientations, element, rule%places, temperature), points%element_points(:, element), &
-            flux)
-      end do
-      call average(points, flux)
+      call prepare_samples(mesh, sections, materials, orientations, fields)
+      allocate (samples(2, fields%first(size(fields%first)) - 1))
+      call heat_flux_samples(fields, mesh, temperature, samples)
+      flux = average_samples(mesh, points, samples)
    end function recover_heat_flux
 
-   !> Adds the extrapolation of the values at the recovery points to the nodes of an element.
-   pure subroutine spread_to_nodes(weights, at_points, points, values)
-      real(dp), intent(in) :: weights(:, :)      !! (recovery points, nodes)
-      real(dp), intent(in) :: at_points(:, :)    !! (components, recovery points)
-      integer, intent(in) :: points(:)
-      real(dp), intent(inout) :: values(:, :)    !! (components, points)
-      integer :: g, q
+   !> Values at the points: extrapolated in each element to its nodes, then averaged.
+   pure function average_samples(mesh, points, samples) result(values)
+      type(mesh_type), intent(in) :: mesh            !! the mesh
+      type(point_map_type), intent(in) :: points     !! the points
+      real(dp), intent(in) :: samples(:, :)          !! (components, recovery points), 2 or 4
+      real(dp) :: values(size(samples, 1), size(points%node))   !! (components, points)
+      real(dp) :: weights(4, 8, kind_count), position(2, 8)
+      integer :: e, first, i, k, n, q
 
-      do q = 1, size(weights, 2)
-         do g = 1, size(weights, 1)
-            values(:, points(q)) = values(:, points(q)) + weights(g, q)*at_points(:, g)
+      do i = 1, kind_count
+         k = kinds(i)
+         position(:, :element_node_count(k)) = node_position(k)
+         do q = 1, element_node_count(k)
+            weights(:recovery_count(k), q, k) = recovery_weights(k, position(:, q))
          end do
       end do
-   end subroutine spread_to_nodes
-
-   !> Makes the rule that of a kind of element, where it is not.
-   pure subroutine set_kind(self, kind)
-      class(extrapolation_type), intent(inout) :: self   !! the rule
-      integer, intent(in) :: kind                        !! kind of the element
-      real(dp) :: position(2, element_node_count(kind))
-      integer :: q
-
-      if (kind == self%kind) return
-      self%kind = kind
-      self%places = recovery_points(kind)
-      if (allocated(self%weights)) deallocate (self%weights)
-      allocate (self%weights(size(self%places, 2), element_node_count(kind)))
-      position = node_position(kind)
-      do q = 1, size(position, 2)
-         self%weights(:, q) = recovery_weights(kind, position(:, q))
+      values = 0.0_dp
+      first = 1
+      do e = 1, size(mesh%element_kind)
+         associate (kind => mesh%element_kind(e))
+            n = recovery_count(kind)
+            do q = 1, element_node_count(kind)
+               call add_samples(size(samples, 1), n, samples(:, first:first + n - 1), &
+                  weights(:n, q, kind), values(:, points%element_points(q, e)))
+            end do
+            first = first + n
+         end associate
       end do
-   end subroutine set_kind
-
-   pure subroutine average(points, values)
-      type(point_map_type), intent(in) :: points
-      real(dp), intent(inout) :: values(:, :)
-      integer :: i
-
       do i = 1, size(points%sharing)
-         if (points%sharing(i) > 0) values(:, i) = values(:, i)/points%sharing(i)
+         if (points%sharing(i) > 1) values(:, i) = values(:, i)/points%sharing(i)
       end do
-   end subroutine average
+   end function average_samples
+
+   pure subroutine add_samples(components, n, samples, weights, values)
+      integer, intent(in) :: components, n
+      real(dp), intent(in) :: samples(components, n), weights(n)
+      real(dp), intent(inout) :: values(components)
+      integer :: c, k
+
+      do c = 1, components, 2
+         do k = 1, n
+            values(c:c + 1) = values(c:c + 1) + weights(k)*samples(c:c + 1, k)
+         end do
+      end do
+   end subroutine add_samples
 
 end module field_recovery

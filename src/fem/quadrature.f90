@@ -36,7 +36,8 @@ module quadrature
 contains
 
    !> Points at which the matrices of an element are formed: 3 x 3 on the square, 2 x 2 where the
-   !> kind is reduced or linear, three inside the triangle.
+   !> kind is reduced or linear, three inside the triangle. On the square they stand in rows from
+   !> the side 1-2 on, as CalculiX numbers them.
    pure subroutine integration_rule(kind, points, weights)
       integer, intent(in) :: kind                           !! kind of the element
       real(dp), intent(out) :: points(2, point_count(kind)) !! xi, eta of each point
@@ -46,7 +47,7 @@ contains
       case (quad8)
          call square_3(points, weights)
       case (quad8_reduced, quad4)
-         points = gauss_coordinate_2*square_corner
+         points = gauss_coordinate_2*square_corner(:, [1, 2, 4, 3])
          weights = 1.0_dp
       case (triangle6, triangle3)
          points = orbit(1.0_dp/6.0_dp)

@@ -4,7 +4,7 @@ module scheme_properties
    use kinds, only: dp
    implicit none
    private
-   public :: amplification, is_explicit, film_weights, film_history_weights
+   public :: amplification, has_memory, is_explicit, film_weights, film_history_weights
 
 contains
 
@@ -20,6 +20,13 @@ contains
       contact_factor = -(scheme%b(2) + scheme%b(3))/(scheme%a(2) + scheme%a(3))
       if (abs(contact_factor) > abs(factor)) factor = contact_factor
    end function amplification
+
+   !> Whether temperatures at the end of an increment depend on anything at its start.
+   pure logical function has_memory(scheme)
+      type(thermal_scheme_type), intent(in) :: scheme !! coefficients of (3.4)
+
+      has_memory = abs(scheme%a(2)) + sum(abs(scheme%b)) + abs(scheme%c(1)) > 0.0_dp
+   end function has_memory
 
    !> Whether omega at the end of an increment has no part in its temperatures: a3 = b3 = 0.
    pure logical function is_explicit(scheme)

@@ -8,7 +8,7 @@ module mesh_division
    implicit none
    private
    public :: division_type, divide, side_node, inner_node, child_element
-   public :: refined_values, refined_members
+   public :: refined_values, refined_members, restricted_values
 
    !> New nodes inside an element by its kind.
    integer, parameter :: inner_count(kind_count) = [5, 5, 1, 3, 0]
@@ -202,6 +202,38 @@ contains
          end associate
       end do
    end function refined_values
+
+   !> The transpose of refined_values: what acts at the new nodes, shared by the old ones as the
+   !> shape functions are.
+   pure function restricted_values(division, mesh, values) result(restricted)
+      type(division_type), intent(in) :: division      !! the division
+      type(mesh_type), intent(in) :: mesh              !! the mesh before
+      real(dp), intent(in) :: values(:)                !! (nodes after) values such as forces
+      real(dp) :: restricted(division%nodes)           !! values at the old nodes
+      integer :: e, i, s
+
+      restricted = values(:division%nodes)
+      do s = 1, division%sides
+         i = division%side_start(s)
+         associate (ends => division%ends(:, s))
+            if (ends(2) == 0) then
+               restricted(ends([1, 3])) = restricted(ends([1, 3])) + 0.5_dp*values(i + 1)
+            else
+               restricted(ends) = restricted(ends) + quarter_weights*values(i + 1) + &
+                  quarter_weights(3:1:-1)*values(i + 2)
+            end if
+         end associate
+      end do
+      do e = 1, division%elements
+         associate (kind => mesh%element_kind(e), &
+            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+            do i = 1, inner_count(kind)
+               restricted(nodes) = restricted(nodes) + &
+                  inner_weights(kind, i)*values(inner_node(division, e, i))
+            end do
+         end associate
+      end do
+   end function restricted_values
 
    !> Members of a set of nodes, old and new: a new node belongs to it if all nodes of the side, or
    !> of the element, that it lies on do.

@@ -8,7 +8,7 @@ module steps
    public :: step_type, boundary_type
    public :: load_type, load_kind_count
    public :: load_force, load_pressure, load_traction, load_body_force, load_gravity
-   public :: load_centrifugal, load_nodal_heat, load_face_heat, load_body_heat
+   public :: load_centrifugal, centrifugal_round, load_nodal_heat, load_face_heat, load_body_heat
    public :: load_film_coefficient, load_film_sink, load_temperature
    public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
    public :: solves_heat, solves_mechanics, least_increment
@@ -26,7 +26,11 @@ module steps
    integer, parameter :: load_traction = 3          !! element, 2*(face - 1) + direction [stress]
    integer, parameter :: load_body_force = 4        !! element, direction [force/volume]
    integer, parameter :: load_gravity = 5           !! element, direction [force/mass]
-   integer, parameter :: load_centrifugal = 6       !! element, 1; speed squared [1/time^2]
+   !> Element; 1 and 2: forces along x and y of a plane that turns round the origin, value the
+   !> speed squared; 3 and 4: of its offset from there, value the speed squared times the offset;
+   !> centrifugal_round: of a body of revolution [1/time^2, length/time^2]
+   integer, parameter :: load_centrifugal = 6
+   integer, parameter :: centrifugal_round = 5
    integer, parameter :: load_nodal_heat = 7        !! node, 1; into the body [power]
    integer, parameter :: load_face_heat = 8         !! element, face; into it [power/area]
    integer, parameter :: load_body_heat = 9         !! element, 1 [power/volume]

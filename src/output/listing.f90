@@ -3,6 +3,7 @@
 module listing
    use contact_pairs, only: contact_pairs_type, never_approached
    use errors, only: error_type, set_error, status_internal
+   use listing_errors, only: print_body_errors, print_interface_errors
    use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
    use listing_prints, only: is_due, print_requested
@@ -84,8 +85,14 @@ contains
          call self%diagrams(i)%add(record, record%contacts(i)%status)
       end do
       call print_balances(self%unit, record, model%steps(record%step)%analysis)
+      call print_body_errors(self%unit, record)
       call print_warnings(self, record)
       self%contacts = record%contacts
+      if (allocated(record%errors)) then
+         do i = 1, size(pairs)
+            call print_interface_errors(self%unit, pairs(i)%name, record%errors(i))
+         end do
+      end if
       call print_requested(self%unit, record, model, self%increment_in_step)
       if (.not. table_is_due) return
       do i = 1, size(pairs)

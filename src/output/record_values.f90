@@ -6,9 +6,9 @@ module record_values
    use records, only: contact_record_type, field_record_type, increment_record_type
    implicit none
    private
-   public :: name_length, history_names, contact_pair_names, contact_heat_names
+   public :: name_length, history_names, history_body_names, contact_pair_names, contact_heat_names
    public :: contact_total_names, contact_edge_names
-   public :: history_value, contact_values, point_values, not_a_number
+   public :: history_value, history_body_values, contact_values, point_values, not_a_number
 
    integer, parameter :: name_length = 24   !! length of the names below
 
@@ -16,6 +16,10 @@ module record_values
    character(name_length), parameter :: history_names(10) = [character(name_length) :: &
       'time', 'load', 'iterations', 'heat_in', 'heat_out', 'heat_imbalance', &
       'heat_imbalance_pointwise', 'force_imbalance', 'coupling_gain', 'coupling_gain_max']
+
+   !> Datasets of `/history`, one number a body and increment: with mechanics, with heat.
+   character(name_length), parameter :: history_body_names(2) = [character(name_length) :: &
+      'stress_error', 'heat_flux_error']
 
    !> Datasets of `/contact/<name>`, one number a pair and increment.
    character(name_length), parameter :: contact_pair_names(5) = [character(name_length) :: &
@@ -74,6 +78,21 @@ contains
          value = not_a_number()
       end select
    end function history_value
+
+   !> The numbers of `/history`, one a body.
+   function history_body_values(name, record, bodies) result(values)
+      character(*), intent(in) :: name                     !! one of history_body_names
+      type(increment_record_type), intent(in) :: record    !! the increment
+      integer, intent(in) :: bodies                        !! number of bodies
+      real(dp), allocatable :: values(:)                   !! (bodies) NaN where there are none
+
+      if (name == history_body_names(1)) then
+         if (allocated(record%stress_error%body)) values = record%stress_error%body
+      else
+         if (allocated(record%heat_flux_error%body)) values = record%heat_flux_error%body
+      end if
+      if (.not. allocated(values)) allocate(values(bodies), source=not_a_number())
+   end function history_body_values
 
    !> The numbers of a dataset of `/contact/<name>` in one increment: over the pairs, the edges, or
    !> one alone; the undeformed geometry too. Empty for a name that is not known.

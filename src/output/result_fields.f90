@@ -1,4 +1,5 @@
-!> The part of group `/VTKHDF` that grows: `Steps` and point data of every increment that is due.
+!> The part of group `/VTKHDF` that grows: `Steps`, point and cell data of every increment that is
+!> due.
 !> The geometry is static, so its offsets are zero at every step.
 module result_fields
    use contact_pairs, only: contact_pairs_type
@@ -10,16 +11,18 @@ module result_fields
    use kinds, only: dp
    use record_values, only: contact_values, name_length, not_a_number, point_values
    use records, only: increment_record_type
-   use result_mesh, only: cell_data_names, point_group, steps_group
+   use result_mesh, only: cell_data_names, cell_group, point_group, steps_group
    implicit none
    private
    public :: field_results_type
 
    !> Growing datasets of Steps; those of the same content are links to these.
    integer, parameter :: at_values = 1, at_zero = 2, at_zero_column = 3, at_one = 4, at_offset = 5
-   integer, parameter :: step_sets = 5
+   integer, parameter :: at_cell_offset = 6
+   integer, parameter :: step_sets = 6
 
-   !> Fields of the result file. `sets` holds those of Steps, then one for each of `names`.
+   !> Fields of the result file. `sets` holds those of Steps, then one for each of `names`, then one
+   !> for each of `cell_names`.
    type :: field_results_type
       private
       integer, allocatable, public :: point_node(:)              !! (points) node index
@@ -30,6 +33,8 @@ module result_fields
       integer :: step = 0                                        !! step of the last increment
       integer :: increment_in_step = 0                           !! its number in the step
       character(name_length), allocatable :: names(:)            !! point data that varies
+      character(name_length), allocatable :: cell_names(:)       !! cell data that varies
+      integer :: cells = 0                                       !! number of cells
       type(growing_dataset_type), allocatable, public :: sets(:) !! what grows
    contains
       procedure :: start
@@ -43,10 +48,12 @@ module result_fields
 contains
 
    !> Prepares the datasets.
-   subroutine start(self, pairs, point_node, has_temperature, has_heat, has_mechanics, expected)
+   subroutine start(self, pairs, point_node, cells, has_temperature, has_heat, has_mechanics, &
+      expected)
       class(field_results_type), intent(inout) :: self   !! the fields
       type(contact_pairs_type), intent(in) :: pairs(:)   !! pairs of every interface
       integer, intent(in) :: point_node(:)               !! (points) node index of each point
+      integer, intent(in) :: cells                       !! number of elements
       logical, intent(in) :: has_temperature             !! whether temperatures matter
       logical, intent(in) :: has_heat                    !! whether a step solves heat
       logical, intent(in) :: has_mechanics               !! whether a step solves mechanics
@@ -56,7 +63,10 @@ contains
       self%point_node = point_node
       call find_faces(self, pairs)
       self%names = field_names(has_temperature, has_heat, has_mechanics, size(pairs) > 0)
-      allocate(self%sets(step_sets + size(self%names)))
+      self%cells = cells
+      self%cell_names = pack([character(name_length) :: 'stress_error', 'heat_flux_error'], &
+         [has_mechanics, has_heat])
+      allocate(self%sets(step_sets + size(self%names) + size(self%cell_names)))
       self%sets(at_values) = growing_dataset(steps_group//'Values', as_real, 0, 1, expected)
       self%sets(at_zero) = growing_dataset(steps_group//'PartOffsets', as_long, 0, 1, expected)
       self%sets(at_zero_column) = growing_dataset(steps_group//'CellOffsets', as_long, 1, 1, &
@@ -64,9 +74,15 @@ contains
       self%sets(at_one) = growing_dataset(steps_group//'NumberOfParts', as_long, 0, 1, expected)
       self%sets(at_offset) = growing_dataset(steps_group//'PointDataOffsets/'// &
          trim(self%names(1)), as_long, 0, 1, expected)
+      self%sets(at_cell_offset) = growing_dataset(steps_group//'CellDataOffsets/'// &
+         trim(self%cell_names(1)), as_long, 0, 1, expected)
       do i = 1, size(self%names)
          self%sets(step_sets + i) = growing_dataset(point_group//trim(self%names(i)), as_real, &
             components(self%names(i)), size(point_node), expected)
+      end do
+      do i = 1, size(self%cell_names)
+         self%sets(step_sets + size(self%names) + i) = growing_dataset(cell_group// &
+            trim(self%cell_names(i)), as_real, 0, cells, expected)
       end do
    end subroutine start
 
@@ -96,8 +112,13 @@ contains
       call self%sets(at_zero_column)%append([0.0_dp])
       call self%sets(at_one)%append([1.0_dp])
       call self%sets(at_offset)%append([real(self%increments, dp)*size(self%point_node)])
+      call self%sets(at_cell_offset)%append([real(self%increments, dp)*self%cells])
       do i = 1, size(self%names)
          call self%sets(step_sets + i)%append(field_values(self, self%names(i), record, pairs))
+      end do
+      do i = 1, size(self%cell_names)
+         call self%sets(step_sets + size(self%names) + i)%append(cell_values(self, &
+            self%cell_names(i), record))
       end do
       self%increments = self%increments + 1
    end subroutine append
@@ -124,6 +145,7 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(*), parameter :: zeros = steps_group//'PartOffsets'
       character(*), parameter :: points = steps_group//'PointDataOffsets/'
+      character(*), parameter :: cells = steps_group//'CellDataOffsets/'
       integer :: i
 
       call link_dataset(file, zeros, steps_group//'PointOffsets', error)
@@ -137,9 +159,13 @@ contains
          call link_dataset(file, points//trim(self%names(1)), points//trim(self%names(i)), error)
          if (allocated(error)) return
       end do
-      do i = 1, size(cell_data_names)
-         call link_dataset(file, zeros, steps_group//'CellDataOffsets/'//trim(cell_data_names(i)), &
+      do i = 2, size(self%cell_names)
+         call link_dataset(file, cells//trim(self%cell_names(1)), cells//trim(self%cell_names(i)), &
             error)
+         if (allocated(error)) return
+      end do
+      do i = 1, size(cell_data_names)
+         call link_dataset(file, zeros, cells//trim(cell_data_names(i)), error)
          if (allocated(error)) return
       end do
    end subroutine write_links
@@ -235,6 +261,20 @@ contains
          allocate(values(max(1, components(name))*size(self%point_node)), source=not_a_number())
       end if
    end function field_values
+
+   function cell_values(self, name, record) result(values)
+      class(field_results_type), intent(in) :: self
+      character(*), intent(in) :: name
+      type(increment_record_type), intent(in) :: record
+      real(dp), allocatable :: values(:)
+
+      if (name == 'stress_error') then
+         if (allocated(record%stress_error%element)) values = record%stress_error%element
+      else
+         if (allocated(record%heat_flux_error%element)) values = record%heat_flux_error%element
+      end if
+      if (.not. allocated(values)) allocate(values(self%cells), source=not_a_number())
+   end function cell_values
 
    pure function as_vectors(plane) result(values)
       real(dp), intent(in) :: plane(:, :)

@@ -18,7 +18,7 @@ module result_mesh
    character(*), parameter :: cell_group = '/VTKHDF/CellData/'          !! data of cells
    character(*), parameter :: steps_group = '/VTKHDF/Steps/'            !! data of time
 
-   !> Cell data.
+   !> Cell data that does not vary.
    character(10), parameter :: cell_data_names(3) = [character(10) :: &
       'element_id', 'body', 'material']
 

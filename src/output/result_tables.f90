@@ -1,4 +1,4 @@
-!> Groups `/history`, `/convergence` and `/contact/<name>` of the result file.
+!> Groups `/history`, `/convergence`, `/contact/<name>` and `/errors` of the result file.
 module result_tables
    use contact_pairs, only: contact_pairs_type
    use errors, only: error_type
@@ -8,14 +8,18 @@ module result_tables
    use hdf5_helpers, only: as_integer, as_real, create_group, write_array
    use kinds, only: dp
    use record_values, only: contact_edge_names, contact_heat_names, contact_pair_names, &
-      contact_total_names, contact_values, history_names, history_value, name_length
-   use records, only: contact_record_type, edges_kept, increment_record_type, iteration_record_type
+      contact_total_names, contact_values, history_body_names, history_body_values, history_names, &
+      history_value, name_length
+   use records, only: contact_record_type, edges_kept, estimated_names, estimated_quantities, &
+      increment_record_type, interface_errors_type, iteration_record_type
    implicit none
    private
    public :: history_results_type, convergence_results_type, contact_results_type
+   public :: error_results_type
 
    !> Group `/history`: one row an increment.
    type :: history_results_type
+      integer :: bodies = 0                                !! number of bodies
       character(name_length), allocatable :: names(:)      !! datasets that grow
       type(growing_dataset_type), allocatable :: sets(:)   !! one for each of names
    contains
@@ -45,24 +49,41 @@ module result_tables
       procedure, nopass :: write_static => write_contact_static
    end type contact_results_type
 
+   integer, parameter :: error_columns = 4   !! value, errors of mesh, increments and iteration
+
+   !> Group `/errors`: one row a step. `sets` holds the times, then for each interface one dataset
+   !> for each of estimated_names.
+   type :: error_results_type
+      type(growing_dataset_type), allocatable :: sets(:)
+   contains
+      procedure :: start => start_errors
+      procedure :: append => append_errors
+      procedure, nopass :: create_groups => create_error_groups
+   end type error_results_type
+
 contains
 
    !> Prepares the datasets.
-   subroutine start_history(self, has_heat, has_mechanics, has_coupling, expected)
+   subroutine start_history(self, has_heat, has_mechanics, has_coupling, bodies, expected)
       class(history_results_type), intent(inout) :: self  !! the group
       logical, intent(in) :: has_heat                     !! whether a step solves heat
       logical, intent(in) :: has_mechanics                !! whether a step solves mechanics
       logical, intent(in) :: has_coupling                 !! whether a step couples both in contact
+      integer, intent(in) :: bodies                       !! number of bodies
       integer, intent(in) :: expected                     !! increments that are expected
-      integer :: i, storage
+      integer :: i, storage, width
 
       self%names = pack(history_names, (has_heat .or. index(history_names, 'heat_') /= 1) .and. &
          (has_mechanics .or. history_names /= 'force_imbalance') .and. &
          (has_coupling .or. index(history_names, 'coupling_') /= 1))
+      self%bodies = bodies
+      self%names = [self%names, pack(history_body_names, [has_mechanics, has_heat])]
       allocate(self%sets(size(self%names)))
       do i = 1, size(self%names)
          storage = merge(as_integer, as_real, self%names(i) == 'iterations')
-         self%sets(i) = growing_dataset('/history/'//trim(self%names(i)), storage, 0, 1, expected)
+         width = merge(bodies, 0, any(self%names(i) == history_body_names))
+         self%sets(i) = growing_dataset('/history/'//trim(self%names(i)), storage, width, 1, &
+            expected)
       end do
    end subroutine start_history
 
@@ -73,7 +94,11 @@ contains
       integer :: i
 
       do i = 1, size(self%sets)
-         call self%sets(i)%append([history_value(self%names(i), record)])
+         if (any(self%names(i) == history_body_names)) then
+            call self%sets(i)%append(history_body_values(self%names(i), record, self%bodies))
+         else
+            call self%sets(i)%append([history_value(self%names(i), record)])
+         end if
       end do
    end subroutine append_history
 
@@ -182,5 +207,59 @@ contains
       if (allocated(error)) return
       call write_array(file, group//'/weight', pairs%weight, error)
    end subroutine write_contact_static
+
+   !> Prepares the datasets; none without an interface.
+   subroutine start_errors(self, pairs, steps)
+      class(error_results_type), intent(inout) :: self    !! the group
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      integer, intent(in) :: steps                        !! steps of the deck
+      integer :: i, q
+
+      if (size(pairs) == 0) then
+         allocate(self%sets(0))
+         return
+      end if
+      allocate(self%sets(1 + estimated_quantities*size(pairs)))
+      self%sets(1) = growing_dataset('/errors/time', as_real, 0, 1, steps)
+      do i = 1, size(pairs)
+         do q = 1, estimated_quantities
+            self%sets(1 + (i - 1)*estimated_quantities + q) = growing_dataset('/errors/'// &
+               pairs(i)%name//'/'//trim(estimated_names(q)), as_real, error_columns, 1, steps)
+         end do
+      end do
+   end subroutine start_errors
+
+   !> Adds the end of a step.
+   subroutine append_errors(self, time, errors)
+      class(error_results_type), intent(inout) :: self        !! the group
+      real(dp), intent(in) :: time                            !! total time [time]
+      type(interface_errors_type), intent(in) :: errors(:)    !! (interfaces)
+      integer :: i, q
+
+      call self%sets(1)%append([time])
+      do i = 1, size(errors)
+         do q = 1, estimated_quantities
+            call self%sets(1 + (i - 1)*estimated_quantities + q)%append([errors(i)%value(q), &
+               errors(i)%mesh(q), errors(i)%increment(q), errors(i)%iteration(q)])
+         end do
+      end do
+   end subroutine append_errors
+
+   !> Creates the groups.
+   !> Error: status_internal, when HDF5 refuses.
+   subroutine create_error_groups(file, pairs, error)
+      integer(hid_t), intent(in) :: file                  !! the open file
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      integer :: i
+
+      if (size(pairs) == 0) return
+      call create_group(file, '/errors', error)
+      if (allocated(error)) return
+      do i = 1, size(pairs)
+         call create_group(file, '/errors/'//pairs(i)%name, error)
+         if (allocated(error)) return
+      end do
+   end subroutine create_error_groups
 
 end module result_tables

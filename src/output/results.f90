@@ -16,7 +16,8 @@ module results
    use result_fields, only: field_results_type
    use result_mesh, only: write_result_mesh
    use result_run, only: write_run
-   use result_tables, only: contact_results_type, convergence_results_type, history_results_type
+   use result_tables, only: contact_results_type, convergence_results_type, error_results_type, &
+      history_results_type
    use run_summaries, only: or_blank, run_summary_type
    use status_files, only: status_file_type
    use steps, only: solves_heat, solves_mechanics
@@ -39,6 +40,7 @@ module results
       type(history_results_type) :: history                   !! `/history`
       type(convergence_results_type) :: convergence           !! `/convergence`
       type(contact_results_type), allocatable :: contacts(:)  !! `/contact/<name>`
+      type(error_results_type) :: errors                      !! `/errors`
       integer, allocatable :: element_points(:, :)            !! (8, elements)
       type(string_type), allocatable :: cards(:)              !! card images
       logical :: is_broken = .false.                          !! whether writing has failed
@@ -75,11 +77,13 @@ contains
       has_heat = any(solves_heat(model%steps%analysis))
       has_mechanics = any(solves_mechanics(model%steps%analysis))
       expected = expected_increments(model)
-      call self%fields%start(pairs, point_node, has_heat .or. any(model%materials%has_expansion), &
-         has_heat, has_mechanics, expected)
+      call self%fields%start(pairs, point_node, size(model%mesh%element_kind), &
+         has_heat .or. any(model%materials%has_expansion), has_heat, has_mechanics, expected)
       call self%history%start(has_heat, has_mechanics, size(pairs) > 0 .and. any(solves_heat( &
-         model%steps%analysis) .and. solves_mechanics(model%steps%analysis)), expected)
+         model%steps%analysis) .and. solves_mechanics(model%steps%analysis)), &
+         model%mesh%body_count, expected)
       call self%convergence%start(8*expected)
+      call self%errors%start(pairs, size(model%steps))
       allocate(self%contacts(size(pairs)))
       do i = 1, size(pairs)
          call self%contacts(i)%start(pairs(i), has_heat, expected)
@@ -111,6 +115,7 @@ contains
       do i = 1, size(pairs)
          call self%contacts(i)%append(pairs(i), record%contacts(i))
       end do
+      if (allocated(record%errors)) call self%errors%append(record%time, record%errors)
       fields_are_due = self%fields%is_due(record, model%steps(record%step)%field_frequency)
       if (fields_are_due) call self%fields%append(record, pairs)
       is_due = self%file%is_due()
@@ -237,6 +242,8 @@ contains
       if (allocated(error)) return
       call flush_sets(self%convergence%sets, self%file%id, error)
       if (allocated(error)) return
+      call flush_sets(self%errors%sets, self%file%id, error)
+      if (allocated(error)) return
       do i = 1, size(self%contacts)
          call flush_sets(self%contacts(i)%sets, self%file%id, error)
          if (allocated(error)) return
@@ -264,6 +271,8 @@ contains
       call create_group(self%file%id, '/convergence', error)
       if (allocated(error)) return
       call create_group(self%file%id, '/contact', error)
+      if (allocated(error)) return
+      call self%errors%create_groups(self%file%id, pairs, error)
       if (allocated(error)) return
       do i = 1, size(pairs)
          call self%contacts(i)%write_static(self%file%id, pairs(i), model%mesh%node_number, &

@@ -6,9 +6,9 @@ module increment_records
    use contact_operator, only: kept_contact, thermal_forces
    use contact_states, only: contact_state_type
    use contact_system, only: contact_system_type
+   use discretisation_errors, only: recovery_type
    use element_kinds, only: axisymmetric
    use element_points, only: points_of_elements
-   use field_recovery, only: point_map_type, recover_heat_flux, recover_stress
    use heat_balance, only: balance_heat
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
@@ -35,10 +35,10 @@ contains
 
    !> Completes the record of an increment with contact state, fields and balances, and settles the
    !> slip memory. What the step does not solve stands as the last step that did left it.
-   subroutine make_record(operators, model, points, loads, step, previous, next, record)
+   subroutine make_record(operators, model, recovery, loads, step, previous, next, record)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
-      type(point_map_type), intent(in) :: points              !! where averaged fields live
+      type(recovery_type), intent(in) :: recovery             !! stress and flux with their errors
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
       type(step_type), intent(in) :: step                     !! the step
       type(solution_state_type), intent(in) :: previous       !! state at the start
@@ -57,7 +57,7 @@ contains
       end do
       record%fields%temperature = next%temperature
       if (solves_mechanics(step%analysis)) then
-         call balance_forces(operators, model, points, loads, next, record)
+         call balance_forces(operators, model, recovery, loads, next, record)
       else
          record%force_imbalance = ieee_value(1.0_dp, ieee_quiet_nan)
          record%contact_violation = record%force_imbalance
@@ -65,14 +65,15 @@ contains
       if (next%has_mechanics) then
          record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
          record%fields%stress = next%stress
+         record%stress_error = next%stress_error
          record%fields%reaction = next%reaction
          record%fields%external_force = next%reaction + reshape(next%force_load, &
             shape(next%reaction))
       end if
       call warn_of_floor(step, record)
       if (solves_heat(step%analysis)) then
-         record%fields%heat_flux = recover_heat_flux(model%mesh, model%sections, &
-            model%materials, model%orientations, points, next%temperature)
+         call recovery%recover_heat_flux(model, next%temperature, record%fields%heat_flux, &
+            record%heat_flux_error)
          call balance_heat(operators, model, loads, step%scheme, carrying, previous, next, record)
       else
          record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -206,10 +207,10 @@ contains
    end function least_displacement
 
    !> Stress, reactions, force balance, and the contact conditions on the recovered displacements.
-   subroutine balance_forces(operators, model, points, loads, next, record)
+   subroutine balance_forces(operators, model, recovery, loads, next, record)
       type(interface_operators_type), intent(in) :: operators
       type(model_type), intent(in) :: model
-      type(point_map_type), intent(in) :: points
+      type(recovery_type), intent(in) :: recovery
       type(loads_type), intent(in) :: loads
       type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record
@@ -217,9 +218,9 @@ contains
       real(dp) :: least, length, scale
       logical :: along_x
 
-      next%stress = recover_stress(model%mesh, model%sections, model%materials, &
-         model%orientations, points, reshape(next%displacement, [2, size(next%temperature)]), &
-         next%temperature - model%initial_temperature)
+      call recovery%recover_stress(model, reshape(next%displacement, [2, &
+         size(next%temperature)]), next%temperature - model%initial_temperature, next%stress, &
+         next%stress_error)
       next%stress_temperature = next%temperature
       least = least_displacement(model, next%temperature)
       length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp))

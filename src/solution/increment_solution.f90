@@ -35,7 +35,8 @@ contains
       type(model_type), intent(in) :: model                      !! the model
       type(step_type), intent(in) :: step                        !! the step
       type(solution_state_type), intent(in) :: previous          !! state at the start
-      type(solution_state_type), intent(inout) :: next           !! guess in, solution out
+      !> guess and loads at the end in, solution out
+      type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record       !! receives passes and work
       type(error_type), allocatable, intent(out) :: error        !! see above
       type(increment_data_type) :: data
@@ -211,7 +212,6 @@ contains
       type(solution_state_type), intent(inout) :: next
       real(dp) :: thermal(2*size(next%temperature))
 
-      next%force_load = loads%nodal_forces()
       thermal = thermal_forces(operators, next%temperature - model%initial_temperature)
       operators%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       call operators%mechanical%set_load(next%force_load + thermal, loads%displacement%value)

@@ -1,8 +1,8 @@
 !> Load stepping: one call of advance solves one increment.
 module increments
    use clock, only: wall_seconds
+   use discretisation_errors, only: recovery_type
    use errors, only: error_type, set_error, status_no_convergence
-   use field_recovery, only: make_points, point_map_type
    use films, only: left_films
    use increment_checks, only: check_heat, check_values, check_violation, warn_of_choices
    use increment_control, only: increment_control_type
@@ -32,7 +32,7 @@ module increments
    type :: simulation_type
       type(interface_operators_type) :: operators   !! the bodies reduced to their contact unknowns
       type(step_reduction_type) :: reduction        !! what of them is numbered and reduced
-      type(point_map_type) :: points                !! where averaged fields live
+      type(recovery_type) :: recovery               !! stress and flux with their errors
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
       type(increment_control_type) :: control       !! place in the steps, size of increments
@@ -62,7 +62,7 @@ contains
       self%undecided = ''
       call self%operators%prepare(model, error)
       if (allocated(error)) return
-      self%points = make_points(model%mesh)
+      call self%recovery%prepare(model)
       call self%loads%prepare(model)
       self%state = make_initial_state(model, self%operators)
       self%seconds%assemble = (wall_seconds() - since)
@@ -209,6 +209,7 @@ contains
          next%heat_load = self%loads%heat_load()
          next%film = self%loads%film_matrix()
       end if
+      next%force_load = self%loads%nodal_forces()
       associate (step => model%steps(self%control%step), operators => self%operators)
          if (solves_heat(step%analysis)) then
             call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, &
@@ -232,7 +233,8 @@ contains
             next, record, self%undecided)
          since = wall_seconds()
          call recover_fields(operators, self%loads, model, step, next)
-         call make_record(operators, model, self%points, self%loads, step, self%state, next, record)
+         call make_record(operators, model, self%recovery, self%loads, step, self%state, next, &
+            record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_values(record, error)
          if (allocated(error)) return

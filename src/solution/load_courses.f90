@@ -26,6 +26,7 @@ module load_courses
       real(dp), allocatable :: value(:)      !! (n) present value
       integer, allocatable :: amplitude(:)   !! (n) index of the amplitude, or 0
       integer, allocatable :: card(:)        !! (n) card that gave the load last
+      logical, allocatable :: on_total_time(:)   !! (amplitudes) abscissa is total time
    contains
       procedure :: prepare
       procedure :: begin_step
@@ -38,9 +39,10 @@ module load_courses
 contains
 
    !> Starts with no load given.
-   pure subroutine prepare(self, initial)
+   pure subroutine prepare(self, initial, amplitudes)
       class(load_course_type), intent(inout) :: self !! the loads
       real(dp), intent(in) :: initial(:)             !! (n) values before anything is given
+      type(amplitude_type), intent(in) :: amplitudes(:)  !! load curves
 
       allocate (self%active(size(initial)), self%at_once(size(initial)), &
          self%permanent(size(initial)), source=.false.)
@@ -49,15 +51,23 @@ contains
       self%start = initial
       self%target = initial
       self%value = initial
+      allocate (self%on_total_time(size(amplitudes)))
+      self%on_total_time = amplitudes%total_time
    end subroutine prepare
 
-   !> Starts a step: loads without an amplitude stay at their last value unless given anew; one that
-   !> is not given has the present value, from which it ramps once it is.
+   !> Starts a step: loads stay at their last value unless given anew, but for those that an
+   !> amplitude on total time moves on; as in CalculiX one on step time ends with its step. A load
+   !> that is not given has the present value, from which it ramps once it is.
    pure subroutine begin_step(self, present_value)
       class(load_course_type), intent(inout) :: self !! the loads
       real(dp), intent(in) :: present_value(:)       !! (n) values of loads that are not given
+      integer :: i
 
       where (.not. self%active) self%value = present_value
+      do i = 1, size(self%amplitude)
+         if (self%amplitude(i) == 0) cycle
+         if (.not. self%on_total_time(self%amplitude(i))) self%amplitude(i) = 0
+      end do
       self%start = self%value
       where (self%amplitude == 0) self%target = self%value
    end subroutine begin_step
@@ -77,7 +87,7 @@ contains
    end subroutine give
 
    !> Ends a load as OP=NEW does in CalculiX: it goes to its rest over the step where it would ramp,
-   !> at once where it follows an amplitude or nothing ramps.
+   !> at once where it follows an amplitude on total time or nothing ramps.
    pure subroutine fade(self, i)
       class(load_course_type), intent(inout) :: self !! the loads
       integer, intent(in) :: i                       !! number of the load

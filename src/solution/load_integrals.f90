@@ -1,6 +1,6 @@
 !> Nodal forces, heat rates and film matrices of a unit load on one place.
 module load_integrals
-   use body_integrals, only: body_weights, body_weights_radius
+   use body_integrals, only: body_moments, body_weights, body_weights_radius
    use element_kinds, only: axisymmetric, element_node_count, side_nodes
    use kinds, only: dp
    use model, only: model_type
@@ -44,7 +44,7 @@ contains
          x = model%mesh%coordinates(:, nodes)
          associate (element_kind => model%mesh%element_kind(item))
             if (kind == load_centrifugal) then
-               forces(1, :) = body_weights_radius(element_kind, x, thickness(model, item), &
+               forces = turning_forces(element_kind, x, component, thickness(model, item), &
                   is_round(model, item))
             else
                forces(component, :) = body_weights(element_kind, x, thickness(model, item), &
@@ -56,6 +56,25 @@ contains
          allocate (nodes(0), forces(2, 0))
       end select
    end subroutine unit_forces
+
+   !> Nodal forces of one component of load_centrifugal, by the density.
+   pure function turning_forces(kind, x, component, thickness, round) result(forces)
+      integer, intent(in) :: kind, component
+      real(dp), intent(in) :: x(:, :), thickness
+      logical, intent(in) :: round
+      real(dp) :: forces(2, element_node_count(kind))
+
+      forces = 0.0_dp
+      select case (component)
+      case (1, 2)
+         forces = body_moments(kind, x, thickness, round)
+         forces(3 - component, :) = 0.0_dp
+      case (3, 4)
+         forces(component - 2, :) = body_weights(kind, x, thickness, round)
+      case default
+         forces(1, :) = body_weights_radius(kind, x, thickness, round)
+      end select
+   end function turning_forces
 
    !> Nodal heat rates of a unit load; none of a load that is no heat.
    pure subroutine unit_heat(model, kind, item, component, nodes, heat)

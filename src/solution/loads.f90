@@ -61,11 +61,11 @@ contains
       integer :: s
 
       allocate (zero(2*size(model%mesh%node_number)), source=0.0_dp)
-      call self%displacement%prepare(zero)
+      call self%displacement%prepare(zero, model%amplitudes)
       call hold_axis(model%mesh, self%displacement)
-      call self%temperature%prepare(model%initial_temperature)
+      call self%temperature%prepare(model%initial_temperature, model%amplitudes)
       self%places = find_places(model%steps)
-      call self%applied%prepare(values_at(self%places, model%initial_temperature))
+      call self%applied%prepare(values_at(self%places, model%initial_temperature), model%amplitudes)
       ! As in CalculiX the sink of a film acts whole at once, while its coefficient ramps.
       self%applied%at_once = self%places%kind == load_film_sink
       do s = 1, size(model%steps)

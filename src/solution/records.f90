@@ -7,14 +7,33 @@ module records
    private
    public :: element_points_record_type
    public :: increment_record_type, contact_record_type, iteration_record_type
-   public :: field_record_type, work_record_type, attempt_record_type
+   public :: field_record_type, work_record_type, attempt_record_type, error_record_type
    public :: add_attempts, note_failure
+   public :: interface_errors_type, estimated_quantities, estimated_names, is_band
    public :: status_open, status_slip, status_stick, edges_kept
 
    integer, parameter :: status_open = 0    !! gap, zone I
    integer, parameter :: status_slip = 1    !! closed, slipping or frictionless, zone II
    integer, parameter :: status_stick = 2   !! closed and stuck, zone III
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
+
+   integer, parameter :: estimated_quantities = 6   !! quantities with an estimated error
+   character(13), parameter :: estimated_names(estimated_quantities) = [character(13) :: &
+      'normal_force', 'shear_force', 'heat_rate', 'peak_pressure', 'edge_contact', &
+      'edge_stick']   !! in the order of interface_errors_type
+   logical, parameter :: is_band(estimated_quantities) = [.false., .false., .false., .false., &
+      .true., .true.]   !! whether its errors are bands to both sides
+
+   !> Errors of an interface, as estimated: what would have to be added to the quantities, and of
+   !> edges how far they may be off either way. NaN where nothing can be said.
+   type :: interface_errors_type
+      real(dp) :: value(estimated_quantities)       !! the quantities as computed
+      real(dp) :: mesh(estimated_quantities)        !! error of the mesh
+      real(dp) :: increment(estimated_quantities)   !! error of the size of the increments
+      real(dp) :: iteration(estimated_quantities)   !! largest error of the fixed point, >= 0
+   contains
+      procedure :: total => total_error
+   end type interface_errors_type
 
    !> State of one contact interface; arrays over its pairs, in the order of contact_pairs_type.
    type :: contact_record_type
@@ -61,6 +80,14 @@ module records
       !> (2, points) along 1, 2; unallocated without heat [power/length^2]
       real(dp), allocatable :: heat_flux(:, :)
    end type element_points_record_type
+
+   !> Estimated discretisation error of stress or of heat flux (Zienkiewicz & Zhu).
+   type :: error_record_type
+      !> (bodies) error in the energy norm, relative to that of the whole; 0 without either
+      real(dp), allocatable :: body(:)
+      !> (elements) root mean square of the difference to the recovered field [stress or flux]
+      real(dp), allocatable :: element(:)
+   end type error_record_type
 
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and
    !> section.
@@ -122,6 +149,10 @@ module records
       !> Passes of all attempts in their order; unallocated without coupling.
       type(iteration_record_type), allocatable :: iterations(:)
       type(field_record_type) :: fields                         !! fields
+      !> (interfaces) at the end of a step; else unallocated
+      type(interface_errors_type), allocatable :: errors(:)
+      type(error_record_type) :: stress_error     !! unallocated before mechanics is solved
+      type(error_record_type) :: heat_flux_error  !! unallocated without heat
       !> One an *EL PRINT of the step; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work                            !! re-factorisation
@@ -130,6 +161,16 @@ module records
    end type increment_record_type
 
 contains
+
+   !> All errors together; those of the iteration count with the sign of the others.
+   pure function total_error(self) result(total)
+      class(interface_errors_type), intent(in) :: self   !! errors of an interface
+      real(dp) :: total(estimated_quantities)            !! as the errors of the mesh
+
+      total = self%mesh + self%increment
+      where (is_band) total = abs(self%mesh) + abs(self%increment)
+      total = total + sign(self%iteration, total)
+   end function total_error
 
    !> Puts the attempts at an increment that failed, with their passes and their work, before those
    !> of the last one.

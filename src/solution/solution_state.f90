@@ -2,6 +2,7 @@
 module solution_state
    use contact_states, only: contact_state_type
    use kinds, only: dp
+   use records, only: error_record_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -21,6 +22,7 @@ module solution_state
       real(dp), allocatable :: smallest_gap(:)      !! (m) smallest gap so far [length]
       !> (4, points) of the last increment that solved mechanics; unallocated before it [stress]
       real(dp), allocatable :: stress(:, :)
+      type(error_record_type) :: stress_error       !! likewise
       real(dp), allocatable :: reaction(:, :)       !! (2, nodes) likewise [force]
       real(dp), allocatable :: stress_temperature(:)  !! (nodes) that stress is of [temperature]
       real(dp), allocatable :: heat_load(:)         !! (nodes) Q of (3.3) [power]

@@ -14,7 +14,7 @@ contains
 
    !> Marks the rows that are Pareto-optimal by CPU seconds and worst error, both with two digits,
    !> negligible errors as one; recommends one row for each wish, the cheapest that meets it in all
-   !> quantities that can be known so well.
+   !> quantities that can be known so well, and meets the wishes before it likewise.
    pure subroutine judge_rows(trade)
       type(trade_type), intent(inout) :: trade   !! the trade, with the errors of its rows
       integer :: wish
@@ -48,19 +48,17 @@ contains
       type(trade_type), intent(inout) :: trade
       integer, intent(in) :: wish
       logical :: is_reachable(quantity_count), meets
-      integer :: q, i, best
+      integer :: q, i, k, best
 
-      is_reachable = .false.
-      do i = 1, trade%count
-         if (trade%rows(i)%status == 0) is_reachable = is_reachable .or. (trade%is_known .and. &
-            trade%rows(i)%errors <= wishes(wish))
-      end do
+      is_reachable = reachable(trade, wish)
       best = 0
       if (any(is_reachable)) then
          do i = 1, trade%count
             associate (row => trade%rows(i))
-               meets = row%status == 0 .and. &
-                  all(row%errors <= wishes(wish) .or. .not. is_reachable)
+               meets = row%status == 0
+               do k = 1, wish
+                  meets = meets .and. all(row%errors <= wishes(k) .or. .not. reachable(trade, k))
+               end do
                if (.not. meets) cycle
                if (best > 0) meets = row%cpu_seconds < trade%rows(best)%cpu_seconds
                if (meets) best = i
@@ -77,6 +75,20 @@ contains
       trade%remarks(wish)%value = 'no row meets it in all quantities'
       if (.not. any(trade%is_known)) trade%remarks(wish)%value = 'there is nothing to judge by'
    end subroutine recommend
+
+   !> Quantities that some row has as well as wished.
+   pure function reachable(trade, wish) result(is_reachable)
+      type(trade_type), intent(in) :: trade
+      integer, intent(in) :: wish
+      logical :: is_reachable(quantity_count)
+      integer :: i
+
+      is_reachable = .false.
+      do i = 1, trade%count
+         if (trade%rows(i)%status == 0) is_reachable = is_reachable .or. (trade%is_known .and. &
+            trade%rows(i)%errors <= wishes(wish))
+      end do
+   end function reachable
 
    !> Says how well a quantity is known that no row has as well as wished.
    pure subroutine remark(trade, wish, q, words)

@@ -69,7 +69,8 @@ contains
          to_text(row%status)//','//quoted(row%reason)//','//to_text(row%values%increments)//','// &
          to_text(row%values%passes)//','//to_text(size(row%cpu))//','// &
          scientific(row%cpu_seconds)//','//scientific(row%peak_bytes/1.0e6_dp)// &
-         errors_text(row%errors)//','//number_or_empty(row%worst)//','//flag(row%is_optimal)
+         errors_text(row%errors)//','// &
+         number_or_empty(row%worst)//','//flag(row%is_optimal)
       do i = 1, wish_count
          line = line//','
          if (.not. row%is_recommended(i)) cycle

@@ -22,9 +22,9 @@ def run(*arguments, folder=None, seconds=300):
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=seconds)
 
 
-def solve(deck, *arguments, status=0):
+def solve(deck, *arguments, status=0, seconds=300):
     """Solve a deck, results beside it, with the exit status given; return the result file."""
-    process = run("run", "--quiet", deck, "--out", deck.parent, *arguments)
+    process = run("run", "--quiet", deck, "--out", deck.parent, *arguments, seconds=seconds)
     assert process.returncode == status, process.stderr
     return deck.with_suffix(".vtkhdf")
 

@@ -99,10 +99,13 @@ def test_a_prescribed_temperature_starts_from_that_of_the_node(tmp_path):
 
 @pytest.mark.parametrize(("first", "options", "second", "left"), [
     ("*STEP", "", "*STEP", 0.75), ("*STEP", "", "*STEP, AMPLITUDE=STEP", 0.0),
-    ("*STEP, AMPLITUDE=STEP", "", "*STEP", 0.75), ("*STEP", ", AMPLITUDE=FULL", "*STEP", 0.0)])
+    ("*STEP, AMPLITUDE=STEP", "", "*STEP", 0.75), ("*STEP", ", AMPLITUDE=FULL", "*STEP", 0.75),
+    ("*STEP", ", AMPLITUDE=ALL", "*STEP", 0.0)])
 def test_end_of_a_load(tmp_path, first, options, second, left):
-    """Over the step where that ramps; at once where it does not, or the load had an amplitude."""
+    """Over the step where that ramps; at once where it does not, or the load has an amplitude on
+    total time, which alone outlives its step."""
     deck = block("*AMPLITUDE, NAME=FULL", "0., 1., 1., 1.",
+                 "*AMPLITUDE, NAME=ALL, TIME=TOTAL TIME", "0., 1., 1., 1.",
                  *static(f"*DSLOAD{options}", "BODY.TOP, P, 5.", first=first),
                  *static("*DSLOAD, OP=NEW", "BODY.RIGHT, P, 0.", first=second, times="0.25, 1."))
     judge(tmp_path, deck, [("S22", "BODY", 1.0, -5.0, SMALL),

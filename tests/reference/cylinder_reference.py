@@ -335,8 +335,13 @@ class Contact:
     # Zone edges, sharpened below the nodal spacing
 
     def contact_edge(self, state, k):
-        """Edge between the closed pair k and the open pair k+1: p^2 from inside, g^(2/3) from outside, to zero."""
+        """Edge between the closed pair k and the open pair k+1: g^(2/3) of the second to fourth open pair to zero, or,
+        where there are not so many, p^2 from inside and g^(2/3) from outside."""
         s, places = self.s, []
+        if k + 4 < self.count and (state.status[k + 2:k + 5] == OPEN).all():
+            g = np.maximum(state.g[k + 2:k + 5], 0)**(2 / 3)
+            if (np.diff(g) > 0).all():
+                return np.clip(np.polyfit(g / g[-1], s[k + 2:k + 5], 2)[-1], s[k], s[k + 1])
         if k > 0 and state.status[k - 1] != OPEN:
             inner, last = state.p[k - 1]**2, state.p[k]**2
             reach = (s[k] - s[k - 1]) * last / (inner - last) if inner > last else np.inf

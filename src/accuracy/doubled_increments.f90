@@ -1,0 +1,119 @@
+!> The run once more with increments of twice the size, on the pairs alone: it is led beside the run
+!> and takes one increment where the run has taken two. Of an odd number of increments in a step it
+!> takes the first alone, for the last one tells most.
+module doubled_increments
+   use controls, only: start_type
+   use errors, only: error_type
+   use films, only: left_films
+   use increment_solution, only: recover_fields, solve_pairs
+   use interface_operators, only: interface_operators_type
+   use kinds, only: dp
+   use loads, only: loads_type
+   use model, only: model_type
+   use records, only: increment_record_type
+   use scheme_properties, only: has_memory
+   use solution_state, only: solution_state_type
+   use steps, only: solves_heat, solves_mechanics, step_type
+   implicit none
+   private
+   public :: doubled_increments_type
+
+   real(dp), parameter :: almost_none = 1.0e-6_dp   !! of an increment: belongs to the one before
+   real(dp), parameter :: tolerance = 1.0e-6_dp   !! of the fixed point; errors are far larger
+
+   !> Where the second run stands.
+   type :: doubled_increments_type
+      logical :: is_led = .false.              !! whether the path of the run matters at all
+      logical :: is_lost = .false.             !! whether one of its increments had no solution
+      type(solution_state_type) :: state       !! its state
+      real(dp) :: time = 0.0_dp                !! total time of it [time]
+      integer :: waiting = 0                   !! increments of the run since then
+      integer :: step = 0                      !! step of the last of these
+      logical :: has_doubled = .false.         !! whether it has taken two for one yet
+   contains
+      procedure :: start
+      procedure :: follow
+   end type doubled_increments_type
+
+contains
+
+   !> Starts beside a run. The path matters with friction, and with schemes of (3.4) that take
+   !> anything from the start of an increment.
+   subroutine start(self, model, operators, state)
+      class(doubled_increments_type), intent(out) :: self        !! the second run
+      type(model_type), intent(in) :: model                      !! the model
+      type(interface_operators_type), intent(in) :: operators    !! the bodies, paired
+      type(solution_state_type), intent(in) :: state             !! state before the first increment
+      integer :: s
+
+      self%is_led = any(operators%pairs%friction > 0.0_dp)
+      do s = 1, size(model%steps)
+         self%is_led = self%is_led .or. (solves_heat(model%steps(s)%analysis) .and. &
+            has_memory(model%steps(s)%scheme) .and. size(operators%pairs%slave) > 0)
+      end do
+      if (self%is_led) self%state = state
+   end subroutine start
+
+   !> Takes note of an accepted increment; at every second one, and at the end of a step, the second
+   !> run moves on to its end.
+   subroutine follow(self, model, operators, loads, number, accepted, time, ends_step)
+      class(doubled_increments_type), intent(inout) :: self      !! the second run
+      type(model_type), intent(in) :: model                      !! the model
+      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+      type(loads_type), intent(in) :: loads                      !! loads at its end
+      integer, intent(in) :: number                              !! number of the step
+      type(solution_state_type), intent(in) :: accepted          !! the run's state there
+      real(dp), intent(in) :: time                               !! total time there [time]
+      logical, intent(in) :: ends_step                           !! whether the step ends there
+      type(error_type), allocatable :: error
+      type(solution_state_type) :: before, next
+      type(step_type) :: doubled
+      type(increment_record_type) :: record
+
+      if (.not. self%is_led .or. self%is_lost) return
+      if (number /= self%step) self%waiting = modulo(planned_increments(model%steps(number)), 2)
+      self%step = number
+      self%waiting = self%waiting + 1
+      if (self%waiting < 2 .and. .not. ends_step) return
+      self%has_doubled = self%has_doubled .or. time - self%time > 1.5_dp*accepted%increment_size
+      doubled = model%steps(number)
+      doubled%start = start_type()
+      doubled%fixed_point%tolerance = max(tolerance, &
+         doubled%fixed_point%tolerance)
+      next = self%state
+      before = self%state
+      next%contact = accepted%contact
+      next%contact%tangential = self%state%contact%tangential
+      if (.not. has_memory(doubled%scheme)) then
+         ! The run's solution is a guess that is nearly right, and nothing else is taken of omega.
+         before%omega = accepted%omega
+         before%omega_before = accepted%omega
+      end if
+      next%increment_size = time - self%time
+      next%heat_load = accepted%heat_load
+      next%film = accepted%film
+      next%force_load = accepted%force_load
+      if (solves_heat(doubled%analysis)) then
+         call operators%set_film(left_films(doubled%scheme, self%state%film, next%film), model, &
+            error)
+      end if
+      if (.not. allocated(error)) call solve_pairs(operators, loads, model, doubled, before, &
+         next, record, error)
+      self%is_lost = allocated(error)
+      if (self%is_lost) return
+      if (has_memory(doubled%scheme) .or. .not. solves_mechanics(doubled%analysis)) then
+         call recover_fields(operators, loads, model, doubled, next)
+      end if
+      self%state = next
+      self%time = time
+      self%waiting = 0
+   end subroutine follow
+
+   !> Increments of a step without cut-backs and landings.
+   pure integer function planned_increments(step)
+      type(step_type), intent(in) :: step
+
+      planned_increments = ceiling(step%period/step%first_increment - almost_none)
+   end function planned_increments
+
+end module doubled_increments

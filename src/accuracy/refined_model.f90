@@ -1,0 +1,188 @@
+!> The model with every element divided into four: matrices of its bodies, its pairs and loads, and
+!> the maps between both meshes. The old mesh's fields are fields of the new one.
+module refined_model
+   use bodies, only: find_bodies
+   use contact_pairs, only: contact_pairs_type
+   use errors, only: error_type
+   use kinds, only: dp
+   use loads, only: loads_type
+   use mesh, only: mesh_type
+   use mesh_division, only: divide, division_type, refined_members, refined_values, &
+      restricted_values
+   use model, only: model_type
+   use pair_rows, only: pair_row_type, pair_surfaces, row_of
+   use refinement, only: refine
+   use sparse_matrix, only: linear_combination, sparse_matrix_type
+   use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
+   use thermal_matrix, only: assemble_conduction
+   implicit none
+   private
+   public :: refined_model_type
+
+   !> The refined model. Its old nodes keep their indexes, its new ones follow.
+   type :: refined_model_type
+      type(model_type) :: model                 !! the model, refined once
+      type(mesh_type) :: coarse                 !! the mesh before
+      type(division_type) :: division           !! how its elements were divided
+      type(contact_pairs_type), allocatable :: interfaces(:)  !! interfaces in the deck's order
+      type(pair_row_type) :: pairs              !! all their pairs
+      integer, allocatable :: old_pair(:)       !! (m) pair of the old mesh, 0 for a new one
+      !> (2, m) old pairs on both sides of a new one; of an old one itself
+      integer, allocatable :: neighbours(:, :)
+      logical, allocatable :: at_old_pair(:)    !! (2 nodes) displacements of the old pairs
+      type(loads_type) :: loads                 !! its loads
+      type(sparse_matrix_type) :: stiffness     !! (2 nodes, 2 nodes) [force/length]
+      type(sparse_matrix_type) :: thermal_load  !! (2 nodes, nodes) [force/temperature]
+      type(sparse_matrix_type) :: conduction    !! (nodes, nodes) [power/temperature]
+   contains
+      procedure :: prepare
+      procedure :: assemble
+      procedure :: prolong
+      procedure :: prolong_pairs
+      procedure :: restrict
+      procedure :: prolong_set
+      procedure :: conduction_with
+   end type refined_model_type
+
+contains
+
+   !> Refines a model and pairs its surfaces.
+   !> Error: as make_pairs.
+   subroutine prepare(self, model, pairs, error)
+      class(refined_model_type), intent(inout) :: self    !! empty
+      type(model_type), intent(in) :: model               !! the model
+      type(pair_row_type), intent(in) :: pairs            !! its pairs
+      type(error_type), allocatable, intent(out) :: error !! see above
+      integer :: i
+
+      self%coarse = model%mesh
+      self%division = divide(model%mesh)
+      self%model = model
+      call refine(self%model, 1)
+      call find_bodies(self%model%mesh)
+      allocate (self%interfaces(size(model%contacts)))
+      do i = 1, size(self%interfaces)
+         call pair_surfaces(self%model, i, self%interfaces(i), error)
+         if (allocated(error)) return
+      end do
+      self%pairs = row_of(self%interfaces, self%model)
+      call match_pairs(self, pairs)
+      call self%loads%prepare(self%model)
+   end subroutine prepare
+
+   !> Finds the old pairs among all, and those about each new one.
+   pure subroutine match_pairs(self, pairs)
+      class(refined_model_type), intent(inout) :: self
+      type(pair_row_type), intent(in) :: pairs
+      integer :: after, before, first, i, k, last, old, old_last
+
+      allocate (self%old_pair(size(self%pairs%slave)), source=0)
+      allocate (self%neighbours(2, size(self%pairs%slave)))
+      allocate (self%at_old_pair(2*self%division%nodes_after), source=.false.)
+      self%at_old_pair([2*pairs%slave - 1, 2*pairs%slave, 2*pairs%master - 1, 2*pairs%master]) = &
+         .true.
+      do i = 1, size(self%interfaces)
+         first = self%pairs%interface_start(i)
+         last = self%pairs%interface_start(i + 1) - 1
+         old = pairs%interface_start(i)
+         old_last = pairs%interface_start(i + 1) - 1
+         do k = first, last
+            if (self%pairs%slave(k) > self%division%nodes) cycle
+            self%old_pair(k) = old - 1 + findloc(pairs%slave(old:old_last), self%pairs%slave(k), &
+               dim=1)
+         end do
+         do k = first, last
+            before = k
+            after = k
+            if (self%old_pair(k) == 0) then
+               ! In a ring the first and the last pair are neighbours.
+               before = merge(last, k - 1, k == first)
+               after = merge(first, k + 1, k == last)
+            end if
+            self%neighbours(:, k) = [self%old_pair(before), self%old_pair(after)]
+         end do
+      end do
+   end subroutine match_pairs
+
+   !> Assembles the matrices that are asked for.
+   subroutine assemble(self, with_mechanics, with_heat)
+      class(refined_model_type), intent(inout) :: self   !! prepared
+      logical, intent(in) :: with_mechanics              !! stiffness and thermal load
+      logical, intent(in) :: with_heat                   !! conduction
+
+      associate (model => self%model)
+         if (with_mechanics .and. .not. allocated(self%stiffness%value)) then
+            self%stiffness = assemble_stiffness(model%mesh, model%sections, model%materials, &
+               model%orientations)
+            self%thermal_load = assemble_thermal_load(model%mesh, model%sections, &
+               model%materials, model%orientations)
+         end if
+         if (with_heat .and. .not. allocated(self%conduction%value)) then
+            self%conduction = assemble_conduction(model%mesh, model%sections, model%materials, &
+               model%orientations)
+         end if
+      end associate
+   end subroutine assemble
+
+   !> A field of the old mesh as one of the new mesh.
+   pure function prolong(self, values, components) result(refined)
+      class(refined_model_type), intent(in) :: self   !! the refined model
+      real(dp), intent(in) :: values(:)               !! (components*old nodes)
+      integer, intent(in) :: components               !! values of a node
+      real(dp) :: refined(components*self%division%nodes_after)
+      integer :: c
+
+      do c = 1, components
+         refined(c::components) = refined_values(self%division, self%coarse, &
+            values(c::components))
+      end do
+   end function prolong
+
+   !> The mean of a quantity of the old pairs about each pair.
+   pure function prolong_pairs(self, values) result(refined)
+      class(refined_model_type), intent(in) :: self   !! the refined model
+      real(dp), intent(in) :: values(:)               !! (old pairs)
+      real(dp) :: refined(size(self%old_pair))        !! (m)
+
+      refined = 0.5_dp*(values(self%neighbours(1, :)) + values(self%neighbours(2, :)))
+   end function prolong_pairs
+
+   !> Forces at the nodes of the new mesh as those of the old one that do the same work.
+   pure function restrict(self, values, components) result(coarse)
+      class(refined_model_type), intent(in) :: self   !! the refined model
+      real(dp), intent(in) :: values(:)               !! (components*nodes)
+      integer, intent(in) :: components               !! values of a node
+      real(dp) :: coarse(components*self%division%nodes)
+      integer :: c
+
+      do c = 1, components
+         coarse(c::components) = restricted_values(self%division, self%coarse, &
+            values(c::components))
+      end do
+   end function restrict
+
+   !> Which degrees of freedom of the new mesh are prescribed where those of the old one are.
+   pure function prolong_set(self, member, components) result(refined)
+      class(refined_model_type), intent(in) :: self   !! the refined model
+      logical, intent(in) :: member(:)                !! (components*old nodes)
+      integer, intent(in) :: components               !! degrees of freedom of a node
+      logical :: refined(components*self%division%nodes_after)
+      integer :: c
+
+      do c = 1, components
+         refined(c::components) = refined_members(self%division, self%coarse, &
+            member(c::components))
+      end do
+   end function prolong_set
+
+   !> Conduction of the bodies and their films.
+   pure function conduction_with(self, film) result(matrix)
+      class(refined_model_type), intent(in) :: self   !! the refined model, assembled
+      type(sparse_matrix_type), intent(in) :: film    !! films; without values where there are none
+      type(sparse_matrix_type) :: matrix              !! (nodes, nodes) [power/temperature]
+
+      matrix = self%conduction
+      if (allocated(film%value)) matrix = linear_combination(1.0_dp, matrix, 1.0_dp, film)
+   end function conduction_with
+
+end module refined_model

@@ -1,0 +1,248 @@
+!> What the quantities of an increment would be if every element were divided into four, by a full
+!> approximation scheme on two meshes: the fields of the new mesh are smoothed by a few steps of
+!> conjugate gradients, and what then is out of balance there acts on the old mesh as a load, for
+!> which the increment is solved again,
+!>
+!>    A_h(x') = A_h(R y) + P' (f - A(y)),   y' = y + P (x' - R y),
+!>
+!> P being the shape functions of the old mesh and R the values at its nodes. At rest y is the
+!> solution on the new mesh, for which no factors were ever formed.
+module refinement_error
+   use contact_operator, only: thermal_forces
+   use controls, only: implicit_scheme, start_type
+   use errors, only: error_type
+   use increment_solution, only: recover_fields, solve_pairs
+   use interface_operators, only: interface_operators_type
+   use interface_quantities, only: quantities_of, quantities_of_state
+   use kinds, only: dp
+   use linked_relaxation, only: joint_type, relax
+   use load_courses, only: step_clock_type
+   use loads, only: loads_type
+   use model, only: model_type
+   use refined_pairs, only: refined_pairs_type
+   use records, only: increment_record_type, status_open
+   use refined_model, only: refined_model_type
+   use scheme_properties, only: has_memory
+   use solution_state, only: solution_state_type
+   use sparse_matrix, only: sparse_matrix_type
+   use steps, only: solves_heat, solves_mechanics, step_type
+   implicit none
+   private
+   public :: find_change_by_refinement
+
+   integer, parameter :: corrections = 4            !! solutions of the increment
+   integer, parameter :: smoothing_steps = 12        !! steps of conjugate gradients before each
+   real(dp), parameter :: tolerance = 1.0e-6_dp     !! of the fixed point; errors are far larger
+
+   !> The fields of both meshes as they are corrected.
+   type :: corrected_type
+      type(solution_state_type) :: coarse           !! solution on the old mesh
+      real(dp), allocatable :: displacement(:)      !! (2 nodes) on the new one [length]
+      real(dp), allocatable :: temperature(:)       !! (nodes) likewise [temperature]
+      type(refined_pairs_type) :: pairs             !! its pairs
+   end type corrected_type
+
+contains
+
+   !> What the quantities of the interfaces change by on the refined mesh, at the end of an
+   !> increment, in the equilibrium of heat there.
+   !> Error: the increment has no solution under one of the corrections.
+   subroutine find_change_by_refinement(refined, operators, loads, model, step, clock, previous, &
+      next, change, error)
+      type(refined_model_type), intent(inout) :: refined         !! the refined model
+      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+      type(loads_type), intent(in) :: loads                      !! loads at the end
+      type(model_type), intent(in) :: model                      !! the model
+      type(step_type), intent(in) :: step                        !! the step
+      type(step_clock_type), intent(in) :: clock                 !! the end of the increment
+      type(solution_state_type), intent(in) :: previous          !! state at its start
+      type(solution_state_type), intent(in) :: next              !! state at its end
+      real(dp), intent(out) :: change(:, :)                      !! (quantities, interfaces)
+      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(corrected_type) :: fields
+      type(increment_record_type) :: record
+      real(dp) :: values(size(change, 1), size(change, 2))
+      type(solution_state_type) :: before
+      type(step_type) :: estimate_step
+      integer :: k
+
+      call refined%assemble(solves_mechanics(step%analysis), solves_heat(step%analysis))
+      call refined%loads%move_to(clock, refined%model)
+      estimate_step = step
+      estimate_step%scheme = implicit_scheme
+      estimate_step%start = start_type()
+      estimate_step%fixed_point%tolerance = max(tolerance, step%fixed_point%tolerance)
+      fields%coarse = next
+      if (solves_heat(step%analysis)) then
+         call operators%set_film(next%film, model, error)
+         if (allocated(error)) return
+      end if
+      if (solves_heat(step%analysis) .and. has_memory(step%scheme)) then
+         call solve_pairs(operators, loads, model, estimate_step, previous, fields%coarse, record, &
+            error)
+         if (allocated(error)) return
+         call recover_fields(operators, loads, model, estimate_step, fields%coarse)
+      end if
+      call quantities_of_state(operators, fields%coarse, fields%coarse%omega, values)
+      fields%displacement = refined%prolong(fields%coarse%displacement, 2)
+      fields%temperature = refined%prolong(fields%coarse%temperature, 1)
+      call fields%pairs%begin(refined, fields%coarse%contact)
+      before = previous
+      do k = 1, corrections
+         call smooth(refined, loads, estimate_step, fields)
+         ! The fixed point starts from the last solution; the implicit scheme takes nothing else
+         ! of the conductances before.
+         before%omega = fields%coarse%omega
+         before%omega_before = fields%coarse%omega
+         call correct(refined, operators, loads, model, estimate_step, before, next, fields, error)
+         if (allocated(error)) return
+      end do
+      call smooth(refined, loads, estimate_step, fields)
+      call measure(refined, fields, change)
+      change = change - values
+   end subroutine find_change_by_refinement
+
+   !> Smooths displacements and temperatures of the new mesh.
+   subroutine smooth(refined, loads, step, fields)
+      type(refined_model_type), intent(in) :: refined
+      type(loads_type), intent(in) :: loads
+      type(step_type), intent(in) :: step
+      type(corrected_type), intent(inout) :: fields
+      type(joint_type), allocatable :: joints(:)
+      real(dp), allocatable :: load(:)
+      type(sparse_matrix_type) :: conduction
+
+      associate (pairs => fields%pairs, u => fields%displacement, t => fields%temperature)
+         call pairs%take_old(refined, fields%coarse%contact)
+         if (solves_mechanics(step%analysis)) then
+            call pairs%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, 2), &
+               joints)
+            load = mechanical_load(refined, fields)
+            call relax(refined%stiffness, joints, load + pairs%slip_forces(refined), .not. &
+               (refined%prolong_set(loads%displacement%active, 2) .or. refined%at_old_pair), &
+               smoothing_steps, u)
+            call pairs%update(refined, u, load - refined%stiffness%multiply(u))
+            call pairs%take_old(refined, fields%coarse%contact)
+         end if
+         if (solves_heat(step%analysis)) then
+            call pairs%conduct(refined, fields%coarse%omega, fields%coarse%resting)
+            conduction = refined%conduction_with(refined%loads%film_matrix())
+            call pairs%conducting_joints(refined, joints)
+            call relax(conduction, joints, refined%loads%heat_load(), &
+               .not. refined%prolong_set(loads%temperature%active, 1), smoothing_steps, t)
+         end if
+      end associate
+   end subroutine smooth
+
+   !> Forces of loads and temperatures on the new mesh.
+   function mechanical_load(refined, fields) result(forces)
+      type(refined_model_type), intent(in) :: refined
+      type(corrected_type), intent(in) :: fields
+      real(dp) :: forces(size(fields%displacement))
+
+      forces = refined%loads%nodal_forces() + refined%thermal_load%multiply(fields%temperature - &
+         refined%model%initial_temperature)
+   end function mechanical_load
+
+   !> Solves the increment on the old mesh with what is out of balance on the new one.
+   subroutine correct(refined, operators, loads, model, step, previous, next, fields, error)
+      type(refined_model_type), intent(in) :: refined
+      type(interface_operators_type), intent(inout) :: operators
+      type(loads_type), intent(in) :: loads
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step
+      type(solution_state_type), intent(in) :: previous, next
+      type(corrected_type), intent(inout) :: fields
+      type(error_type), allocatable, intent(out) :: error
+      type(solution_state_type) :: trial
+      type(increment_record_type) :: record
+
+      trial = fields%coarse
+      associate (u => fields%displacement(:size(next%displacement)), &
+         t => fields%temperature(:size(next%temperature)))
+         if (solves_heat(step%analysis)) trial%heat_load = refined%restrict( &
+            heat_out_of_balance(refined, fields), 1) + heat_taken(operators, fields%coarse, t)
+         ! Contact forces of both meshes do the same work and cancel.
+         if (solves_mechanics(step%analysis)) trial%force_load = refined%restrict( &
+            mechanical_load(refined, fields) - refined%stiffness%multiply(fields%displacement), &
+            2) + operators%mechanical%matrix%multiply(u) - &
+            thermal_forces(operators, t - model%initial_temperature)
+      end associate
+      call solve_pairs(operators, loads, model, step, previous, trial, record, error)
+      if (allocated(error)) return
+      call recover_fields(operators, loads, model, step, trial)
+      fields%displacement = fields%displacement + refined%prolong(trial%displacement - &
+         fields%displacement(:size(trial%displacement)), 2)
+      fields%temperature = fields%temperature + refined%prolong(trial%temperature - &
+         fields%temperature(:size(trial%temperature)), 1)
+      fields%coarse = trial
+   end subroutine correct
+
+   !> K T + F T + what the pairs take, on the old mesh, with the conductances of its last solution.
+   function heat_taken(operators, coarse, temperature) result(heat)
+      type(interface_operators_type), intent(in) :: operators
+      type(solution_state_type), intent(in) :: coarse
+      real(dp), intent(in) :: temperature(:)
+      real(dp) :: heat(size(temperature))
+      real(dp) :: rate
+      integer :: k
+
+      heat = operators%thermal%matrix%multiply(temperature)
+      if (allocated(coarse%film%value)) heat = heat + coarse%film%multiply(temperature)
+      do k = 1, size(coarse%omega)
+         associate (s => operators%pairs%slave(k), m => operators%pairs%master(k))
+            rate = operators%pairs%weight(k)*coarse%omega(k)*(temperature(s) - temperature(m))
+            heat(s) = heat(s) + rate
+            heat(m) = heat(m) - rate
+         end associate
+      end do
+   end function heat_taken
+
+   !> Q - K T - F T - what the pairs take, on the new mesh.
+   function heat_out_of_balance(refined, fields) result(residual)
+      type(refined_model_type), intent(in) :: refined
+      type(corrected_type), intent(in) :: fields
+      real(dp) :: residual(size(fields%temperature))
+      type(sparse_matrix_type) :: film
+      real(dp) :: rates(size(refined%old_pair))
+      integer :: k
+
+      film = refined%loads%film_matrix()
+      residual = refined%loads%heat_load() - refined%conduction%multiply(fields%temperature)
+      if (allocated(film%value)) residual = residual - film%multiply(fields%temperature)
+      rates = fields%pairs%heat(refined%pairs, fields%temperature)
+      do k = 1, size(rates)
+         associate (s => refined%pairs%slave(k), m => refined%pairs%master(k))
+            residual(s) = residual(s) - rates(k)
+            residual(m) = residual(m) + rates(k)
+         end associate
+      end do
+   end function heat_out_of_balance
+
+   !> The quantities on the new mesh.
+   subroutine measure(refined, fields, values)
+      type(refined_model_type), intent(in) :: refined
+      type(corrected_type), intent(in) :: fields
+      real(dp), intent(out) :: values(:, :)
+      real(dp) :: rates(size(refined%old_pair))
+      logical, allocatable :: closed(:)
+      integer :: first, i, last
+
+      rates = fields%pairs%heat(refined%pairs, fields%temperature)
+      associate (pairs => fields%pairs)
+         do i = 1, size(refined%interfaces)
+            first = refined%pairs%interface_start(i)
+            last = refined%pairs%interface_start(i + 1) - 1
+            closed = pairs%status(first:last) /= status_open
+            values(:, i) = quantities_of(refined%interfaces(i), refined%pairs%friction(first), &
+               pairs%status(first:last), max(pairs%gap(first:last), 0.0_dp), &
+               merge(pairs%force(first:last), 0.0_dp, closed), &
+               merge(pairs%shear_force(first:last), 0.0_dp, closed), rates(first:last))
+            ! What the old mesh lacks at open pairs, the new ones about them carry.
+            values(1, i) = sum(pairs%force(first:last))
+            values(2, i) = sum(pairs%shear_force(first:last))
+         end do
+      end associate
+   end subroutine measure
+
+end module refinement_error

@@ -1,0 +1,380 @@
+!> Stress and heat flux at given points of all elements, increment after increment: what depends on
+!> geometry and materials alone is formed once. Arrays run over the points first, and points are
+!> taken two at a time, which the compiler turns into vector instructions: this is most of the time
+!> that the recovery of an increment takes. A rule of an odd number of points ends in one without
+!> weight.
+module point_fields
+   use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain, &
+      plane_stress, quad4
+   use kinds, only: dp
+   use materials, only: material_type, section_type
+   use mesh, only: mesh_type, nodes_per_element
+   use orientations, only: material_axes, orientation_type
+   use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
+   use shape_functions, only: element_gradients, element_shape, node_position
+   use side_integrals, only: area_factor
+   implicit none
+   private
+   public :: point_fields_type, point_rule_type, point_material_type
+   public :: most_field_points
+
+   integer, parameter :: most_field_points = 10  !! of an element, made even
+   integer, parameter :: most = most_field_points
+
+   !> Points of a kind of element, with what its shape functions are there.
+   type :: point_rule_type
+      integer :: count = 0                         !! number of points
+      integer :: nodes = 0                         !! nodes of the kind
+      real(dp) :: weight(most) = 0.0_dp            !! sum 4 (square) or 1/2 (triangle)
+      real(dp) :: shape(most, nodes_per_element) = 0.0_dp      !! (points, nodes) psi
+      real(dp) :: slope_xi(most, nodes_per_element) = 0.0_dp   !! d psi/d xi
+      real(dp) :: slope_eta(most, nodes_per_element) = 0.0_dp  !! d psi/d eta
+   end type point_rule_type
+
+   !> A material at a point, along x, y and z.
+   type :: point_material_type
+      real(dp) :: elasticity(4, 4) = 0.0_dp        !! condensed in plane stress [stress]
+      real(dp) :: thermal_modulus(4) = 0.0_dp      !! [stress/temperature]
+      real(dp) :: compliance(4, 4) = 0.0_dp        !! inverse of all of E; 0 without it [1/stress]
+      real(dp) :: conductivity(2, 2) = 0.0_dp      !! [power/(length temperature)]
+      real(dp) :: resistivity(2, 2) = 0.0_dp       !! its inverse; 0 without it
+   end type point_material_type
+
+   !> The points of all elements.
+   type :: point_fields_type
+      type(point_rule_type) :: rules(kind_count)         !! by the kind of the element
+      integer, allocatable :: first(:)                   !! (elements + 1) first point of each
+      !> (4, points) d xi/dx, d eta/dx, d xi/dy, d eta/dy [1/length]
+      real(dp), allocatable :: inverse(:, :)
+      real(dp), allocatable :: volume(:)                 !! (points) that each stands for [length^3]
+      type(point_material_type), allocatable :: materials(:)
+      integer, allocatable :: material(:)                !! (elements) first of its materials
+      logical, allocatable :: one_material(:)            !! (elements) one for all of its points
+   contains
+      procedure :: prepare
+      procedure :: stress
+      procedure :: heat_flux
+   end type point_fields_type
+
+contains
+
+   !> Forms what stays.
+   pure subroutine prepare(self, mesh, sections, materials, orientations, points, weights, counts)
+      class(point_fields_type), intent(inout) :: self       !! the points
+      type(mesh_type), intent(in) :: mesh                   !! the mesh
+      type(section_type), intent(in) :: sections(:)         !! sections
+      type(material_type), intent(in) :: materials(:)       !! materials
+      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
+      real(dp), intent(in) :: points(:, :, :)               !! (2, most, kinds) xi, eta
+      real(dp), intent(in) :: weights(:, :)                 !! (most, kinds)
+      integer, intent(in) :: counts(:)                      !! (kinds) points of each
+      integer :: e, kind, n
+
+      do kind = 1, kind_count
+         self%rules(kind) = make_rule(kind, points(:, :counts(kind), kind), &
+            weights(:counts(kind), kind))
+      end do
+      n = size(mesh%element_kind)
+      allocate (self%first(n + 1), source=1)
+      do e = 1, n
+         self%first(e + 1) = self%first(e) + counts(mesh%element_kind(e))
+      end do
+      allocate (self%inverse(4, self%first(n + 1)), self%volume(self%first(n + 1)), source=0.0_dp)
+      do e = 1, n
+         associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+            call map_points(self%rules(mesh%element_kind(e)), mesh%coordinates(:, nodes), &
+               sections(mesh%element_section(e))%thickness, &
+               mesh%element_plane(e) == axisymmetric, self%inverse(:, self%first(e):), &
+               self%volume(self%first(e):))
+         end associate
+      end do
+      call place_materials(self, mesh, sections, materials, orientations)
+   end subroutine prepare
+
+   pure function make_rule(kind, points, weights) result(rule)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: points(:, :), weights(:)
+      type(point_rule_type) :: rule
+      real(dp) :: slope(2, element_node_count(kind)), jacobian
+      integer :: g
+
+      rule%nodes = element_node_count(kind)
+      rule%count = size(weights)
+      rule%weight(:rule%count) = weights
+      do g = 1, rule%count
+         rule%shape(g, :rule%nodes) = element_shape(kind, points(:, g))
+         ! In the reference element x is xi and y is eta.
+         call element_gradients(kind, node_position(kind), points(:, g), slope, jacobian)
+         rule%slope_xi(g, :rule%nodes) = slope(1, :)
+         rule%slope_eta(g, :rule%nodes) = slope(2, :)
+      end do
+   end function make_rule
+
+   pure subroutine map_points(rule, coordinates, thickness, is_ring, inverse, volume)
+      type(point_rule_type), intent(in) :: rule
+      real(dp), intent(in) :: coordinates(:, :), thickness
+      logical, intent(in) :: is_ring
+      real(dp), intent(inout) :: inverse(:, :), volume(:)
+      real(dp) :: along_xi(2), along_eta(2), jacobian, radius
+      integer :: g
+
+      do g = 1, rule%count
+         along_xi = matmul(coordinates, rule%slope_xi(g, :rule%nodes))
+         along_eta = matmul(coordinates, rule%slope_eta(g, :rule%nodes))
+         jacobian = along_xi(1)*along_eta(2) - along_xi(2)*along_eta(1)
+         inverse(:, g) = [along_eta(2), -along_xi(2), -along_eta(1), along_xi(1)]/jacobian
+         radius = dot_product(rule%shape(g, :rule%nodes), coordinates(1, :))
+         volume(g) = rule%weight(g)*jacobian*area_factor(radius, thickness, is_ring)
+      end do
+   end subroutine map_points
+
+   !> One material for a section and plane, or one a point where axes may turn.
+   pure subroutine place_materials(self, mesh, sections, materials, orientations)
+      class(point_fields_type), intent(inout) :: self
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
+      type(orientation_type), intent(in) :: orientations(:)
+      integer :: shared(size(sections), axisymmetric), e, g, n, pass
+      real(dp) :: position(2)
+
+      allocate (self%material(size(mesh%element_kind)))
+      self%one_material = sections(mesh%element_section)%orientation == 0
+      ! First counted, then made.
+      do pass = 1, 2
+         shared = 0
+         n = 0
+         do e = 1, size(self%material)
+            associate (s => mesh%element_section(e), plane => mesh%element_plane(e), &
+               rule => self%rules(mesh%element_kind(e)), &
+               nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+               if (self%one_material(e) .and. shared(s, plane) > 0) then
+                  self%material(e) = shared(s, plane)
+                  cycle
+               end if
+               self%material(e) = n + 1
+               if (self%one_material(e)) shared(s, plane) = n + 1
+               do g = 1, merge(1, rule%count, self%one_material(e))
+                  n = n + 1
+                  if (pass == 1) cycle
+                  position = matmul(mesh%coordinates(:, nodes), rule%shape(g, :rule%nodes))
+                  self%materials(n) = material_at(materials(sections(s)%material), plane, &
+                     material_axes(orientations, sections(s)%orientation, position))
+               end do
+            end associate
+         end do
+         if (pass == 1) allocate (self%materials(n))
+      end do
+   end subroutine place_materials
+
+   pure function material_at(material, plane, axes) result(there)
+      type(material_type), intent(in) :: material
+      integer, intent(in) :: plane
+      real(dp), intent(in) :: axes(2, 2)
+      type(point_material_type) :: there
+
+      there%elasticity = elasticity_in(plane, material, axes)
+      there%thermal_modulus = thermal_modulus_in(plane, material, axes)
+      ! Not condensed: with sigma_zz = 0 its energy is that of plane stress, too.
+      there%compliance = inverse_of(elasticity_in(plane_strain, material, axes))
+      there%conductivity = conductivity_in(material, axes)
+      there%resistivity = inverse_of(there%conductivity)
+   end function material_at
+
+   !> Inverse of a symmetric positive definite matrix; zero where it is not.
+   pure function inverse_of(matrix) result(inverse)
+      real(dp), intent(in) :: matrix(:, :)
+      real(dp) :: inverse(size(matrix, 1), size(matrix, 1))
+      real(dp) :: pivot, column(size(matrix, 1))
+      integer :: i, k
+
+      ! Gauss-Jordan in place.
+      inverse = matrix
+      do k = 1, size(matrix, 1)
+         pivot = inverse(k, k)
+         if (.not. pivot > 0.0_dp) then
+            inverse = 0.0_dp
+            return
+         end if
+         column = inverse(:, k)
+         inverse(:, k) = 0.0_dp
+         inverse(k, k) = 1.0_dp
+         inverse(k, :) = inverse(k, :)/pivot
+         do i = 1, size(matrix, 1)
+            if (i /= k) inverse(i, :) = inverse(i, :) - column(i)*inverse(k, :)
+         end do
+      end do
+   end function inverse_of
+
+   !> Stress of an element at its points along x and y, eq. (1.5).
+   pure subroutine stress(self, mesh, element, displacement, temperature, values)
+      class(point_fields_type), intent(in) :: self   !! the points
+      type(mesh_type), intent(in) :: mesh            !! the mesh
+      integer, intent(in) :: element                 !! which element
+      real(dp), intent(in) :: displacement(:, :)     !! (2, nodes) [length]
+      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
+      real(dp), intent(inout) :: values(most, 4)     !! its points first; xx, yy, zz, xy [stress]
+      real(dp) :: strain(most, 4), warmth(most), u(3, nodes_per_element)
+      integer :: g, i, n, q
+
+      associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
+         first => self%first(element), nodes => mesh%element_nodes(:, element))
+         n = self%rules(kind)%count
+         do q = 1, self%rules(kind)%nodes
+            u(:2, q) = displacement(:, nodes(q))
+            u(3, q) = temperature(nodes(q))
+         end do
+         call find_strains(self%rules(kind), self%inverse(:, first), u, strain, warmth)
+         if (plane == axisymmetric) call add_hoop_strain(self%rules(kind), nodes, &
+            mesh%coordinates, displacement, strain(:n, 3))
+         if (kind == quad4 .and. plane /= plane_stress) call set_mean_dilatation( &
+            self%volume(first:first + n - 1), strain)
+         i = self%material(element)
+         do g = 1, n, 2
+            call stress_from_strain(self%materials(i), g, strain, warmth, values)
+            if (self%one_material(element)) cycle
+            if (g < n) call stress_of_second(self%materials(i + 1), g + 1, strain, warmth, values)
+            i = i + 2
+         end do
+      end associate
+   end subroutine stress
+
+   !> Two points of one material.
+   pure subroutine stress_from_strain(material, g, strain, warmth, values)
+      type(point_material_type), intent(in) :: material
+      integer, intent(in) :: g
+      real(dp), intent(in) :: strain(most, 4), warmth(most)
+      real(dp), intent(inout) :: values(most, 4)
+      integer :: i
+
+      do i = 1, 4
+         values(g:g + 1, i) = material%elasticity(1, i)*strain(g:g + 1, 1) + &
+            material%elasticity(2, i)*strain(g:g + 1, 2) + &
+            material%elasticity(3, i)*strain(g:g + 1, 3) + &
+            material%elasticity(4, i)*strain(g:g + 1, 4) - &
+            material%thermal_modulus(i)*warmth(g:g + 1)
+      end do
+   end subroutine stress_from_strain
+
+   !> One point of a material of its own.
+   pure subroutine stress_of_second(material, g, strain, warmth, values)
+      type(point_material_type), intent(in) :: material
+      integer, intent(in) :: g
+      real(dp), intent(in) :: strain(most, 4), warmth(most)
+      real(dp), intent(inout) :: values(most, 4)
+
+      values(g, :) = matmul(material%elasticity, strain(g, :)) - &
+         material%thermal_modulus*warmth(g)
+   end subroutine stress_of_second
+
+   !> Heat flux of an element at its points along x and y, eq. (1.4).
+   pure subroutine heat_flux(self, mesh, element, temperature, values)
+      class(point_fields_type), intent(in) :: self   !! the points
+      type(mesh_type), intent(in) :: mesh            !! the mesh
+      integer, intent(in) :: element                 !! which element
+      real(dp), intent(in) :: temperature(:)         !! (nodes) [temperature]
+      real(dp), intent(inout) :: values(most, 2)     !! its points first; x, y [power/length^2]
+      real(dp) :: fall(most, 2), t(nodes_per_element), k(2, 2)
+      integer :: g, i, q
+
+      associate (rule => self%rules(mesh%element_kind(element)))
+         do q = 1, rule%nodes
+            t(q) = temperature(mesh%element_nodes(q, element))
+         end do
+         call find_fall(rule, self%inverse(:, self%first(element)), t, fall)
+         i = self%material(element)
+         k = self%materials(i)%conductivity
+         do g = 1, rule%count
+            if (.not. self%one_material(element)) k = self%materials(i - 1 + g)%conductivity
+            values(g, 1) = k(1, 1)*fall(g, 1) + k(1, 2)*fall(g, 2)
+            values(g, 2) = k(2, 1)*fall(g, 1) + k(2, 2)*fall(g, 2)
+         end do
+      end associate
+   end subroutine heat_flux
+
+   !> Strains, but for zz, which is zero, and the temperature.
+   pure subroutine find_strains(rule, inverse, u, strain, warmth)
+      type(point_rule_type), intent(in) :: rule
+      real(dp), intent(in) :: inverse(4, *), u(3, nodes_per_element)
+      real(dp), intent(out) :: strain(most, 4), warmth(most)
+      real(dp), dimension(2) :: x_xi, x_eta, y_xi, y_eta, t
+      integer :: g, q
+
+      do g = 1, rule%count, 2
+         x_xi = 0.0_dp
+         x_eta = 0.0_dp
+         y_xi = 0.0_dp
+         y_eta = 0.0_dp
+         t = 0.0_dp
+         do q = 1, rule%nodes
+            x_xi = x_xi + rule%slope_xi(g:g + 1, q)*u(1, q)
+            x_eta = x_eta + rule%slope_eta(g:g + 1, q)*u(1, q)
+            y_xi = y_xi + rule%slope_xi(g:g + 1, q)*u(2, q)
+            y_eta = y_eta + rule%slope_eta(g:g + 1, q)*u(2, q)
+            t = t + rule%shape(g:g + 1, q)*u(3, q)
+         end do
+         strain(g:g + 1, 1) = x_xi*inverse(1, g:g + 1) + x_eta*inverse(2, g:g + 1)
+         strain(g:g + 1, 2) = y_xi*inverse(3, g:g + 1) + y_eta*inverse(4, g:g + 1)
+         strain(g:g + 1, 3) = 0.0_dp
+         strain(g:g + 1, 4) = x_xi*inverse(3, g:g + 1) + x_eta*inverse(4, g:g + 1) + &
+            y_xi*inverse(1, g:g + 1) + y_eta*inverse(2, g:g + 1)
+         warmth(g:g + 1) = t
+      end do
+   end subroutine find_strains
+
+   !> u_x/r.
+   pure subroutine add_hoop_strain(rule, nodes, coordinates, displacement, strain)
+      type(point_rule_type), intent(in) :: rule
+      integer, intent(in) :: nodes(:)
+      real(dp), intent(in) :: coordinates(:, :), displacement(:, :)
+      real(dp), intent(inout) :: strain(:)
+      integer :: g
+
+      associate (mine => nodes(:rule%nodes))
+         do g = 1, size(strain)
+            strain(g) = strain(g) + &
+               dot_product(rule%shape(g, :rule%nodes), displacement(1, mine))/ &
+               dot_product(rule%shape(g, :rule%nodes), coordinates(1, mine))
+         end do
+      end associate
+   end subroutine add_hoop_strain
+
+   !> B-bar, as in element_elasticity; the points are those of its integration.
+   pure subroutine set_mean_dilatation(volume, strain)
+      real(dp), intent(in) :: volume(:)
+      real(dp), intent(inout) :: strain(most, 4)
+      real(dp) :: mean, change
+      integer :: g
+
+      mean = 0.0_dp
+      do g = 1, size(volume)
+         mean = mean + volume(g)*sum(strain(g, :3))
+      end do
+      mean = mean/sum(volume)
+      do g = 1, size(volume)
+         change = (mean - sum(strain(g, :3)))/3
+         strain(g, :3) = strain(g, :3) + change
+      end do
+   end subroutine set_mean_dilatation
+
+   !> -grad T.
+   pure subroutine find_fall(rule, inverse, temperature, fall)
+      type(point_rule_type), intent(in) :: rule
+      real(dp), intent(in) :: inverse(4, *), temperature(nodes_per_element)
+      real(dp), intent(out) :: fall(most, 2)
+      real(dp), dimension(2) :: xi, eta
+      integer :: g, q
+
+      do g = 1, rule%count, 2
+         xi = 0.0_dp
+         eta = 0.0_dp
+         do q = 1, rule%nodes
+            xi = xi - rule%slope_xi(g:g + 1, q)*temperature(q)
+            eta = eta - rule%slope_eta(g:g + 1, q)*temperature(q)
+         end do
+         fall(g:g + 1, 1) = xi*inverse(1, g:g + 1) + eta*inverse(2, g:g + 1)
+         fall(g:g + 1, 2) = xi*inverse(3, g:g + 1) + eta*inverse(4, g:g + 1)
+      end do
+   end subroutine find_fall
+
+end module point_fields

@@ -1,0 +1,120 @@
+!> Estimated errors in the listing: of bodies in the energy norm, and of the global quantities of an
+!> interface, those of the mesh, of the increments and of the iteration beside each other.
+module listing_errors
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use kinds, only: dp
+   use listing_text, only: column
+   use records, only: estimated_names, estimated_quantities, increment_record_type, &
+      interface_errors_type, is_band
+   implicit none
+   private
+   public :: print_body_errors, print_interface_errors
+
+   character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'increments', &
+      'iteration']
+
+contains
+
+   !> Prints how large the discretisation error of each body is estimated, in the energy norm,
+   !> relative to stress and heat flux, at the end of a step.
+   subroutine print_body_errors(unit, record)
+      integer, intent(in) :: unit                         !! unit of the listing
+      type(increment_record_type), intent(in) :: record   !! the increment
+      integer :: b, bodies
+
+      if (.not. record%last_of_step) return
+      bodies = 0
+      if (allocated(record%stress_error%body)) bodies = size(record%stress_error%body)
+      if (allocated(record%heat_flux_error%body)) bodies = size(record%heat_flux_error%body)
+      do b = 1, bodies
+         write (unit, '(3x, a, i0)', advance='no') 'estimated error of the mesh, body ', b
+         if (allocated(record%stress_error%body)) write (unit, '(2a)', advance='no') &
+            '   stress', column(record%stress_error%body(b), 9, 2)
+         if (allocated(record%heat_flux_error%body)) write (unit, '(2a)', advance='no') &
+            '   heat flux', column(record%heat_flux_error%body(b), 9, 2)
+         write (unit, '(a)') '  (energy norm, relative)'
+      end do
+   end subroutine print_body_errors
+
+   !> Prints the errors of an interface. What has no value, or no part in the deck, is left out.
+   subroutine print_interface_errors(unit, name, errors)
+      integer, intent(in) :: unit                          !! unit of the listing
+      character(*), intent(in) :: name                     !! name of the interface
+      type(interface_errors_type), intent(in) :: errors    !! its errors
+      real(dp) :: total(estimated_quantities)
+      integer :: q
+
+      total = errors%total()
+      write (unit, '(/, 3a)') '   ESTIMATED ERRORS OF ', name, &
+         ': what is missing to the exact value (+-: to either side)'
+      write (unit, '(3x, a14, a14, a13, 2a14, a12, a11, a14)') '', 'value', 'mesh', 'increments', &
+         'iteration', 'together', '%', 'largest part'
+      do q = 1, estimated_quantities
+         associate (value => errors%value(q))
+            if (.not. is_worth_telling(value, total(q))) cycle
+            write (unit, '(3x, a14, a14, a3, a10, a14, a14, a12, a11, a14)') spaced( &
+               estimated_names(q)), column(value, 14, 6), merge(' +-', '   ', is_band(q)), &
+               shown(errors%mesh(q), 10), shown(errors%increment(q), 14), &
+               shown(errors%iteration(q), 14), shown(total(q), 12), percent(total(q), value), &
+               largest_part(errors, q)
+         end associate
+      end do
+   end subroutine print_interface_errors
+
+   !> Whether a quantity has a value and a part in the deck.
+   pure logical function is_worth_telling(value, error)
+      real(dp), intent(in) :: value, error
+
+      is_worth_telling = .not. ieee_is_nan(value)
+      if (.not. is_worth_telling) return
+      is_worth_telling = abs(value) > 0.0_dp
+      if (is_worth_telling .or. ieee_is_nan(error)) return
+      is_worth_telling = abs(error) > 0.0_dp
+   end function is_worth_telling
+
+   !> A name with blanks for its underlines.
+   pure function spaced(name) result(words)
+      character(*), intent(in) :: name
+      character(len(name)) :: words
+      integer :: i
+
+      words = name
+      do i = 1, len(name)
+         if (name(i:i) == '_') words(i:i) = ' '
+      end do
+   end function spaced
+
+   function shown(value, width) result(string)
+      real(dp), intent(in) :: value
+      integer, intent(in) :: width
+      character(width) :: string
+
+      string = repeat(' ', width - 1)//'-'
+      if (.not. ieee_is_nan(value)) string = column(value, width, 2)
+   end function shown
+
+   function percent(error, value) result(string)
+      real(dp), intent(in) :: error, value
+      character(11) :: string
+
+      string = repeat(' ', 10)//'-'
+      if (ieee_is_nan(error)) return
+      if (abs(value) > 0.0_dp) string = column(100.0_dp*error/abs(value), 11, 2)
+   end function percent
+
+   !> Which error is the largest.
+   pure function largest_part(errors, q) result(name)
+      type(interface_errors_type), intent(in) :: errors
+      integer, intent(in) :: q
+      character(10) :: name
+      real(dp) :: parts(3)
+      integer :: k
+
+      parts = [errors%mesh(q), errors%increment(q), errors%iteration(q)]
+      name = ''
+      if (any(ieee_is_nan(parts))) return
+      k = maxloc(abs(parts), dim=1)
+      if (abs(parts(k)) > 0.0_dp) name = kinds_of_error(k)
+   end function largest_part
+
+end module listing_errors

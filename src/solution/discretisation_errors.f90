@@ -1,0 +1,208 @@
+!> Stress and flux of an increment, and how far they are from smooth ones (Zienkiewicz & Zhu): what
+!> geometry and materials give is formed once a run.
+module discretisation_errors
+   use element_fields, only: element_positions
+   use element_kinds, only: kind_count
+   use field_recovery, only: average_samples, heat_flux_samples, make_points, point_map_type, &
+      prepare_samples, stress_samples
+   use kinds, only: dp
+   use mesh, only: nodes_per_element
+   use model, only: model_type
+   use patch_recovery, only: patch_recovery_type
+   use point_fields, only: most => most_field_points, point_fields_type
+   use quadrature, only: recovery_points
+   use records, only: error_record_type
+   use recovered_error, only: element_error_type, error_points, measure_heat_flux, &
+      measure_stress
+   implicit none
+   private
+   public :: recovery_type
+
+   !> Largest value, or the inverse of the smallest, of which squares are taken as they are.
+   real(dp), parameter :: large = 1.0e70_dp
+
+   !> Where stress and flux are taken, averaged, smoothed and compared.
+   type :: recovery_type
+      private
+      type(point_map_type), public :: points     !! where averaged fields live
+      type(point_fields_type) :: samples         !! recovery points
+      type(point_fields_type) :: quadrature      !! points at which errors are integrated
+      type(patch_recovery_type) :: patches       !! smooth nodal values from the recovery points
+   contains
+      procedure :: prepare
+      procedure :: recover_stress
+      procedure :: recover_heat_flux
+   end type recovery_type
+
+contains
+
+   !> Forms what stays.
+   subroutine prepare(self, model)
+      class(recovery_type), intent(out) :: self   !! the recovery
+      type(model_type), intent(in) :: model       !! the model
+      real(dp) :: points(2, most, kind_count), weights(most, kind_count)
+      real(dp), allocatable :: position(:, :)
+      integer :: counts(kind_count), e
+
+      self%points = make_points(model%mesh)
+      call prepare_samples(model%mesh, model%sections, model%materials, model%orientations, &
+         self%samples)
+      call error_points(points, weights, counts)
+      call self%quadrature%prepare(model%mesh, model%sections, model%materials, &
+         model%orientations, points, weights, counts)
+      allocate (position(2, self%samples%first(size(self%samples%first)) - 1))
+      do e = 1, size(model%mesh%element_kind)
+         position(:, self%samples%first(e):self%samples%first(e + 1) - 1) = &
+            element_positions(model%mesh, e, recovery_points(model%mesh%element_kind(e)))
+      end do
+      call self%patches%prepare(model%mesh, self%points, self%samples%first, position)
+   end subroutine prepare
+
+   !> Stress, averaged at the points, and its estimated error.
+   subroutine recover_stress(self, model, displacement, temperature, stress, estimate)
+      class(recovery_type), intent(in) :: self             !! the recovery
+      type(model_type), intent(in) :: model                !! the model
+      real(dp), intent(in) :: displacement(:, :)           !! (2, nodes) [length]
+      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
+      real(dp), allocatable, intent(out) :: stress(:, :)   !! (4, points) xx, yy, zz, xy [stress]
+      type(error_record_type), intent(out) :: estimate     !! its error
+      type(element_error_type) :: errors(size(model%mesh%element_kind))
+      real(dp), allocatable :: samples(:, :), smooth(:, :)
+      real(dp) :: values(most, 4), scale
+      integer :: e
+
+      values = 0.0_dp
+      allocate (samples(4, self%samples%first(size(self%samples%first)) - 1))
+      allocate (smooth(4, size(self%points%node)))
+      call stress_samples(self%samples, model%mesh, displacement, temperature, samples)
+      stress = average_samples(model%mesh, self%points, samples)
+      call self%patches%recover(4, samples, smooth)
+      scale = scale_of(samples)
+      do e = 1, size(errors)
+         call self%quadrature%stress(model%mesh, e, displacement, temperature, values)
+         call compare_stress(self, model, e, 1/scale, smooth, values, errors(e))
+      end do
+      estimate = sum_up(model, scale, errors)
+   end subroutine recover_stress
+
+   !> Heat flux, averaged at the points, and its estimated error.
+   subroutine recover_heat_flux(self, model, temperature, flux, estimate)
+      class(recovery_type), intent(in) :: self             !! the recovery
+      type(model_type), intent(in) :: model                !! the model
+      real(dp), intent(in) :: temperature(:)               !! (nodes) [temperature]
+      real(dp), allocatable, intent(out) :: flux(:, :)     !! (2, points) x, y [power/length^2]
+      type(error_record_type), intent(out) :: estimate     !! its error
+      type(element_error_type) :: errors(size(model%mesh%element_kind))
+      real(dp), allocatable :: samples(:, :), smooth(:, :)
+      real(dp) :: values(most, 2), scale
+      integer :: e
+
+      values = 0.0_dp
+      allocate (samples(2, self%samples%first(size(self%samples%first)) - 1))
+      allocate (smooth(2, size(self%points%node)))
+      call heat_flux_samples(self%samples, model%mesh, temperature, samples)
+      flux = average_samples(model%mesh, self%points, samples)
+      call self%patches%recover(2, samples, smooth)
+      scale = scale_of(samples)
+      do e = 1, size(errors)
+         call self%quadrature%heat_flux(model%mesh, e, temperature, values)
+         call compare_heat_flux(self, model, e, 1/scale, smooth, values, errors(e))
+      end do
+      estimate = sum_up(model, scale, errors)
+   end subroutine recover_heat_flux
+
+   !> What values are divided by, so that squares neither overflow nor vanish.
+   pure real(dp) function scale_of(samples)
+      real(dp), intent(in) :: samples(:, :)
+      real(dp) :: largest
+
+      scale_of = 1.0_dp
+      largest = maxval(abs(samples))
+      if (largest > large) scale_of = largest
+      if (largest < 1/large .and. largest > tiny(largest)) scale_of = largest
+   end function scale_of
+
+   !> The integrals of stress over an element.
+   pure subroutine compare_stress(self, model, e, scale, smooth, values, measured)
+      class(recovery_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: e
+      real(dp), intent(in) :: scale, smooth(:, :)
+      real(dp), intent(inout) :: values(most, 4)
+      type(element_error_type), intent(out) :: measured
+      real(dp) :: nodal(4, nodes_per_element), volume(2)
+      integer :: g, i, q, steps
+
+      associate (fields => self%quadrature, rule => self%quadrature%rules( &
+         model%mesh%element_kind(e)))
+         do q = 1, rule%nodes
+            nodal(:, q) = smooth(:, self%points%element_points(q, e))*scale
+         end do
+         if (abs(scale - 1.0_dp) > 0.0_dp) values = values*scale
+         i = fields%material(e)
+         steps = merge(2, 1, fields%one_material(e))
+         do g = 1, rule%count, steps
+            volume = 0.0_dp
+            q = min(steps, rule%count + 1 - g)
+            volume(:q) = fields%volume(fields%first(e) + g - 1:fields%first(e) + g + q - 2)
+            call measure_stress(rule, g, nodal, values, fields%materials(i)%compliance, volume, &
+               measured)
+            if (steps == 1) i = i + 1
+         end do
+      end associate
+   end subroutine compare_stress
+
+   !> The integrals of heat flux over an element.
+   pure subroutine compare_heat_flux(self, model, e, scale, smooth, values, measured)
+      class(recovery_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: e
+      real(dp), intent(in) :: scale, smooth(:, :)
+      real(dp), intent(inout) :: values(most, 2)
+      type(element_error_type), intent(out) :: measured
+      real(dp) :: nodal(2, nodes_per_element), volume(2)
+      integer :: g, i, q, steps
+
+      associate (fields => self%quadrature, rule => self%quadrature%rules( &
+         model%mesh%element_kind(e)))
+         do q = 1, rule%nodes
+            nodal(:, q) = smooth(:, self%points%element_points(q, e))*scale
+         end do
+         if (abs(scale - 1.0_dp) > 0.0_dp) values = values*scale
+         i = fields%material(e)
+         steps = merge(2, 1, fields%one_material(e))
+         do g = 1, rule%count, steps
+            volume = 0.0_dp
+            q = min(steps, rule%count + 1 - g)
+            volume(:q) = fields%volume(fields%first(e) + g - 1:fields%first(e) + g + q - 2)
+            call measure_heat_flux(rule, g, nodal, values, fields%materials(i)%resistivity, &
+               volume, measured)
+            if (steps == 1) i = i + 1
+         end do
+      end associate
+   end subroutine compare_heat_flux
+
+   !> Relative error of each body, and the field over the elements.
+   pure function sum_up(model, scale, errors) result(estimate)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: scale
+      type(element_error_type), intent(in) :: errors(:)
+      type(error_record_type) :: estimate
+      real(dp) :: energy(model%mesh%body_count)
+      integer :: b, e
+
+      allocate (estimate%element(size(errors)))
+      allocate (estimate%body(model%mesh%body_count), source=0.0_dp)
+      energy = 0.0_dp
+      do e = 1, size(errors)
+         b = model%mesh%element_body(e)
+         estimate%body(b) = estimate%body(b) + errors(e)%error
+         energy(b) = energy(b) + errors(e)%energy
+         estimate%element(e) = scale*sqrt(errors(e)%square/errors(e)%volume)
+      end do
+      where (estimate%body + energy > 0.0_dp)
+         estimate%body = sqrt(estimate%body/(estimate%body + energy))
+      end where
+   end function sum_up
+
+end module discretisation_errors

@@ -1,0 +1,121 @@
+"""Estimated errors of a run against true ones that are known in closed form."""
+
+import re
+
+import h5py
+import numpy as np
+import pytest
+from changes import note_changes
+from deck_runs import CYLINDER, HERTZ, INPUT, copy_deck, run, solve
+
+PRESS_FIT = INPUT / "examples" / "press_fit.inp"
+FINE = 3   # refinements behind which the mesh's error is a thousandth of that of the deck's
+
+
+def errors(result, face):
+    """Return the rows of /errors at the end of a run: value, mesh, increments, iteration."""
+    with h5py.File(result) as file:
+        return {name: data[-1] for name, data in file[f"errors/{face}"].items()}
+
+
+def bare(source, folder, name, cards=(), changes=()):
+    """Copy a deck without its checks."""
+    deck = copy_deck(source, folder / name, cards, changes)
+    deck.write_text(deck.read_text().split("*VERIFY")[0])
+    for mesh in source.parent.glob("*.mesh"):
+        (folder / mesh.name).write_text(mesh.read_text())
+    return deck
+
+
+def test_error_of_the_mesh_where_it_is_smooth(tmp_path):
+    """The force of a press fit converges with h^4: a mesh with three refinements is exact beside
+    it. Of the change to half the elements the error is 16/15, and 1.25 is printed."""
+    coarse = errors(solve(bare(PRESS_FIT, tmp_path, "coarse.inp")), "SEAT")
+    fine = errors(solve(bare(PRESS_FIT, tmp_path, "fine.inp", [f"*REFINE, LEVELS={FINE}"])), "SEAT")
+    value, mesh, increment, iteration = coarse["normal_force"]
+    true = fine["normal_force"][0] - value
+    assert 1.25 * 15 / 16 * true == pytest.approx(mesh, rel=0.03)
+    assert increment == iteration == 0.0   # no friction, no heat
+
+
+def test_error_of_hertz_peak_pressure(tmp_path):
+    """Printed and true error of the deck's peak against its next refinements."""
+    changes = {"*REFINE, LEVELS=1": "*REFINE, LEVELS=0"}
+    coarse = errors(solve(bare(HERTZ, tmp_path, "coarse.inp", changes=changes)), "FACE")
+    changes = {"*REFINE, LEVELS=1": "*REFINE, LEVELS=2"}
+    fine = errors(solve(bare(HERTZ, tmp_path, "fine.inp", changes=changes)), "FACE")
+    value, mesh, *_ = coarse["peak_pressure"]
+    assert 0.5 <= (fine["peak_pressure"][0] - value) / mesh <= 2.0
+    value, mesh, *_ = coarse["edge_contact"]
+    assert abs(fine["edge_contact"][0] - value) <= mesh
+
+
+def test_mesh_of_a_coupled_run(tmp_path):
+    """What is estimated for the mesh is 1.25 of what the next one gives, without factoring it."""
+    coarse = errors(solve(bare(CYLINDER, tmp_path, "coarse.inp")), "FACE")
+    fine = errors(solve(bare(CYLINDER, tmp_path, "fine.inp", ["*REFINE, LEVELS=1"])), "FACE")
+    for name in ("normal_force", "heat_rate", "peak_pressure"):
+        value, mesh, *_ = coarse[name]
+        assert 1.25 * (fine[name][0] - value) == pytest.approx(mesh, rel=0.25), name
+
+
+def test_error_of_increments(tmp_path):
+    """The explicit scheme is of the first order: its conductance is that of the last increment."""
+    cards = ["*THERMAL SCHEME, TYPE=EXPLICIT"]
+    runs = []
+    for size in ("5.", "2.5", "0.3125"):
+        deck = bare(CYLINDER, tmp_path, f"steps{size}inp", cards, {"INC=100": "INC=10000",
+                                                                   "20., 900.": f"{size}, 900."})
+        runs.append(errors(solve(deck), "FACE")["heat_rate"])
+    exact = runs[2][0]
+    for value, _, increment, _ in runs[:2]:
+        assert 0.5 <= (exact - value) / increment <= 2.0
+
+
+@pytest.mark.parametrize("tolerance", ["1.E-2", "1.E-3"])
+def test_error_of_the_iteration_is_a_bound(tmp_path, tolerance):
+    """Loose tolerances, against one that is met to rounding."""
+    def rows(value):
+        cards = [f"*FIXED POINT, METHOD=ZAITSEV, TOL={value}"]
+        changes = {"*FIXED POINT, METHOD=ZAITSEV\n": ""}
+        return errors(solve(bare(CYLINDER, tmp_path, f"tol{value}.inp", cards, changes)), "FACE")
+
+    loose, exact = rows(tolerance), rows("1.E-12")
+    for name in ("normal_force", "heat_rate"):
+        value, *_, iteration = loose[name]
+        assert abs(exact[name][0] - value) <= iteration, name
+
+
+@pytest.mark.changes("OPTIONS, ERRORS")
+def test_errors_are_left_out_where_the_deck_says_so(tmp_path):
+    """The results are the same with them and without."""
+    decks = [bare(CYLINDER, tmp_path, f"{word}.inp", [f"*OPTIONS, ERRORS={word}"])
+             for word in ("YES", "NO")]
+    note_changes(*(deck.read_text().splitlines() for deck in decks))
+    results = [solve(deck) for deck in decks]
+    with h5py.File(results[0]) as one, h5py.File(results[1]) as other:
+        assert "errors" in one
+        assert other["errors/time"].shape == (0,) if "errors" in other else True
+        for name, data in one["contact/FACE"].items():
+            np.testing.assert_array_equal(data[()], other[f"contact/FACE/{name}"][()])
+    assert "ESTIMATED ERRORS" in results[0].with_suffix(".lst").read_text()
+    assert "ESTIMATED ERRORS" not in results[1].with_suffix(".lst").read_text()
+
+
+def test_the_listing_says_which_error_is_the_largest(tmp_path):
+    """A table of every interface at the end of each step."""
+    listing = solve(bare(CYLINDER, tmp_path, "cylinder.inp")).with_suffix(".lst").read_text()
+    table = listing[listing.index("ESTIMATED ERRORS OF FACE"):]
+    row, = re.findall(r"^ +heat rate +(.*)$", table, flags=re.M)
+    value, mesh, *_, part = row.split()
+    assert float(value) == pytest.approx(30.87, rel=1e-2)
+    assert float(mesh) < 0.0
+    assert part == "mesh"
+
+
+def test_other_word_for_errors_is_refused(tmp_path):
+    """YES and NO are all there is."""
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*OPTIONS, ERRORS=SOME"])
+    process = run("check", deck)
+    assert process.returncode == 1
+    assert "ERRORS" in process.stderr
