@@ -1,7 +1,7 @@
 !> What a child leaves to its parent without a file in any folder: memory that both see, and files
 !> without a name. Nothing of them is left once both have ended, however that came.
 module shared_memory
-   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_intptr_t, c_long, &
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_intptr_t, c_loc, c_long, &
       c_null_char, c_null_ptr, c_ptr, c_size_t
    use errors, only: error_type, set_error, status_internal
    implicit none
@@ -45,9 +45,9 @@ module shared_memory
 
       !> POSIX pread(2).
       function posix_read(descriptor, buffer, length, offset) bind(c, name='pread') result(count)
-         import :: c_char, c_int, c_long, c_size_t
+         import :: c_int, c_long, c_ptr, c_size_t
          integer(c_int), value :: descriptor
-         character(kind=c_char), intent(out) :: buffer(*)
+         type(c_ptr), value :: buffer
          integer(c_size_t), value :: length
          integer(c_long), value :: offset
          integer(c_long) :: count
@@ -92,13 +92,13 @@ contains
    subroutine take(self, contents)
       class(message_file_type), intent(inout) :: self      !! the file
       character(:), allocatable, intent(out) :: contents   !! lines with their ends between them
-      character(kind=c_char) :: block(block_length)
+      character(kind=c_char), target :: block(block_length)
       integer(c_long) :: count
       integer(c_int) :: ignored
 
       contents = ''
       do
-         count = posix_read(int(self%descriptor, c_int), block, int(block_length, c_size_t), &
+         count = posix_read(int(self%descriptor, c_int), c_loc(block), int(block_length, c_size_t), &
             int(len(contents), c_long))
          if (count <= 0_c_long) exit
          contents = contents//transfer(block(:count), repeat(' ', int(count)))
