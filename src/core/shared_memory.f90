@@ -98,8 +98,8 @@ contains
 
       contents = ''
       do
-         count = posix_read(int(self%descriptor, c_int), c_loc(block), int(block_length, c_size_t), &
-            int(len(contents), c_long))
+         count = posix_read(int(self%descriptor, c_int), c_loc(block), &
+            int(block_length, c_size_t), int(len(contents), c_long))
          if (count <= 0_c_long) exit
          contents = contents//transfer(block(:count), repeat(' ', int(count)))
       end do
