@@ -2,9 +2,9 @@
 !>
 !> Increments gather in memory and are published together: the file in the making is closed and
 !> renamed over the one in place, then their lines go to `.sta`. So a killed run leaves a file that
-!> opens and holds every increment of its `.sta`. A run publishes its first increment, the end of
-!> every step and its own end, and in between whenever that costs less than a tenth of the time. The
-!> first publishing replaces the files of an earlier run.
+!> opens and holds every increment of its `.sta`. A run publishes the end of every step and its own
+!> end, and in between whenever that costs less than a tenth of the time. The first publishing
+!> replaces the files of an earlier run.
 module results
    use contact_pairs, only: contact_pairs_type
    use due_output, only: fields_are_due
