@@ -19,7 +19,7 @@ module doubled_increments
    public :: doubled_increments_type
 
    real(dp), parameter :: almost_none = 1.0e-6_dp   !! of an increment: belongs to the one before
-   real(dp), parameter :: tolerance = 1.0e-7_dp   !! of the fixed point; errors are far larger
+   real(dp), parameter :: tolerance = 1.0e-6_dp   !! of the fixed point; errors are far larger
 
    !> Where the second run stands.
    type :: doubled_increments_type
@@ -66,7 +66,7 @@ contains
       real(dp), intent(in) :: time                               !! total time there [time]
       logical, intent(in) :: ends_step                           !! whether the step ends there
       type(error_type), allocatable :: error
-      type(solution_state_type) :: next
+      type(solution_state_type) :: before, next
       type(step_type) :: doubled
       type(increment_record_type) :: record
 
@@ -78,9 +78,18 @@ contains
       self%has_doubled = self%has_doubled .or. time - self%time > 1.5_dp*accepted%increment_size
       doubled = model%steps(number)
       doubled%start = start_type()
+      doubled%fixed_point%finds_gain = .false.
       doubled%fixed_point%tolerance = max(tolerance, &
          doubled%fixed_point%tolerance)
       next = self%state
+      before = self%state
+      next%contact = accepted%contact
+      next%contact%tangential = self%state%contact%tangential
+      if (.not. has_memory(doubled%scheme)) then
+         ! The run's solution is a guess that is nearly right, and nothing else is taken of omega.
+         before%omega = accepted%omega
+         before%omega_before = accepted%omega
+      end if
       next%increment_size = time - self%time
       next%heat_load = accepted%heat_load
       next%film = accepted%film
@@ -89,7 +98,7 @@ contains
          call operators%set_film(left_films(doubled%scheme, self%state%film, next%film), model, &
             error)
       end if
-      if (.not. allocated(error)) call solve_pairs(operators, loads, model, doubled, self%state, &
+      if (.not. allocated(error)) call solve_pairs(operators, loads, model, doubled, before, &
          next, record, error)
       self%is_lost = allocated(error)
       if (self%is_lost) return

@@ -14,7 +14,7 @@ module interface_quantities
 
    !> How far edges of zones are known on a mesh, in spacings of the pairs about them: of those of
    !> the published cylinder nine tenths are no further from the converged ones (docs/accuracy.md).
-   real(dp), parameter :: known_contact_edge = 0.2_dp
+   real(dp), parameter :: known_contact_edge = 0.1_dp
    real(dp), parameter :: known_stick_edge = 0.6_dp
 
 contains

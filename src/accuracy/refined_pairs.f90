@@ -112,11 +112,11 @@ contains
    end function slip_forces
 
    !> Joints that keep the closed new pairs closed, and the stuck ones where the old mesh has them.
-   pure function mechanical_joints(self, refined, displacement) result(joints)
+   subroutine mechanical_joints(self, refined, displacement, joints)
       class(refined_pairs_type), intent(in) :: self      !! the pairs
       type(refined_model_type), intent(in) :: refined    !! the refined model
       real(dp), intent(in) :: displacement(:) !! (2 nodes) field of the old mesh [length]
-      type(joint_type), allocatable :: joints(:)
+      type(joint_type), allocatable, intent(out) :: joints(:)    !! the joints
       real(dp) :: relative(2)
       integer :: k, n
 
@@ -138,13 +138,13 @@ contains
             joint%rest = [joint%rest, dot_product(pairs%tangent(:, k), relative)]
          end associate
       end do
-   end function mechanical_joints
+   end subroutine mechanical_joints
 
    !> Conductances of all pairs as springs between their temperatures.
-   pure function conducting_joints(self, refined) result(joints)
+   subroutine conducting_joints(self, refined, joints)
       class(refined_pairs_type), intent(in) :: self      !! the pairs
       type(refined_model_type), intent(in) :: refined    !! the refined model
-      type(joint_type), allocatable :: joints(:)
+      type(joint_type), allocatable, intent(out) :: joints(:)    !! the joints
       integer :: k
 
       allocate (joints(size(self%omega)))
@@ -154,7 +154,7 @@ contains
          joints(k)%rest = [0.0_dp]
          joints(k)%stiffness = self%omega(k)*refined%pairs%weight(k)
       end do
-   end function conducting_joints
+   end subroutine conducting_joints
 
    !> Forces and gaps of the new pairs from the displacements that their joints gave, and the states
    !> that follow: a pair in tension opens, one that overlaps closes.

@@ -71,6 +71,7 @@ contains
       estimate_step = step
       estimate_step%scheme = implicit_scheme
       estimate_step%start = start_type()
+      estimate_step%fixed_point%finds_gain = .false.
       estimate_step%fixed_point%tolerance = max(tolerance, step%fixed_point%tolerance)
       fields%coarse = next
       if (solves_heat(step%analysis)) then
@@ -115,8 +116,8 @@ contains
       associate (pairs => fields%pairs, u => fields%displacement, t => fields%temperature)
          call pairs%take_old(refined, fields%coarse%contact)
          if (solves_mechanics(step%analysis)) then
-            joints = pairs%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, &
-               2))
+            call pairs%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, 2), &
+               joints)
             load = mechanical_load(refined, fields)
             call relax(refined%stiffness, joints, load + pairs%slip_forces(refined), .not. &
                (refined%prolong_set(loads%displacement%active, 2) .or. refined%at_old_pair), &
@@ -127,7 +128,7 @@ contains
          if (solves_heat(step%analysis)) then
             call pairs%conduct(refined, fields%coarse%omega, fields%coarse%resting)
             conduction = refined%conduction_with(refined%loads%film_matrix())
-            joints = pairs%conducting_joints(refined)
+            call pairs%conducting_joints(refined, joints)
             call relax(conduction, joints, refined%loads%heat_load(), &
                .not. refined%prolong_set(loads%temperature%active, 1), smoothing_steps, t)
          end if

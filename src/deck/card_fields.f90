@@ -3,6 +3,7 @@ module card_fields
    use cards, only: field_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
+   use text, only: to_upper, without_blanks
    implicit none
    private
    public :: split_fields, append_fields, drop_empty_end, without_quotes
@@ -48,8 +49,8 @@ contains
       last_text = verify(line, blanks, back=.true.)
    end function last_text
 
-   !> Splits a line at its commas. Quotes stay in the fields; a comma inside quotes and a quote
-   !> without its end are errors.
+   !> Splits a line at its commas. Quotes stay in the fields; a comma inside quotes, but for those
+   !> of FORMAT=, and a quote without its end are errors.
    subroutine split_fields(line, image, report, fields)
       character(*), intent(in) :: line                            !! card image
       integer, intent(in) :: image                                !! its running number
@@ -57,14 +58,21 @@ contains
       type(field_type), allocatable, intent(out) :: fields(:)     !! at least one field
       integer :: commas(len(line) + 1)
       integer :: i, n, first, opened
+      logical :: is_format
 
+      is_format = .false.
       opened = 0
       n = 0
       do i = 1, last_text(line)
          if (line(i:i) == '"') then
             opened = merge(i, 0, opened == 0)
+            first = 1
+            if (n > 0) first = commas(n) + 1
+            if (opened > 0) is_format = to_upper(without_blanks(line(first:i - 1))) == 'FORMAT='
          else if (line(i:i) == ',') then
-            if (opened > 0) then
+            if (opened > 0 .and. is_format) then
+               cycle
+            else if (opened > 0) then
                call report%error(place_type(image, i), 'no comma may stand inside quotes')
             else
                n = n + 1

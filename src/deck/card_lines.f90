@@ -8,6 +8,7 @@ module card_lines
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_types, only: element_type_fields
+   use fixed_cards, only: fixed_cards_type
    use keyword_cards, only: is_parameter, make_keyword_card
    use keywords, only: built, known_keywords
    use text, only: read_integer, to_text
@@ -30,6 +31,7 @@ module card_lines
       logical, private :: skips_data = .false.              !! its data cards are of no use
       character(:), allocatable, private :: refusal_of_data !! error at its first data card
       integer, private :: element_fields = 0                !! of a complete *ELEMENT data card
+      type(fixed_cards_type), private :: fixed              !! data cards in fixed columns
    contains
       procedure :: take_line
       procedure :: finish
@@ -79,6 +81,13 @@ contains
       type(field_type), allocatable :: fields(:)
       type(place_type) :: place
 
+      if (self%fixed%is_open()) then
+         call self%fixed%release(fields)
+         if (allocated(fields)) then
+            if (size(fields) > 0) call take_data(self, fields, fields(size(fields))%place%image, &
+               cards, report)
+         end if
+      end if
       if (.not. allocated(self%pending)) return
       call move_alloc(self%pending, fields)
       place = fields(size(fields))%place
@@ -123,6 +132,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(keyword_card_type) :: card
       integer :: i
+      logical :: valid
 
       do i = 2, size(fields)
          call self%parameters%substitute(fields(i), report)
@@ -140,6 +150,9 @@ contains
       if (allocated(card%refusal_of_data)) self%refusal_of_data = card%refusal_of_data
       self%skips_data = card%known == 0
       if (card%known > 0) self%skips_data = known_keywords(card%known)%status /= built
+      call self%fixed%begin(card, self%element_fields, report, valid)
+      self%skips_data = self%skips_data .or. .not. valid
+      card%data_lost = .not. valid
       call add_keyword(cards, card)
    end subroutine take_keyword
 
@@ -203,6 +216,10 @@ contains
          call add_data(cards, fields, place_type(image, last_text(line) + 1))
          return
       end if
+      if (self%fixed%is_open()) then
+         call take_fixed(self, line, image, cards, report)
+         return
+      end if
       call split_fields(line, image, report, fields)
       if (self%keyword == 'ELEMENT') then
          if (completes_element(self, fields, cards)) then
@@ -214,6 +231,26 @@ contains
          call take_data(self, fields, image, cards, report)
       end if
    end subroutine take_data_line
+
+   !> One line in fixed columns.
+   subroutine take_fixed(self, line, image, cards, report)
+      type(card_lines_type), intent(inout) :: self
+      character(*), intent(in) :: line
+      integer, intent(in) :: image
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      type(field_type), allocatable :: fields(:)
+      logical :: complete
+
+      call self%fixed%take(line, image, report, complete)
+      if (.not. complete) return
+      call self%fixed%release(fields)
+      if (allocated(fields)) then
+         call take_data(self, fields, image, cards, report)
+      else
+         cards%keywords(cards%keyword_count)%data_lost = .true.
+      end if
+   end subroutine take_fixed
 
    !> Whether a line has just the nodes that the element before it lacks: in CalculiX a card may go
    !> on without a comma at its end.

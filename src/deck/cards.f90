@@ -31,6 +31,7 @@ module cards
       type(parameter_type), allocatable :: parameters(:)   !! those that are known
       integer :: first_data = 1                            !! its data cards: index into cards%data
       integer :: last_data = 0                             !! the last of them
+      logical :: data_lost = .false.   !! whether data cards were left out after an error in them
    end type keyword_card_type
 
    !> One data card, continuations included.
@@ -146,6 +147,7 @@ contains
          other(i)%place = list(i)%place
          other(i)%first_data = list(i)%first_data
          other(i)%last_data = list(i)%last_data
+         other(i)%data_lost = list(i)%data_lost
       end do
       call move_alloc(other, list)
    end subroutine resize_keywords

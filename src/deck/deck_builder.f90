@@ -8,6 +8,7 @@ module deck_builder
    use deck_builder_contact, only: build_contacts
    use deck_builder_courses, only: build_amplitudes, build_temperatures
    use deck_builder_interactions, only: build_interactions
+   use deck_builder_lines, only: build_lines, split_line_sets
    use deck_builder_load_axis, only: build_load_axis
    use deck_builder_materials, only: build_materials
    use deck_builder_mesh, only: build_elements, build_nodes
@@ -57,15 +58,17 @@ contains
       call check_structure(cards, report)
       call build_options(cards, context, model, report)
       call build_nodes(cards, context, model%mesh, report)
+      call build_lines(cards, context, report)
       call build_elements(cards, context, model%mesh, report)
       call find_dropped(context, model%mesh)
       errors = report%error_count()
-      call build_sets('element', cards, context%element_index, model%mesh, report, sets)
+      call build_sets('element', cards, context, model%mesh, report, sets)
+      call split_line_sets(size(model%mesh%element_number), sets, context%line_sets)
       call move_alloc(sets, model%mesh%element_sets)
       context%sets_sound = report%error_count() == errors
       call build_surfaces(cards, context, model%mesh, report)
       errors = report%error_count()
-      call build_sets('node', cards, context%node_index, model%mesh, report, sets)
+      call build_sets('node', cards, context, model%mesh, report, sets)
       call move_alloc(sets, model%mesh%node_sets)
       context%sets_sound = context%sets_sound .and. report%error_count() == errors
       call build_materials(cards, context, model, report)

@@ -72,12 +72,15 @@ contains
       type(data_card_type), intent(in) :: data
       type(mesh_type), intent(in) :: mesh
       character(:), allocatable :: name
+      integer :: set
 
       name = to_upper(field_text(data, 1))
       do named_surface = size(mesh%surfaces), 1, -1
          if (mesh%surfaces(named_surface)%name == name .and. len(name) > 0) exit
       end do
-      if (find_set(mesh%element_sets, name) > 0) named_surface = 0
+      set = find_set(mesh%element_sets, name)
+      if (set == 0) return
+      if (.not. mesh%element_sets(set)%of_lines) named_surface = 0
    end function named_surface
 
    !> A load on the faces of a surface, as in CalculiX: a number in the label does not count.

@@ -3,6 +3,7 @@ module deck_builder_mesh
    use card_parameters, only: need_parameter, parameter_place
    use card_values, only: check_extra, field_place, has_field, need_field, take_field
    use cards, only: cards_type, data_card_type
+   use deck_builder_lines, only: element_card_count, is_line_card
    use deck_context, only: deck_context_type, plane_by_element
    use deck_report, only: deck_report_type
    use element_kinds, only: element_corner_count, element_node_count, plane_strain, quad8
@@ -151,7 +152,7 @@ contains
       integer, allocatable :: card(:)
       integer :: k, j, kind, n, plane
 
-      n = data_card_count(cards, 'ELEMENT')
+      n = element_card_count(cards, of_lines=.false.)
       allocate(mesh%element_number(n), mesh%element_section(n), card(n))
       allocate(mesh%element_nodes(nodes_per_element, n), source=0)
       allocate(mesh%element_kind(n), source=quad8)
@@ -161,7 +162,7 @@ contains
       mesh%element_section = 0
       n = 0
       do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'ELEMENT') cycle
+         if (cards%keywords(k)%name /= 'ELEMENT' .or. is_line_card(cards%keywords(k))) cycle
          call need_parameter(cards%keywords(k), 'TYPE', report, name)
          message = ''
          if (len(name) > 0) call take_element_type(name, kind, plane, message)
@@ -180,9 +181,31 @@ contains
                mesh%element_nodes(:element_node_count(kind), n), context%element_valid(n))
          end do
       end do
-      call check_repeated('element', cards, card, mesh%element_number, report)
       call context%element_index%build(mesh%element_number)
+      call check_element_numbers(cards, card, context, mesh, report)
    end subroutine build_elements
+
+   !> Elements and lines have different numbers.
+   subroutine check_element_numbers(cards, card, context, mesh, report)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: card(:)
+      type(deck_context_type), intent(inout) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer :: line_cards(size(context%line_number)), k, j, n
+
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (.not. is_line_card(cards%keywords(k))) cycle
+         do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
+            n = n + 1
+            line_cards(n) = j
+         end do
+      end do
+      call check_repeated('element', cards, [card, line_cards], &
+         [mesh%element_number, context%line_number], report)
+      call context%member_index%build([mesh%element_number, context%line_number])
+   end subroutine check_element_numbers
 
    subroutine read_element_nodes(data, kind, context, report, nodes, valid)
       type(data_card_type), intent(in) :: data

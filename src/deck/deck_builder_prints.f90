@@ -3,7 +3,7 @@ module deck_builder_prints
    use card_parameters, only: choose, need_parameter, parameter_place, take_parameter
    use card_values, only: field_place, field_text, has_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_context, only: deck_context_type, find_set, set_names
+   use deck_context, only: deck_context_type, find_set, report_lines, set_names
    use deck_report, only: deck_report_type
    use mesh, only: mesh_type, set_type
    use print_requests, only: append_request, print_displacement, print_force, print_heat, &
@@ -72,10 +72,18 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: set
       character(:), allocatable :: name
+      logical :: valid
 
       call need_parameter(card, parameter, report, name)
       set = find_set(sets, name)
-      if (set > 0 .or. len(name) == 0 .or. .not. context%sets_sound) return
+      if (set > 0) then
+         valid = .true.
+         if (sets(set)%of_lines) call report_lines(name, parameter_place(card, parameter), report, &
+            valid)
+         if (.not. valid) set = 0
+         return
+      end if
+      if (len(name) == 0 .or. .not. context%sets_sound) return
       call report%error(parameter_place(card, parameter), 'unknown '//noun//' set '//name// &
          nearest_known(name, set_names(sets)))
    end subroutine take_set

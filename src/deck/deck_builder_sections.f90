@@ -5,7 +5,8 @@ module deck_builder_sections
    use cards, only: cards_type, keyword_card_type
    use deck_builder_materials, only: find_material
    use deck_builder_orientations, only: find_orientation
-   use deck_context, only: deck_context_type, find_set, report_unknown, set_names
+   use deck_context, only: deck_context_type, find_set, report_lines, report_unknown, &
+      set_names
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, is_misspelt
    use kinds, only: dp
@@ -35,7 +36,7 @@ contains
          n = n + 1
          call build_section(cards, cards%keywords(k), context, model, report, model%sections(n))
          errors = report%error_count()
-         call give_section(cards%keywords(k), n, model%mesh, report)
+         call give_section(cards%keywords(k), n, context, model%mesh, report)
          if (report%error_count() > errors) context%sections_sound = .false.
       end do
    end subroutine build_sections
@@ -97,13 +98,15 @@ contains
          report)
    end subroutine take_orientation
 
-   subroutine give_section(card, section, mesh, report)
+   subroutine give_section(card, section, context, mesh, report)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: section
+      type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(inout) :: mesh
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: name
       integer :: set
+      logical :: valid
 
       if (.not. has_parameter(card, 'ELSET')) then
          call report%error(card%place, '*SOLID SECTION needs ELSET=')
@@ -116,6 +119,13 @@ contains
             nearest_known(name, set_names(mesh%element_sets)))
          return
       end if
+      valid = .true.
+      if (mesh%element_sets(set)%of_lines) call report_lines(name, &
+         parameter_place(card, 'ELSET'), report, valid)
+      if (.not. valid) return
+      if (find_set(context%line_sets, name) > 0) call report%warning( &
+         parameter_place(card, 'ELSET'), 'element set '//name// &
+         ' holds lines, too, which are passed over: bars are not modelled')
       associate (members => mesh%element_sets(set)%members)
          if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
             'this section replaces an earlier one; elements concerned: '// &

@@ -3,12 +3,13 @@ module deck_builder_sets
    use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
    use card_values, only: check_extra, field_place, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_context, only: find_set, read_target, report_unknown, set_names
+   use deck_builder_lines, only: is_line_card
+   use deck_builder_set_nodes, only: find_nodes
+   use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
-   use element_kinds, only: side_nodes
    use mesh, only: mesh_type, set_type
    use sorting, only: number_index_type, unique_sorted
-   use text, only: read_integer, string_type, to_text, to_upper
+   use text, only: read_integer, to_text, to_upper
    implicit none
    private
    public :: build_sets
@@ -22,32 +23,37 @@ module deck_builder_sets
 
 contains
 
-   !> Takes all sets of nodes or of elements; a name that stands on several cards is one set.
-   subroutine build_sets(noun, cards, numbers, mesh, report, sets)
+   !> Takes all sets of nodes or of elements, lines among them; a name that stands on several cards
+   !> is one set.
+   subroutine build_sets(noun, cards, context, mesh, report, sets)
       character(*), intent(in) :: noun                           !! node or element
       type(cards_type), intent(in) :: cards                      !! the cards
-      type(number_index_type), intent(in) :: numbers             !! numbers -> indexes
+      type(deck_context_type), intent(in) :: context             !! numbers -> indexes
       type(mesh_type), intent(in) :: mesh  !! for nodes: has the element sets and surfaces
       type(deck_report_type), intent(inout) :: report            !! receives errors
       type(set_type), allocatable, intent(out) :: sets(:)        !! the sets
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
-      integer :: k, first, i
+      type(number_index_type) :: numbers
+      integer :: k, first(2), kind, i
 
       parameter = merge('NSET ', 'ELSET', noun == 'node')
       parameter = trim(parameter)
       definer = to_upper(noun)
       allocate(draft%items(size(cards%keywords)), draft%counts(size(cards%keywords)))
-      first = 0
+      numbers = context%node_index
+      if (noun == 'element') numbers = context%member_index
+      first = [0, size(mesh%element_number)]
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (card%name == definer) then
                if (has_parameter(card, parameter)) call open_set(card, parameter, report, draft, i)
-               if (has_parameter(card, parameter)) call add_range(draft, i, first + 1, &
-                  first + card%last_data - card%first_data + 1)
-               first = first + card%last_data - card%first_data + 1
+               kind = merge(2, 1, is_line_card(card))
+               if (has_parameter(card, parameter)) call add_range(draft, i, first(kind) + 1, &
+                  first(kind) + card%last_data - card%first_data + 1)
+               first(kind) = first(kind) + card%last_data - card%first_data + 1
             else if (card%name == parameter) then
-               call build_set(noun, cards, card, numbers, mesh, report, draft)
+               call build_set(noun, cards, card, context, numbers, mesh, report, draft)
             end if
          end associate
       end do
@@ -109,10 +115,11 @@ contains
    end subroutine add_members
 
    !> Takes one *NSET or *ELSET card.
-   subroutine build_set(noun, cards, card, numbers, mesh, report, draft)
+   subroutine build_set(noun, cards, card, context, numbers, mesh, report, draft)
       character(*), intent(in) :: noun
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
       type(number_index_type), intent(in) :: numbers
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
@@ -127,7 +134,7 @@ contains
       known = draft%sets
       call open_set(card, card%name, report, draft, set)
       if (noun == 'node') then
-         call find_nodes(card, mesh, report, nodes)
+         call find_nodes(card, context, mesh, report, nodes)
          call add_members(draft, set, nodes)
       end if
       do j = card%first_data, card%last_data
@@ -145,47 +152,6 @@ contains
          end do
       end do
    end subroutine build_set
-
-   !> Nodes of the element set or the surface that an *NSET card names; none where it names neither.
-   subroutine find_nodes(card, mesh, report, nodes)
-      type(keyword_card_type), intent(in) :: card
-      type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
-      integer, allocatable, intent(out) :: nodes(:)
-      type(string_type) :: names(size(mesh%surfaces))
-      character(:), allocatable :: name
-      integer :: set, surface, i, element
-
-      allocate(nodes(0))
-      if (has_parameter(card, 'ELSET')) then
-         name = to_upper(parameter_text(card, 'ELSET'))
-         set = find_set(mesh%element_sets, name)
-         if (set > 0) then
-            nodes = pack(mesh%element_nodes(:, mesh%element_sets(set)%members), &
-               mesh%element_nodes(:, mesh%element_sets(set)%members) > 0)
-         else
-            call report_unknown('element set', name, set_names(mesh%element_sets), &
-               parameter_place(card, 'ELSET'), report)
-         end if
-      end if
-      if (.not. has_parameter(card, 'SURFACE')) return
-      name = to_upper(parameter_text(card, 'SURFACE'))
-      surface = 0
-      do i = 1, size(names)
-         names(i)%value = mesh%surfaces(i)%name
-         if (names(i)%value == name) surface = i
-      end do
-      if (surface == 0) then
-         call report_unknown('surface', name, names, parameter_place(card, 'SURFACE'), report)
-         return
-      end if
-      do i = 1, size(mesh%surfaces(surface)%faces, 2)
-         element = mesh%surfaces(surface)%faces(1, i)
-         nodes = [nodes, mesh%element_nodes(side_nodes(mesh%element_kind(element), &
-            mesh%surfaces(surface)%faces(2, i)), element)]
-      end do
-      nodes = pack(nodes, nodes > 0)
-   end subroutine find_nodes
 
    !> Numbers from first to last; those between that do not exist are passed over with a warning.
    subroutine generate(noun, data, numbers, report, draft, set)

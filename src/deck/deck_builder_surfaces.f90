@@ -1,12 +1,13 @@
 !> *SURFACE -> sets of element faces.
 module deck_builder_surfaces
    use card_parameters, only: choose, need_parameter, parameter_place
-   use card_values, only: check_extra, field_place, field_text, need_field
+   use card_values, only: check_extra, field_place, field_text, has_field, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_context, only: deck_context_type, read_target
+   use deck_context, only: deck_context_type, find_set, read_target
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
    use element_kinds, only: element_corner_count
+   use line_faces, only: find_line_faces
    use mesh, only: mesh_type, surface_type
    use sorting, only: unique_sorted
    use text, only: to_text, to_upper
@@ -73,6 +74,10 @@ contains
       end if
       allocate(keys(0))
       do j = card%first_data, card%last_data
+         if (names_lines(cards%data(j), context)) then
+            call add_line_faces(cards%data(j), context, mesh, report, keys)
+            cycle
+         end if
          valid = .true.
          call read_target(cards%data(j), 1, 'element', context%element_index, mesh%element_sets, &
             report, element, set, valid)
@@ -93,6 +98,48 @@ contains
          surface%faces(:, i) = [keys(i)/4, mod(keys(i), 4) + 1]
       end do
    end subroutine build_surface
+
+   !> Whether a data card is an element set that has lines, without a face.
+   pure logical function names_lines(data, context)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
+
+      names_lines = .not. has_field(data, 2) .and. &
+         find_set(context%line_sets, field_text(data, 1)) > 0
+   end function names_lines
+
+   !> Adds the faces under the lines of a set; the first line under which there is none, or one
+   !> inside a body, is an error.
+   subroutine add_line_faces(data, context, mesh, report, keys)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable, intent(inout) :: keys(:)
+      integer, allocatable :: members(:), faces(:, :), uses(:)
+      character(:), allocatable :: fault
+      integer :: i, bad
+
+      call check_extra(data, 1, 'element set of lines', report)
+      members = context%line_sets(find_set(context%line_sets, field_text(data, 1)))%members
+      allocate(faces(2, size(members)), uses(size(members)))
+      call find_line_faces(mesh, context%element_valid, context%line_nodes(:, members), faces, uses)
+      keys = [keys, pack(4*faces(1, :) + faces(2, :) - 1, uses == 1)]
+      if (all(uses == 1) .or. .not. all(context%element_valid)) return
+      bad = findloc(uses == 1, .false., dim=1)
+      fault = 'belongs to no side of an element'
+      if (uses(bad) > 1) fault = 'lies inside a body, between two elements'
+      if (count(uses /= 1) > 1) fault = fault//'; lines of the set that are no faces: '// &
+         to_text(count(uses /= 1))
+      associate (nodes => context%line_nodes(:, members(bad)))
+         if (any(nodes(:2) == 0)) return
+         i = findloc(nodes > 0, .true., dim=1, back=.true.)
+         call report%error(field_place(data, 1), 'line '// &
+            to_text(context%line_number(members(bad)))//' from node '// &
+            to_text(mesh%node_number(nodes(1)))//' to '//to_text(mesh%node_number(nodes(i)))// &
+            ' '//fault)
+      end associate
+   end subroutine add_line_faces
 
    !> Every element of a data card has the face.
    subroutine check_face(cards, data, mesh, element, set, face, report, valid)

@@ -13,7 +13,7 @@ module deck_context
    implicit none
    private
    public :: deck_context_type, find_set, set_names, read_target, report_unknown
-   public :: plane_by_element
+   public :: report_lines, plane_by_element
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
 
@@ -23,6 +23,11 @@ module deck_context
    type :: deck_context_type
       type(number_index_type) :: node_index               !! numbers of nodes -> indexes
       type(number_index_type) :: element_index            !! numbers of elements -> indexes
+      !> numbers of elements and, behind them, of lines -> indexes
+      type(number_index_type) :: member_index
+      integer, allocatable :: line_number(:)              !! (lines) numbers of the lines
+      integer, allocatable :: line_nodes(:, :)            !! (3, lines) indexes, 0 where it has two
+      type(set_type), allocatable :: line_sets(:)         !! the lines of the element sets
       type(place_type), allocatable :: element_place(:)   !! (elements) where the element stands
       logical, allocatable :: element_valid(:)            !! (elements) whether its nodes are known
       type(place_type), allocatable :: surface_place(:)   !! (surfaces) where the surface stands
@@ -103,6 +108,18 @@ contains
       call report%error(place, 'unknown '//noun//' '//name//nearest_known(name, names))
    end subroutine report_unknown
 
+   !> Reports an element set that has lines only where elements or their faces are due.
+   subroutine report_lines(name, place, report, valid)
+      character(*), intent(in) :: name                  !! the set
+      type(place_type), intent(in) :: place             !! where it stands
+      type(deck_report_type), intent(inout) :: report   !! receives the error
+      logical, intent(inout) :: valid                   !! becomes false
+
+      call report%error(place, 'element set '//name// &
+         ' holds lines only, which are no elements; a *SURFACE or an *NSET can be made of it')
+      valid = .false.
+   end subroutine report_lines
+
    !> Reads the field of a card that names one node or element by its number, or a set by its name.
    subroutine read_target(data, position, noun, numbers, sets, report, item, set, valid)
       type(data_card_type), intent(in) :: data          !! data card
@@ -127,6 +144,10 @@ contains
          item = numbers%find(number)
       else
          set = find_set(sets, name)
+      end if
+      if (set > 0) then
+         if (sets(set)%of_lines) call report_lines(sets(set)%name, field_place(data, position), &
+            report, valid)
       end if
       if (item > 0 .or. set > 0) return
       valid = .false.

@@ -109,7 +109,8 @@ contains
 
       known = known_keywords(card%known)
       n = card%last_data - card%first_data + 1
-      if (known%status == built .and. n < known%least_data .and. .not. says_all(card)) then
+      if (known%status == built .and. n < known%least_data .and. .not. &
+         (says_all(card) .or. card%data_lost)) then
          call report%error(card%place, '*'//card%name//' needs a data card')
       else if (n > known%most_data) then
          call report%error(field_place(cards%data(card%first_data + known%most_data), 1), &

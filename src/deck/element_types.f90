@@ -5,7 +5,7 @@ module element_types
    use text, only: nearest_known, string_type, to_upper
    implicit none
    private
-   public :: take_element_type, element_type_fields
+   public :: take_element_type, element_type_fields, line_node_count
 
    character(3), parameter :: plane_names(3) = ['CPE', 'CPS', 'CAX']
    integer, parameter :: planes(3) = [plane_strain, plane_stress, axisymmetric]
@@ -49,6 +49,9 @@ contains
             'take '//name(:4)
       else if (index(name, 'C3D') == 1) then
          message = 'element type '//name//' is refused: models are two-dimensional'
+      else if (name == 'M3D9') then
+         message = 'element type M3D9 is refused: quadrilaterals of second order have 8 nodes; '// &
+            'in gmsh set Mesh.SecondOrderIncomplete = 1'
       else if (index(name, 'DC2D') == 1) then
          message = 'element type '//name//' is refused; take CPE'//name(5:)
       else
@@ -64,7 +67,25 @@ contains
 
       call take_element_type(to_upper(name), kind, plane, message)
       element_type_fields = 0
+      if (line_node_count(to_upper(name)) > 0) then
+         element_type_fields = line_node_count(to_upper(name)) + 1
+         return
+      end if
       if (len(message) == 0) element_type_fields = element_node_count(kind) + 1
    end function element_type_fields
+
+   !> Nodes of a line element, such as gmsh writes for a physical curve; 0 for all other types.
+   pure integer function line_node_count(name)
+      character(*), intent(in) :: name   !! TYPE= in upper case
+
+      select case (name)
+      case ('T3D2')
+         line_node_count = 2
+      case ('T3D3')
+         line_node_count = 3
+      case default
+         line_node_count = 0
+      end select
+   end function line_node_count
 
 end module element_types

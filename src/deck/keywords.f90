@@ -50,8 +50,8 @@ module keywords
       known_keyword_type('OPTIONS', built, in_model, 0, 0, &
          'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       known_keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
-      known_keyword_type('NODE', built, in_model, 1, many, 'NSET='), &
-      known_keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET='), &
+      known_keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
+      known_keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
       known_keyword_type('NSET', built, in_model, 1, many, &
       'NSET=/GENERATE/ELSET=/SURFACE=/~INTERNAL/~UNSORTED'), &
       known_keyword_type('ELSET', built, in_model, 1, many, &

@@ -37,6 +37,7 @@ module controls
       integer :: max_iterations = 50          !! passes of U in an increment
       real(dp) :: g = 0.5_dp                  !! constant g of the first iterations, in (0, 1]
       integer :: constant = 3                 !! number of iterations with the constant g
+      logical :: finds_gain = .true.          !! whether the gain at the solution is found
    end type fixed_point_type
 
    !> Coefficients of eq. (3.4), with a1 + b1 = 1.

@@ -18,6 +18,8 @@ module mesh
    type :: set_type
       character(:), allocatable :: name     !! name in upper case
       integer, allocatable :: members(:)    !! indexes, each once, ascending
+      !> whether all that the deck has in it are lines, which are no elements of a mesh
+      logical :: of_lines = .false.
    end type set_type
 
    !> A named set of element faces.

@@ -51,9 +51,7 @@ contains
          'iteration', 'together', '%', 'largest part'
       do q = 1, estimated_quantities
          associate (value => errors%value(q))
-            if (ieee_is_nan(value)) cycle
-            if (abs(value) <= 0.0_dp .and. ieee_is_nan(total(q))) cycle
-            if (abs(value) <= 0.0_dp .and. .not. abs(total(q)) > 0.0_dp) cycle
+            if (.not. is_worth_telling(value, total(q))) cycle
             write (unit, '(3x, a14, a14, a3, a10, a14, a14, a12, a11, a14)') spaced( &
                estimated_names(q)), column(value, 14, 6), merge(' +-', '   ', is_band(q)), &
                shown(errors%mesh(q), 10), shown(errors%increment(q), 14), &
@@ -62,6 +60,17 @@ contains
          end associate
       end do
    end subroutine print_interface_errors
+
+   !> Whether a quantity has a value and a part in the deck.
+   pure logical function is_worth_telling(value, error)
+      real(dp), intent(in) :: value, error
+
+      is_worth_telling = .not. ieee_is_nan(value)
+      if (.not. is_worth_telling) return
+      is_worth_telling = abs(value) > 0.0_dp
+      if (is_worth_telling .or. ieee_is_nan(error)) return
+      is_worth_telling = abs(error) > 0.0_dp
+   end function is_worth_telling
 
    !> A name with blanks for its underlines.
    pure function spaced(name) result(words)
@@ -89,8 +98,8 @@ contains
       character(11) :: string
 
       string = repeat(' ', 10)//'-'
-      if (ieee_is_nan(error) .or. abs(value) <= 0.0_dp) return
-      string = column(100.0_dp*error/abs(value), 11, 2)
+      if (ieee_is_nan(error)) return
+      if (abs(value) > 0.0_dp) string = column(100.0_dp*error/abs(value), 11, 2)
    end function percent
 
    !> Which error is the largest.

@@ -171,6 +171,8 @@ contains
       logical :: is_number
 
       if (to_upper(where) == 'MIN' .or. to_upper(where) == 'MAX') then
+         ! Nodes that no element has, such as mesh generators leave, have nothing but zeros.
+         if (allocated(mesh%node_body)) values = pack(values, mesh%node_body(point_node) > 0)
          values = [extreme(values, to_upper(where))]
          return
       end if

@@ -53,7 +53,8 @@ contains
          call iterate(operators, step%fixed_point, graph, scales, starting_conductance(operators, &
             step, step%start%kind, previous, next), data, next, record, pass, error)
       end if
-      if (.not. allocated(error)) call judge(operators, data, graph, next, pass, record)
+      if (allocated(error) .or. .not. step%fixed_point%finds_gain) return
+      call judge(operators, data, graph, next, pass, record)
    end subroutine solve_coupled
 
    !> omega*^0 of a start.

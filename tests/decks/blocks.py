@@ -48,9 +48,13 @@ def solid(name, young, poisson, expansion=0.0, conductivity=1.0):
 
 
 def write(path, *parts):
-    """Write a deck of texts and lists of cards; return its path."""
-    lines = []
+    """Write a deck of texts and lists of cards; return its path. Lines are not indented, but for
+    data in fixed columns."""
+    lines, fixed = [], False
     for part in parts:
-        lines += part.strip().splitlines() if isinstance(part, str) else part
-    path.write_text("\n".join(line.strip() for line in lines) + "\n")
+        for line in part.strip().splitlines() if isinstance(part, str) else part:
+            if line.lstrip().startswith("*"):
+                fixed = "FORMAT=" in line
+            lines.append(line if fixed else line.strip())
+    path.write_text("\n".join(lines) + "\n")
     return path

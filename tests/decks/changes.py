@@ -5,8 +5,10 @@ A test that runs a deck with two values of a card says so: `@pytest.mark.changes
 value. conftest.py holds the test to what it says, test_every_keyword.py holds the suite to docs.
 """
 
+import re
 from difflib import SequenceMatcher
 
+OUTER_COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')   # not one inside quotes
 CHANGED = set()   # by the test that is running
 
 
@@ -35,7 +37,7 @@ def split(cards):
     """Return keyword, parameters and data of each keyword card."""
     found = []
     for line in "\n".join(cards).splitlines():
-        fields = [field.strip() for field in line.strip().split(",")]
+        fields = [field.strip() for field in OUTER_COMMA.split(line)]
         if line.strip().startswith("**"):
             continue
         if fields[0].startswith("*"):

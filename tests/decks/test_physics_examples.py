@@ -13,6 +13,7 @@ from physics import DECKS  # noqa: F401  puts tests/reference on the path
 import conduction
 import crack
 import friction_strip
+import hot_tubes
 import lame
 from rods import Rods, gas, power, solve
 
@@ -45,6 +46,21 @@ def press_fit():
                 20.0, *lame.cylinder(20.0, *inside), *hub, "stress"),
             ("U1", "RIM.RIGHT", "LAST"): lame.displacement(
                 60.0, *lame.cylinder(60.0, *outside), *rim, "stress")}
+
+
+def hot_sleeve():
+    """One tube in another, open and closed."""
+    tubes = (2.1e5, 0.3, 1.2e-5, 0.045), (1.1e5, 0.26, 1e-5, 0.05)
+    found = {}
+    for when, hot in (("50.", 50.0), ("LAST", 300.0)):
+        gap_left, pressure, omega, flux, faces = hot_tubes.hot_fit(
+            (20.0, 40.0, 60.0), tubes, (hot, 0.0), 0.03, gas(3e-5, 0.005),
+            power(0.006, 2e-4, 0.95), "strain")
+        values = {"gap": gap_left, "pressure": pressure, "conductance": omega, "heat_flux": flux,
+                  "slave_temperature": faces[0], "master_temperature": faces[1],
+                  "normal_force": pressure * 20 * pi, "heat_rate": flux * 20 * pi}
+        found |= {(name, "SEAT", when): value for name, value in values.items()}
+    return found
 
 
 def fuel_pellet():

@@ -1,0 +1,119 @@
+!> *ELEMENT of lines, which mesh generators write for the curves of a drawing: they are no elements
+!> of the mesh, but their sets name nodes and faces.
+module deck_builder_lines
+   use card_parameters, only: parameter_place, parameter_text
+   use card_values, only: check_extra, field_place, need_field
+   use cards, only: cards_type, data_card_type, keyword_card_type
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use element_types, only: line_node_count
+   use mesh, only: set_type
+   use text, only: to_text, to_upper
+   implicit none
+   private
+   public :: build_lines, split_line_sets, is_line_card, element_card_count
+
+   integer, parameter :: nodes_per_line = 3
+
+contains
+
+   !> Whether a keyword card begins elements that are lines.
+   pure logical function is_line_card(card)
+      type(keyword_card_type), intent(in) :: card   !! any card
+
+      is_line_card = .false.
+      if (card%name /= 'ELEMENT') return
+      is_line_card = line_node_count(to_upper(parameter_text(card, 'TYPE'))) > 0
+   end function is_line_card
+
+   !> Number of data cards of all *ELEMENT, of lines or of all others.
+   pure integer function element_card_count(cards, of_lines)
+      type(cards_type), intent(in) :: cards   !! the cards
+      logical, intent(in) :: of_lines         !! whether those of lines are counted
+      integer :: k
+
+      element_card_count = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'ELEMENT') cycle
+         if (is_line_card(cards%keywords(k)) .neqv. of_lines) cycle
+         element_card_count = element_card_count + cards%keywords(k)%last_data - &
+            cards%keywords(k)%first_data + 1
+      end do
+   end function element_card_count
+
+   !> Takes the lines, in the order of the deck; the nodes are known.
+   subroutine build_lines(cards, context, report)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(deck_context_type), intent(inout) :: context    !! receives the lines
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: name
+      integer :: k, j, n
+
+      n = element_card_count(cards, of_lines=.true.)
+      allocate(context%line_number(n), context%line_nodes(nodes_per_line, n), source=0)
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (.not. is_line_card(cards%keywords(k))) cycle
+         name = to_upper(parameter_text(cards%keywords(k), 'TYPE'))
+         call context%note('*ELEMENT, TYPE='//name// &
+            ': lines are passed over, but for sets and surfaces that are made of them')
+         do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
+            n = n + 1
+            call read_line(cards%data(j), context, report, context%line_number(n), &
+               context%line_nodes(:line_node_count(name), n))
+         end do
+         if (element_card_count(cards, of_lines=.false.) > 0) cycle
+         call report%error(parameter_place(cards%keywords(k), 'TYPE'), &
+            'the deck has lines, but no elements')
+         return
+      end do
+   end subroutine build_lines
+
+   !> Number and nodes of one line; nodes that do not exist are errors, and 0.
+   subroutine read_line(data, context, report, number, nodes)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(inout) :: number, nodes(:)
+      integer :: q, node
+      logical :: valid
+
+      valid = .true.
+      call need_field(data, 1, 'element number', report, number, valid)
+      do q = 1, size(nodes)
+         if (.not. valid) return
+         call need_field(data, q + 1, 'node '//to_text(q), report, node, valid)
+         if (.not. valid) return
+         nodes(q) = context%node_index%find(node)
+         if (nodes(q) == 0 .and. .not. context%node_index%is_empty()) then
+            call report%error(field_place(data, q + 1), 'there is no node '//to_text(node))
+         end if
+      end do
+      call check_extra(data, size(nodes) + 1, 'line, '//to_text(size(nodes))//' nodes', report)
+   end subroutine read_line
+
+   !> Parts sets of elements and lines: sets of elements stay, those that have lines as well are
+   !> kept beside them.
+   subroutine split_line_sets(elements, sets, line_sets)
+      integer, intent(in) :: elements                             !! number of elements
+      type(set_type), intent(inout) :: sets(:)  !! members are elements and, behind them, lines
+      type(set_type), allocatable, intent(out) :: line_sets(:)    !! indexes of lines
+      integer :: i, n
+
+      n = 0
+      do i = 1, size(sets)
+         if (any(sets(i)%members > elements)) n = n + 1
+      end do
+      allocate(line_sets(n))
+      n = 0
+      do i = 1, size(sets)
+         if (.not. any(sets(i)%members > elements)) cycle
+         n = n + 1
+         line_sets(n)%name = sets(i)%name
+         line_sets(n)%members = pack(sets(i)%members, sets(i)%members > elements) - elements
+         sets(i)%members = pack(sets(i)%members, sets(i)%members <= elements)
+         sets(i)%of_lines = size(sets(i)%members) == 0
+      end do
+   end subroutine split_line_sets
+
+end module deck_builder_lines
