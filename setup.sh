@@ -12,6 +12,7 @@ build_packages=(gfortran cmake ninja-build libopenblas-serial-dev libmumps-seq-d
 test_packages=(valgrind calculix-ccx)
 bench_packages=(calculix-ccx)
 requirements=("$root/post/requirements.txt" "$root/tests/requirements.txt")
+sweep_requirements=("$root/input/sweep/requirements.txt")
 
 usage() {
    cat <<USAGE
@@ -24,7 +25,8 @@ usage: ./setup.sh COMMAND
    bench       run thercon and CalculiX at equal error again, against the figures on record
 
 What is installed: Debian packages with apt-get, as root or with sudo; without either, the command
-that is needed is printed. Python packages live in build/venv.
+that is needed is printed. Python packages live in build/venv, those of Snakemake
+(for tests only) in build/sweep.
 USAGE
 }
 
@@ -81,29 +83,34 @@ install_packages() {
       fail "apt-get could not install: ${missing[*]}"
 }
 
-# What build/venv was made of. An environment does not survive a move to another path.
+# What an environment was made of. It does not survive a move to another path.
 venv_contents() {
-   printf '%s\n' "$venv"
+   printf '%s\n' "$1"
    /usr/bin/python3 --version
-   cat "${requirements[@]}"
+   cat "${@:2}"
 }
 
-install_python_packages() {
+# Makes an environment of the packages that some files list.
+make_venv() {
+   local folder=$1
+   shift
    unset PYTHONHOME PYTHONPATH
-   if [[ -f $venv/contents ]] && venv_contents | cmp -s - "$venv/contents"; then
+   if [[ -f $folder/contents ]] && venv_contents "$folder" "$@" | cmp -s - "$folder/contents"; then
       return
    fi
-   say "installing Python packages into build/venv"
-   rm -rf "$venv"
-   quietly /usr/bin/python3 -m venv "$venv" || fail "no Python environment could be made"
+   say "installing Python packages into ${folder#"$root"/}"
+   rm -rf "$folder"
+   quietly /usr/bin/python3 -m venv "$folder" || fail "no Python environment could be made"
    local arguments=() file
-   for file in "${requirements[@]}"; do
+   for file in "$@"; do
       arguments+=(--requirement "$file")
    done
-   quietly "$venv/bin/python" -m pip install --disable-pip-version-check --no-input \
+   quietly "$folder/bin/python" -m pip install --disable-pip-version-check --no-input \
       "${arguments[@]}" || fail "pip could not install the Python packages"
-   venv_contents >"$venv/contents"
+   venv_contents "$folder" "$@" >"$folder/contents"
 }
+
+install_python_packages() { make_venv "$venv" "${requirements[@]}"; }
 
 # Configures (once) and builds the preset named.
 build_preset() {
@@ -196,7 +203,7 @@ run_lint() {
    cd "$root"
    "$venv/bin/fortitude" check --progress-bar off "$@" src tests || status=1
    check_indentation "$@" || status=1
-   "$venv/bin/shellcheck" setup.sh .ci/run tests/*/*.sh || status=1
+   "$venv/bin/shellcheck" setup.sh .ci/run input/*/*.sh tests/*/*.sh || status=1
    ((status == 0)) || printf 'The sources do not pass; ./setup.sh lint --fix mends some of it.\n'
    return "$status"
 }
@@ -207,6 +214,7 @@ run_test() {
    local status=0
    install_packages "${build_packages[@]}" "${test_packages[@]}"
    install_python_packages
+   make_venv "$build/sweep" "${sweep_requirements[@]}" # Snakemake, for the test of input/sweep
    run_lint || status=1
    build_preset debug
    say "tests with run-time checks"

@@ -1,6 +1,6 @@
 """The mesh of the result file: points, elements, curved element edges."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -11,13 +11,17 @@ QUADRATIC = {22, 23}
 
 @dataclass
 class Cells:
-    """Points (n, 2) and cells grouped by VTK type: {type: connectivity (m, nodes)}."""
+    """Points (n, 2) and cells grouped by VTK type: {type: connectivity (m, nodes)}.
+
+    `members` are the places of the cells of a type among those of the file.
+    """
 
     points: np.ndarray
     node_id: np.ndarray
     groups: dict
     bodies: dict
     element_ids: dict
+    members: dict = field(default_factory=dict)
 
     @classmethod
     def read(cls, group):
@@ -31,7 +35,7 @@ class Cells:
         node_id = group["PointData/node_id"][:count].astype(int)
         body = cls._cell_data(group, "body", cells)
         element = cls._cell_data(group, "element_id", cells)
-        groups, bodies, elements = {}, {}, {}
+        groups, bodies, elements, places = {}, {}, {}, {}
         for kind in np.unique(types):
             members = np.flatnonzero(types == kind)
             starts = offsets[members]
@@ -39,7 +43,8 @@ class Cells:
             groups[int(kind)] = connectivity[starts[:, None] + np.arange(nodes)]
             bodies[int(kind)] = body[members]
             elements[int(kind)] = element[members]
-        return cls(points, node_id, groups, bodies, elements)
+            places[int(kind)] = members
+        return cls(points, node_id, groups, bodies, elements, places)
 
     @staticmethod
     def _cell_data(group, name, cells):

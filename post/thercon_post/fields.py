@@ -1,15 +1,15 @@
-"""Temperature and stress on the deformed mesh."""
+"""Temperature, stress and errors on the deformed mesh."""
 
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
-from . import mesh, style
+from . import element_fields, mesh, style
 from .cells import curves
 from .errors import UserError
 from .fine_mesh import refine
-from .result import FIELD_SOURCES
+from .result import CELL_FIELDS, FIELD_SOURCES
 from .style import plt
 
 DEFAULT_QUANTITIES = ("temperature", "von_mises", "yy")
@@ -23,6 +23,8 @@ TITLES = {
     "xy": (r"Stress $\sigma_{xy}$", "stress"),
     "flux_x": ("Heat flux $q_x$", "flux"),
     "flux_y": ("Heat flux $q_y$", "flux"),
+    "stress_error": ("Estimated error of stress", "stress"),
+    "heat_flux_error": ("Estimated error of heat flux", "flux"),
 }
 FINE_CELLS = 60000  # about as many parts as a page can show
 ROUNDING = 1e-9  # values that differ by this part of the largest magnitude are the same
@@ -52,14 +54,20 @@ def draw_row(result, row, options):
     if options.region == "contact":
         window = mesh.contact_window(result.contacts(), result.cells, moved)
     figure, panels = layout(len(fields), window)
-    for axes, letter, (quantity, nodal) in zip(panels, "abcdefgh", fields.items()):
-        values = fine.values(nodal.astype(float))
-        if quantity == "von_mises":
-            values = np.maximum(values, 0.0)  # quadratic interpolation can undershoot
-        inside = np.all((at >= window[0]) & (at <= window[1]), axis=1)
+    inside = np.all((at >= window[0]) & (at <= window[1]), axis=1)
+    for axes, letter, (quantity, given) in zip(panels, "abcdefghij", fields.items()):
         mesh.frame(axes, window, result.units, cut=options.region == "contact")
         scale = magnitude(result, quantity, step)
-        draw_panel(axes, grid, values, quantity, limits(values[inside], quantity, scale), scale)
+        if quantity in CELL_FIELDS:
+            near = given[element_fields.in_window(result.cells, moved, window)]
+            levels = limits(near, quantity, scale)
+            draw_elements(axes, result.cells, moved, given, quantity, levels)
+        else:
+            values = fine.values(given.astype(float))
+            if quantity == "von_mises":
+                values = np.maximum(values, 0.0)  # quadratic interpolation can undershoot
+            levels = limits(values[inside], quantity, scale)
+            draw_points(axes, grid, values, quantity, levels, scale)
         draw_lines(axes, result.cells, moved)
         title = result.units.label(*TITLES[quantity])
         style.panel_title(axes, title, letter if len(fields) > 1 else "")
@@ -87,7 +95,7 @@ def name_of(result, row, options):
 
 
 def read_fields(result, step, quantities):
-    """Return {quantity: values over the points} for those asked for, or the usual ones."""
+    """Return {quantity: values over points or elements} for those asked for, or the usual ones."""
     there = {q: result.field(q, step) for q in FIELD_SOURCES}
     there = {q: v for q, v in there.items() if v is not None and np.isfinite(v).any()}
     for quantity in quantities or ():
@@ -96,6 +104,10 @@ def read_fields(result, step, quantities):
                 f"{result.path}: no field '{quantity}' at this load "
                 f"(there are: {', '.join(there) or 'none'})"
             )
+    if 0 < sum(quantity in CELL_FIELDS for quantity in quantities or ()) < len(quantities or ()):
+        raise UserError(
+            f"{' and '.join(CELL_FIELDS)} are fields of elements: draw them apart from those of nodes"
+        )
     chosen = quantities or [q for q in DEFAULT_QUANTITIES if q in there]
     if not quantities and len(chosen) > 1 and tells_nothing(result, there, step):
         chosen.remove("temperature")
@@ -114,8 +126,7 @@ def tells_nothing(result, there, step):
 
 def magnitude(result, quantity, step):
     """Return the largest magnitude of a quantity, with all components of what it is one of."""
-    source, _ = FIELD_SOURCES[quantity]
-    return float(np.nanmax(np.abs(result.point_data(source, step))))
+    return float(np.nanmax(np.abs(result.source(quantity, step))))
 
 
 def layout(count, window):
@@ -176,7 +187,15 @@ def settle(values, levels, scale):
     return np.where(np.abs(values - nearest) <= ROUNDING * scale, nearest, values)
 
 
-def draw_panel(axes, grid, values, quantity, levels, scale):
+def draw_elements(axes, cells, moved, values, quantity, levels):
+    """Fill one panel element by element, with a colour bar."""
+    extend = overflow(values[np.isfinite(values)], levels)
+    colours = colour_map(quantity, levels)
+    filled = element_fields.fill(axes, cells, moved, values, levels, colours, extend)
+    draw_bar(axes, filled, levels)
+
+
+def draw_points(axes, grid, values, quantity, levels, scale):
     """Fill one panel with colours between thin lines of equal value, with a colour bar."""
     broken = ~np.isfinite(values)
     grid.set_mask(broken[grid.triangles].any(axis=1) if broken.any() else None)
@@ -188,6 +207,11 @@ def draw_panel(axes, grid, values, quantity, levels, scale):
     filled.set_linewidth(0.15)
     lines = {"colors": "black", "linewidths": 0.15, "linestyles": "solid"}
     axes.tricontour(grid, values, levels=levels[1:-1], **lines)
+    draw_bar(axes, filled, levels)
+
+
+def draw_bar(axes, filled, levels):
+    """Draw the colour bar of a panel."""
     bar = axes.figure.colorbar(filled, cax=axes.inset_axes(bar_place(axes)))
     bar.ax.tick_params(direction="out", width=0.4, length=2)
     bar.outline.set_linewidth(0.4)
@@ -233,7 +257,9 @@ def draw_lines(axes, cells, moved):
 
 
 def table(result, moved, displacement, fields):
-    """Return the drawn fields as columns: one row for each point."""
+    """Return the drawn fields as columns: one row for each point, or element."""
+    if set(fields) <= set(CELL_FIELDS):
+        return element_fields.table(result.cells, moved, fields)
     columns = {
         "node": result.cells.node_id,
         "x": result.cells.points[:, 0],

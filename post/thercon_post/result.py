@@ -14,6 +14,8 @@ from .units import UNIT_NAMES, Units
 OPEN, SLIP, STICK = 0, 1, 2
 
 # Columns of the VTKHDF arrays with several components: picture quantity -> array, component.
+# Those of CELL_FIELDS have one number an element, the others one a point.
+CELL_FIELDS = ("stress_error", "heat_flux_error")
 FIELD_SOURCES = {
     "temperature": ("temperature", None),
     "von_mises": ("von_mises", None),
@@ -23,6 +25,8 @@ FIELD_SOURCES = {
     "xy": ("stress", 3),
     "flux_x": ("heat_flux", 0),
     "flux_y": ("heat_flux", 1),
+    "stress_error": ("stress_error", None),
+    "heat_flux_error": ("heat_flux_error", None),
 }
 
 
@@ -185,10 +189,26 @@ class Result:
         start = int(np.ravel(offsets[step])[0]) if offsets is not None else 0
         return group[name][start : start + len(self.cells.points)]
 
+    def cell_data(self, name, step):
+        """Return a cell data array of /VTKHDF at a time step; None where it is absent."""
+        group = self.file["VTKHDF/CellData"]
+        if name not in group:
+            return None
+        offsets = self.file.get(f"VTKHDF/Steps/CellDataOffsets/{name}")
+        start = int(np.ravel(offsets[step])[0]) if offsets is not None else 0
+        return group[name][start : start + self.cells.count]
+
+    def source(self, quantity, step):
+        """Return the array that a picture quantity is of, with all components; None where it is
+        absent."""
+        read = self.cell_data if quantity in CELL_FIELDS else self.point_data
+        return read(FIELD_SOURCES[quantity][0], step)
+
     def field(self, quantity, step):
-        """Return a picture quantity over the points at a time step; None where it is absent."""
-        source, component = FIELD_SOURCES[quantity]
-        values = self.point_data(source, step)
+        """Return a picture quantity over points or elements at a time step; None where it is
+        absent."""
+        _, component = FIELD_SOURCES[quantity]
+        values = self.source(quantity, step)
         return values if values is None or component is None else values[:, component]
 
 

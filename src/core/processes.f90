@@ -5,16 +5,22 @@ module processes
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
+   use process_ends, only: process_end_type, signal_kill
    implicit none
    private
-   public :: task_type, process_end_type
-   public :: start_process, collect_process, kill_process, pause_briefly, describe_end
+   public :: task_type
+   public :: start_process, collect_process, kill_process, send_signal, pause_briefly
 
-   integer(c_int), parameter :: signal_kill = 9_c_int      !! SIGKILL
    integer(c_int), parameter :: do_not_wait = 1_c_int      !! WNOHANG
    integer(c_int), parameter :: die_with_parent = 1_c_int  !! PR_SET_PDEATHSIG
    integer(c_int), parameter :: any_child = -1_c_int
    integer, parameter :: longs_of_usage = 18               !! of struct rusage
+
+   !> Starts a child that does some work and ends; it never outlives the program.
+   interface start_process
+      module procedure start_with_path
+      module procedure start_with_descriptor
+   end interface start_process
 
    !> What a child does; an extension holds what it needs for that.
    type, abstract :: task_type
@@ -30,15 +36,6 @@ module processes
          integer, intent(out) :: status            !! exit status of the child, 0 to 255
       end subroutine execute_task
    end interface
-
-   !> How a child ended, and what it took.
-   type :: process_end_type
-      integer :: process = 0              !! number of the process
-      integer :: status = 0               !! its exit status; 0 where a signal ended it
-      integer :: signal = 0               !! number of the signal that ended it, 0 for none
-      real(dp) :: cpu_seconds = 0.0_dp    !! its own and the system's [s]
-      real(dp) :: peak_bytes = 0.0_dp     !! largest resident memory [byte]
-   end type process_end_type
 
    type, bind(c) :: time_type
       integer(c_long) :: seconds = 0_c_long
@@ -118,34 +115,52 @@ module processes
 
 contains
 
-   !> Starts a child that does some work and ends; it never outlives the program.
+   !> Starts a child that prints into a file.
    !> Error: status_internal, when the system has no room for one more process.
-   subroutine start_process(task, output_path, process, error)
+   subroutine start_with_path(task, output_path, process, error)
       class(task_type), intent(inout) :: task              !! what the child does
       character(*), intent(in) :: output_path              !! file for all that it prints, made anew
       integer, intent(out) :: process                      !! number of the process
       type(error_type), allocatable, intent(out) :: error  !! see above
+      integer(c_int), parameter :: all_may_read = int(o'644', c_int)
+
+      call divide(process, error)
+      if (process /= 0) return
+      call run_child(task, posix_create(output_path//c_null_char, all_may_read))
+   end subroutine start_with_path
+
+   !> Starts a child that prints into what is open already.
+   !> Error: status_internal, when the system has no room for one more process.
+   subroutine start_with_descriptor(task, descriptor, process, error)
+      class(task_type), intent(inout) :: task              !! what the child does
+      integer, intent(in) :: descriptor                    !! where all goes that it prints
+      integer, intent(out) :: process                      !! number of the process
+      type(error_type), allocatable, intent(out) :: error  !! see above
+
+      call divide(process, error)
+      if (process == 0) call run_child(task, int(descriptor, c_int))
+   end subroutine start_with_descriptor
+
+   !> From here on there are two processes; in the child the number is 0.
+   subroutine divide(process, error)
+      integer, intent(out) :: process
+      type(error_type), allocatable, intent(out) :: error
 
       ! What is buffered here would be printed by the child as well.
       flush (output_unit)
       flush (error_unit)
       process = int(posix_fork())
-      if (process < 0) then
-         call set_error(error, status_internal, 'the system starts no further process')
-      else if (process == 0) then
-         call run_child(task, output_path)
-      end if
-   end subroutine start_process
+      if (process < 0) call set_error(error, status_internal, &
+         'the system starts no further process')
+   end subroutine divide
 
-   subroutine run_child(task, output_path)
+   subroutine run_child(task, descriptor)
       class(task_type), intent(inout) :: task
-      character(*), intent(in) :: output_path
+      integer(c_int), intent(in) :: descriptor
       integer :: status
-      integer(c_int) :: descriptor, ignored
-      integer(c_int), parameter :: all_may_read = int(o'644', c_int)
+      integer(c_int) :: ignored
 
       ignored = linux_control(die_with_parent, int(signal_kill, c_long))
-      descriptor = posix_create(output_path//c_null_char, all_may_read)
       if (descriptor < 0_c_int) call posix_exit(int(status_internal, c_int))
       ignored = posix_duplicate(descriptor, 1_c_int)
       ignored = posix_duplicate(descriptor, 2_c_int)
@@ -168,13 +183,22 @@ contains
       if (has_ended) ended = ending(process, status, usage)
    end subroutine collect_process
 
+   !> Sends a signal to a child.
+   subroutine send_signal(process, signal)
+      integer, intent(in) :: process   !! number of the process
+      integer, intent(in) :: signal    !! number of the signal
+      integer(c_int) :: ignored
+
+      ignored = posix_kill(int(process, c_int), int(signal, c_int))
+   end subroutine send_signal
+
    !> Ends a child at once and waits until it is gone.
    subroutine kill_process(process)
       integer, intent(in) :: process   !! number of the process
       integer(c_int) :: status, ignored
       integer(c_long) :: usage(longs_of_usage)
 
-      ignored = posix_kill(int(process, c_int), signal_kill)
+      ignored = posix_kill(int(process, c_int), int(signal_kill, c_int))
       ignored = system_wait(int(process, c_int), status, 0_c_int, usage)
    end subroutine kill_process
 
@@ -190,21 +214,6 @@ contains
       ended%cpu_seconds = real(usage(1) + usage(3), dp) + 1.0e-6_dp*real(usage(2) + usage(4), dp)
       ended%peak_bytes = 1024.0_dp*real(usage(5), dp)
    end function ending
-
-   !> Says in words how a child came to a sudden end; empty for one that ended by itself.
-   pure function describe_end(ended) result(words)
-      type(process_end_type), intent(in) :: ended   !! the end
-      character(:), allocatable :: words            !! part of a sentence
-      character(12) :: number
-
-      words = ''
-      if (ended%signal == 0) return
-      write (number, '(i0)') ended%signal
-      words = 'ended by signal '//trim(number)
-      if (ended%signal == int(signal_kill)) words = words//', as where memory runs out'
-      if (ended%signal == 11 .or. ended%signal == 6 .or. ended%signal == 8) words = &
-         words//', a crash'
-   end function describe_end
 
    !> Sleeps for some milliseconds, or until a signal comes.
    subroutine pause_briefly()

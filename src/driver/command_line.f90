@@ -22,20 +22,23 @@ module command_line
       character(:), allocatable :: folder             !! --out, the current folder unless given
       integer :: width = 0                            !! --width, 0 unless given
       logical :: quiet = .false.                      !! --quiet
-      integer :: jobs = 1                             !! --jobs, rows at a time
+      integer :: jobs = 1                             !! --jobs, decks or rows at a time
+      logical :: is_batch = .false.                   !! run: several decks, or --jobs
       real(dp) :: limit = 30.0_dp                     !! --limit, CPU seconds of a row [s]
    end type command_type
 
    character(*), parameter :: usage = &
-      'usage: thercon run DECK... [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]'// &
-      new_line('a')// &
+      'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]'// &
+      new_line('a')//'                           [--quiet]'//new_line('a')// &
       '       thercon check DECK... [--width N] [--set NAME=VALUE]'//new_line('a')// &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]'// &
       new_line('a')// &
       '                          [--limit SECONDS] [--jobs N]'//new_line('a')// &
       '       thercon --help | --version'//new_line('a')//new_line('a')// &
-      '  run      solve each deck a/b.inp; results are DIR/b.vtkhdf, .lst, .sta and .cvg'// &
+      '  run      solve each deck a/b.inp; results are DIR/b.vtkhdf, .lst, .sta and .cvg;'// &
       new_line('a')// &
+      '           several decks are a batch, each in a process of its own, with a table of all'// &
+      new_line('a')//'           as DIR/thercon-batch.csv'//new_line('a')// &
       '  check    read each deck, report every mistake at once, solve nothing'// &
       new_line('a')// &
       '  trade    run a deck with other meshes, increments and methods; measure CPU seconds,'// &
@@ -50,7 +53,7 @@ module command_line
       new_line('a')// &
       '  --limit SECONDS    trade: rows that would take more CPU are left out (30)'// &
       new_line('a')// &
-      '  --jobs N           trade: rows at a time (1); their times then disturb each other'// &
+      '  --jobs N           decks at a time (1); trade: rows, whose times disturb each other'// &
       new_line('a')//new_line('a')// &
       'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,'// &
       new_line('a')// &
@@ -97,6 +100,7 @@ contains
       else if (size(command%decks) > 1 .and. command%action == command_trade) then
          call set_error(error, status_deck, 'trade takes one deck')
       end if
+      if (size(command%decks) > 1) command%is_batch = .true.
    end subroutine read_command
 
    !> Reads the argument at a place, with its value where it has one.
@@ -132,9 +136,6 @@ contains
          command%action /= command_trade .and. word == '--limit') then
          call set_error(error, status_deck, 'option '//word//' does not go with '//argument(1))
          return
-      else if (command%action == command_run .and. word == '--jobs') then
-         call set_error(error, status_deck, 'option --jobs is not built yet')
-         return
       end if
       call take_value(command, word, value, error)
    end subroutine read_argument
@@ -148,6 +149,7 @@ contains
 
       select case (word)
       case ('--jobs')
+         command%is_batch = .true.
          call read_integer(value, command%jobs, valid)
          if (.not. valid .or. command%jobs < 1) call set_error(error, status_deck, &
             'option --jobs needs a whole number of at least 1, not '//value)

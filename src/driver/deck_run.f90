@@ -1,9 +1,12 @@
 !> One deck to its results.
 module deck_run
    use, intrinsic :: iso_fortran_env, only: error_unit
+   use blas_memory, only: reserve_blas_memory
    use cards, only: cards_type
    use clock, only: wall_seconds
    use command_line, only: command_type
+   use batch_table, only: table_name
+   use deck_outcomes, only: deck_outcome_type
    use deck_preparation, only: prepare_deck
    use error_estimator, only: error_estimator_type
    use errors, only: error_type, set_error, status_deck, status_interrupted, &
@@ -14,7 +17,6 @@ module deck_run
    use kinds, only: dp
    use load_courses, only: step_clock_type
    use model, only: model_type
-   use progress, only: deck_outcome_type
    use records, only: increment_record_type
    use run_description, only: describe_run
    use run_output, only: run_output_type
@@ -30,7 +32,7 @@ contains
    subroutine run_deck(path, command, outcome)
       character(*), intent(in) :: path                  !! the deck as given
       type(command_type), intent(in) :: command         !! options of the command line
-      type(deck_outcome_type), intent(inout) :: outcome !! how it ended
+      class(deck_outcome_type), intent(inout) :: outcome !! how it ended
       type(cards_type) :: cards
       type(model_type) :: model
       type(simulation_type) :: simulation
@@ -41,9 +43,15 @@ contains
       since = wall_seconds()
       outcome%path = path
       if (any(path(max(len(path) - 3, 1):) == ['.lst', '.sta', '.cvg']) .or. &
-         path(max(len(path) - 6, 1):) == '.vtkhdf') then
+         path(max(len(path) - 6, 1):) == '.vtkhdf' .or. &
+         path(index(path, '/', back=.true.) + 1:) == table_name) then
          write (error_unit, '(2a)') path, ': error: a deck cannot have the name of a result file'
          outcome%status = status_deck
+         return
+      end if
+      call reserve_blas_memory(error)
+      if (allocated(error)) then
+         call report_failure(path, error, outcome)
          return
       end if
       call prepare_deck(path, command, cards, model, simulation, outcome%status)
@@ -56,10 +64,9 @@ contains
          output%run%seconds_read = wall_seconds() - since - simulation%seconds%assemble - &
             simulation%seconds%reduce
          call describe_run(path, model, simulation, output%run)
-         call solve_deck(path, command, cards, model, simulation, output, error)
+         call solve_deck(path, command, cards, model, simulation, output, outcome, error)
          if (allocated(error)) call report_failure(path, error, outcome)
          call report_checks(path, output%failed_checks(model))
-         outcome%increments = output%accepted()
          outcome%verify_passed = output%run%verify_passed
          outcome%verify_failed = output%run%verify_failed
          if (outcome%status == 0 .and. outcome%verify_failed > 0) outcome%status = status_verify
@@ -69,13 +76,14 @@ contains
    end subroutine run_deck
 
    !> All increments, with their output.
-   subroutine solve_deck(path, command, cards, model, simulation, output, error)
+   subroutine solve_deck(path, command, cards, model, simulation, output, outcome, error)
       character(*), intent(in) :: path
       type(command_type), intent(in) :: command
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation
       type(run_output_type), intent(inout) :: output
+      class(deck_outcome_type), intent(inout) :: outcome
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: output_error
       type(error_estimator_type) :: estimator
@@ -104,6 +112,7 @@ contains
             if (allocated(error)) exit
             call estimator%end_increment(model, simulation, record)
             call output%accept(record, model, pairs, error)
+            call outcome%note(record, output%accepted())
             if (allocated(error)) return
          end do
          if (allocated(error)) then
@@ -114,6 +123,7 @@ contains
                error%status = status_no_convergence
             end if
             call output%fail(error%message, record)
+            call outcome%note(record, output%accepted())
          end if
          call output%finish(model, pairs, output_error)
          if (allocated(output_error) .and. .not. allocated(error)) then
@@ -166,7 +176,7 @@ contains
    subroutine report_failure(path, error, outcome)
       character(*), intent(in) :: path
       type(error_type), intent(in) :: error
-      type(deck_outcome_type), intent(inout) :: outcome
+      class(deck_outcome_type), intent(inout) :: outcome
 
       outcome%status = error%status
       write (error_unit, '(3a)') path, ': error: ', error%message

@@ -1,19 +1,20 @@
 !> SIGINT and SIGTERM: they end a run after the current increment.
 !>
 !> A signal handler is called by the system with the signal's number and nothing else, so what it
-!> remembers must be a module variable, the only one of the program. It is set once and never taken
-!> back: whatever is still to be solved is not started.
+!> remembers must be module variables, the only ones of the program. They are never taken back:
+!> whatever is still to be solved is not started.
 module interruption
    use, intrinsic :: iso_c_binding, only: c_funloc, c_funptr, c_int, c_intptr_t
    implicit none
    private
-   public :: catch_signals, caught_signal
+   public :: catch_signals, caught_signal, caught_number, caught_times
 
    integer(c_int), parameter :: signal_numbers(2) = [2_c_int, 15_c_int] !! as POSIX has them
    character(7), parameter :: signal_names(2) = ['SIGINT ', 'SIGTERM']
    integer(c_intptr_t), parameter :: ignored = 1_c_intptr_t   !! SIG_IGN as an address
 
    integer(c_int), volatile :: caught = 0_c_int   !! the last of these signals that came, or 0
+   integer(c_int), volatile :: times = 0_c_int    !! how many came
 
    interface
       !> POSIX signal(2); with glibc the handler stays, and system calls that it breaks go on.
@@ -39,11 +40,12 @@ contains
       end do
    end subroutine catch_signals
 
-   !> The handler. Storing a number is all that may safely be done in one.
+   !> The handler. Storing numbers is all that may safely be done in one.
    subroutine remember(number) bind(c)
       integer(c_int), value, intent(in) :: number
 
       caught = number
+      times = times + 1_c_int
    end subroutine remember
 
    !> Name of the signal that came, or nothing.
@@ -56,5 +58,15 @@ contains
       if (any(signal_numbers == number)) name = &
          trim(signal_names(findloc(signal_numbers, number, dim=1)))
    end function caught_signal
+
+   !> Number of the signal that came last, or 0.
+   integer function caught_number()
+      caught_number = int(caught)
+   end function caught_number
+
+   !> How many of these signals came.
+   integer function caught_times()
+      caught_times = int(times)
+   end function caught_times
 
 end module interruption

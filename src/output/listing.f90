@@ -2,11 +2,12 @@
 !> diagrams, the verdicts.
 module listing
    use contact_pairs, only: contact_pairs_type, never_approached
+   use due_output, only: table_is_due
    use errors, only: error_type, set_error, status_internal
    use listing_errors, only: print_body_errors, print_interface_errors
    use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
-   use listing_prints, only: is_due, print_requested
+   use listing_prints, only: print_requested
    use listing_tables, only: print_contact_table, print_iterations, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
@@ -26,8 +27,6 @@ module listing
       logical :: is_open = .false.                             !! whether the file is open
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       character(:), allocatable :: failure                     !! why the run ended early
-      integer :: step = 0                                      !! step of the last increment
-      integer :: increment_in_step = 0                         !! its number in the step
       type(string_type), allocatable :: warnings(:)            !! warnings of the increments
       type(contact_record_type), allocatable :: contacts(:)    !! contact at the last increment
    contains
@@ -71,15 +70,9 @@ contains
       type(increment_record_type), intent(in) :: record   !! the increment
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
-      logical :: table_is_due
       integer :: i
 
-      if (record%step /= self%step) self%increment_in_step = 0
-      self%step = record%step
-      self%increment_in_step = self%increment_in_step + 1
       call print_increment(self%unit, record)
-      table_is_due = is_due(model%steps(record%step)%contact_print_frequency, &
-         self%increment_in_step, record%last_of_step)
       do i = 1, size(pairs)
          call print_interface(self%unit, pairs(i)%name, record%contacts(i))
          call self%diagrams(i)%add(record, record%contacts(i)%status)
@@ -93,8 +86,8 @@ contains
             call print_interface_errors(self%unit, pairs(i)%name, record%errors(i))
          end do
       end if
-      call print_requested(self%unit, record, model, self%increment_in_step)
-      if (.not. table_is_due) return
+      call print_requested(self%unit, record, model)
+      if (.not. table_is_due(model%steps(record%step)%contact_print_frequency, record)) return
       do i = 1, size(pairs)
          call print_contact_table(self%unit, pairs(i), record%contacts(i), model%mesh%node_number)
       end do

@@ -1,5 +1,6 @@
 !> Tables of the listing that *NODE PRINT and *EL PRINT ask for.
 module listing_prints
+   use due_output, only: table_is_due
    use kinds, only: dp
    use listing_text, only: in_columns
    use model, only: model_type
@@ -9,42 +10,28 @@ module listing_prints
    use text, only: append, string_type
    implicit none
    private
-   public :: is_due, print_requested
+   public :: print_requested
 
 contains
 
-   !> Whether a table is due at an increment: every n-th of its step, and the last.
-   pure function is_due(frequency, increment_in_step, last_of_step) result(due)
-      integer, intent(in) :: frequency           !! n; 0 never
-      integer, intent(in) :: increment_in_step   !! number of the increment in its step
-      logical, intent(in) :: last_of_step        !! whether the step ends here
-      logical :: due                             !! whether it is
-
-      due = .false.
-      if (frequency > 0) due = last_of_step .or. modulo(increment_in_step, frequency) == 0
-   end function is_due
-
    !> Prints the tables that are due at an increment.
-   subroutine print_requested(unit, record, model, increment_in_step)
+   subroutine print_requested(unit, record, model)
       integer, intent(in) :: unit                         !! unit of the listing
       type(increment_record_type), intent(in) :: record   !! the increment
       type(model_type), intent(in) :: model               !! the model
-      integer, intent(in) :: increment_in_step            !! its number in the step
       integer :: i
 
       associate (step => model%steps(record%step))
          if (allocated(step%node_prints)) then
             do i = 1, size(step%node_prints)
-               if (is_due(step%node_prints(i)%frequency, increment_in_step, &
-                  record%last_of_step)) call print_nodes(unit, step%node_prints(i), model, &
-                  record%fields)
+               if (table_is_due(step%node_prints(i)%frequency, record)) call print_nodes(unit, &
+                  step%node_prints(i), model, record%fields)
             end do
          end if
          if (allocated(step%element_prints)) then
             do i = 1, size(step%element_prints)
-               if (is_due(step%element_prints(i)%frequency, increment_in_step, &
-                  record%last_of_step)) call print_points(unit, step%element_prints(i), model, &
-                  record%element_points(i))
+               if (table_is_due(step%element_prints(i)%frequency, record)) call print_points( &
+                  unit, step%element_prints(i), model, record%element_points(i))
             end do
          end if
       end associate

@@ -30,15 +30,12 @@ module result_fields
       integer, allocatable :: face_interface(:)                  !! their interface
       integer, allocatable :: face_pair(:)                       !! their pair in it
       integer :: increments = 0                                  !! increments appended
-      integer :: step = 0                                        !! step of the last increment
-      integer :: increment_in_step = 0                           !! its number in the step
       character(name_length), allocatable :: names(:)            !! point data that varies
       character(name_length), allocatable :: cell_names(:)       !! cell data that varies
       integer :: cells = 0                                       !! number of cells
       type(growing_dataset_type), allocatable, public :: sets(:) !! what grows
    contains
       procedure :: start
-      procedure :: is_due
       procedure :: append
       procedure :: create_groups
       procedure :: write_links
@@ -85,20 +82,6 @@ contains
             trim(self%cell_names(i)), as_real, 0, cells, expected)
       end do
    end subroutine start
-
-   !> Whether an increment goes into the file: every n-th of a step and its last one.
-   function is_due(self, record, frequency) result(due)
-      class(field_results_type), intent(inout) :: self   !! the fields
-      type(increment_record_type), intent(in) :: record  !! the increment; each is asked for once
-      integer, intent(in) :: frequency                   !! n; 0 for the last one only
-      logical :: due                                     !! the answer
-
-      if (record%step /= self%step) self%increment_in_step = 0
-      self%step = record%step
-      self%increment_in_step = self%increment_in_step + 1
-      due = record%last_of_step
-      if (frequency > 0) due = due .or. modulo(self%increment_in_step, frequency) == 0
-   end function is_due
 
    !> Adds the fields of an increment.
    subroutine append(self, record, pairs)

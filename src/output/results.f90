@@ -2,11 +2,12 @@
 !>
 !> Increments gather in memory and are published together: the file in the making is closed and
 !> renamed over the one in place, then their lines go to `.sta`. So a killed run leaves a file that
-!> opens and holds every increment of its `.sta`. A run publishes its first increment, the end of
-!> every step and its own end, and in between whenever that costs less than a tenth of the time. The
-!> first publishing replaces the files of an earlier run.
+!> opens and holds every increment of its `.sta`. A run publishes the end of every step and its own
+!> end, and in between whenever that costs less than a tenth of the time. The first publishing
+!> replaces the files of an earlier run.
 module results
    use contact_pairs, only: contact_pairs_type
+   use due_output, only: fields_are_due
    use errors, only: error_type
    use growing_datasets, only: bytes_in, flush_sets
    use hdf5_helpers, only: close_hdf5, create_group, open_hdf5, write_strings
@@ -101,7 +102,7 @@ contains
       type(run_summary_type), intent(in) :: run           !! the run so far
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       real(dp) :: since
-      logical :: is_due, ends_run, fields_are_due
+      logical :: is_due, ends_run
       integer :: i
 
       since = wall_seconds()
@@ -116,8 +117,7 @@ contains
          call self%contacts(i)%append(pairs(i), record%contacts(i))
       end do
       if (allocated(record%errors)) call self%errors%append(record%time, record%errors)
-      fields_are_due = self%fields%is_due(record, model%steps(record%step)%field_frequency)
-      if (fields_are_due) call self%fields%append(record, pairs)
+      if (fields_are_due(record, model)) call self%fields%append(record, pairs)
       is_due = self%file%is_due()
       ends_run = record%last_of_step .and. record%step == size(model%steps)
       if ((record%last_of_step .or. is_due) .and. .not. ends_run) then

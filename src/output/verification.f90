@@ -2,6 +2,7 @@
 module verification
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_pairs, only: contact_pairs_type
+   use due_output, only: is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type
    use records, only: increment_record_type
@@ -9,8 +10,6 @@ module verification
    implicit none
    private
    public :: verifier_type, outcome_type
-
-   real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
 
    !> What came of one check.
    type :: outcome_type
@@ -57,7 +56,7 @@ contains
       integer :: i
 
       do i = 1, size(self%outcomes)
-         if (.not. is_time(model%verifications(i), record, model)) cycle
+         if (.not. is_judged(model%verifications(i), record, model)) cycle
          call values_asked_for(model%verifications(i), record, model%mesh, pairs, point_node, &
             values, reason)
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
@@ -79,20 +78,6 @@ contains
 
       number = size(self%outcomes) - self%passed_count()
    end function failed_count
-
-   pure function is_time(check, record, model) result(met)
-      type(verify_type), intent(in) :: check
-      type(increment_record_type), intent(in) :: record
-      type(model_type), intent(in) :: model
-      logical :: met
-
-      if (check%at_last) then
-         met = record%last_of_step .and. record%step == size(model%steps)
-      else
-         met = abs(record%time - check%when) <= 1.0e-12_dp*abs(check%when) &
-            + landing*model%steps(record%step)%first_increment
-      end if
-   end function is_time
 
    pure function outcome_of(check, values, reason) result(outcome)
       type(verify_type), intent(in) :: check

@@ -12,6 +12,7 @@ module working_files
    public :: working_file_type
 
    real(dp), parameter :: patience = 11.0_dp   !! pause between publishings, in costs of one
+   real(dp), parameter :: usual_cost = 0.01_dp   !! what the first one is taken to cost [s]
 
    !> A file in place and the working copy beside it.
    type :: working_file_type
@@ -22,8 +23,8 @@ module working_files
       logical :: is_open = .false.               !! whether the working copy is open
       logical, public :: in_place = .false.      !! whether this run's file is in place
       real(dp) :: cost = 0.0_dp                  !! what the present publishing has cost so far [s]
-      real(dp) :: last_cost = 0.0_dp             !! what the last one cost [s]
-      real(dp) :: last_end = 0.0_dp              !! when it ended [s]
+      real(dp) :: last_cost = usual_cost         !! what the last one cost [s]
+      real(dp) :: last_end = 0.0_dp              !! when it ended, at first when the run began [s]
    contains
       procedure :: start
       procedure :: open => open_working
@@ -43,6 +44,7 @@ contains
 
       self%path = path
       self%working_path = path//'.tmp'
+      self%last_end = wall_seconds()
    end subroutine start
 
    !> Opens the working copy: a new one at first (a killed run's leftover is replaced), later a copy
@@ -86,13 +88,12 @@ contains
       if (.not. allocated(error)) self%in_place = .true.
    end subroutine put_in_place
 
-   !> Whether publishing again keeps the cost of it below a tenth of the run time.
+   !> Whether publishing now keeps the cost of it below a tenth of the run time.
    function is_due(self) result(due)
       class(working_file_type), intent(in) :: self  !! the file
-      logical :: due                                !! also true before the first publishing
+      logical :: due                                !! whether it does
 
-      due = .not. self%in_place
-      if (.not. due) due = wall_seconds() - self%last_end > patience*(self%last_cost + self%cost)
+      due = wall_seconds() - self%last_end > patience*(self%last_cost + self%cost)
    end function is_due
 
    !> Books time that was spent on publishing.

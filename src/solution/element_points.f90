@@ -1,12 +1,13 @@
 !> What *EL PRINT asks for: stress and heat flux at the integration points of the elements of a set.
 module element_points
+   use due_output, only: table_is_due
    use element_fields, only: along_axes, element_axes, element_heat_flux, element_positions, &
       element_stress
    use kinds, only: dp
    use model, only: model_type
    use print_requests, only: print_request_type
    use quadrature, only: integration_rule, most_points, point_count
-   use records, only: element_points_record_type
+   use records, only: element_points_record_type, increment_record_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, step_type
    implicit none
@@ -15,16 +16,18 @@ module element_points
 
 contains
 
-   !> One record for each *EL PRINT of a step.
-   pure function points_of_elements(model, step, state) result(records)
+   !> One record for each *EL PRINT of a step; empty where its table is not due.
+   pure function points_of_elements(model, step, state, increment) result(records)
       type(model_type), intent(in) :: model                     !! the model
       type(step_type), intent(in) :: step                       !! the step
       type(solution_state_type), intent(in) :: state            !! state at the end
+      type(increment_record_type), intent(in) :: increment      !! place of the increment
       type(element_points_record_type), allocatable :: records(:)
       integer :: i
 
       allocate (records(size(step%element_prints)))
       do i = 1, size(records)
+         if (.not. table_is_due(step%element_prints(i)%frequency, increment)) cycle
          records(i) = points_of_set(model, step%element_prints(i), solves_heat(step%analysis), &
             state)
       end do

@@ -44,12 +44,20 @@ contains
             if (allocated(error)) return
          end if
          if (allocated(fields%heat_flux)) then
-            call check_finite([fields%heat_flux, record%heat_imbalance], 'heat fluxes', &
+            call check_finite([fields%heat_flux], 'heat fluxes', status_no_convergence, error)
+            if (allocated(error)) return
+         end if
+         if (allocated(fields%reaction_heat)) then
+            call check_finite([record%heat_imbalance], 'heat fluxes', status_no_convergence, error)
+            if (allocated(error)) return
+         end if
+         if (allocated(fields%stress)) then
+            call check_finite([fields%stress], 'displacements and stresses', &
                status_no_convergence, error)
             if (allocated(error)) return
          end if
          if (allocated(fields%displacement)) then
-            call check_finite([fields%displacement, fields%stress, fields%reaction], &
+            call check_finite([fields%displacement, fields%reaction], &
                'displacements and stresses', status_no_convergence, error)
             if (allocated(error)) return
          end if

@@ -7,6 +7,7 @@ module increment_records
    use contact_states, only: contact_state_type
    use contact_system, only: contact_system_type
    use discretisation_errors, only: recovery_type
+   use due_output, only: needs_recovery
    use element_kinds, only: axisymmetric
    use element_points, only: points_of_elements
    use heat_balance, only: balance_heat
@@ -15,7 +16,7 @@ module increment_records
    use loads, only: loads_type
    use mesh, only: extent_of
    use model, only: model_type
-   use records, only: contact_record_type, increment_record_type, status_open
+   use records, only: contact_record_type, error_record_type, increment_record_type, status_open
    use scheme_properties, only: is_explicit
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
@@ -33,8 +34,9 @@ module increment_records
 
 contains
 
-   !> Completes the record of an increment with contact state, fields and balances, and settles the
-   !> slip memory. What the step does not solve stands as the last step that did left it.
+   !> Completes the record of an increment, whose place in the steps it has, with contact state,
+   !> fields and balances, and settles the slip memory. What the step does not solve stands as the
+   !> last step that did left it; stress and flux with their errors are made where needed.
    subroutine make_record(operators, model, recovery, loads, step, previous, next, record)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
@@ -45,8 +47,10 @@ contains
       type(solution_state_type), intent(inout) :: next        !! state at the end
       type(increment_record_type), intent(inout) :: record    !! the record
       real(dp) :: carrying(size(next%omega))
+      logical :: recovers
       integer :: i
 
+      recovers = needs_recovery(record, model)
       if (solves_mechanics(step%analysis)) call settle_slip(operators, previous, next)
       next%smallest_gap = min(previous%smallest_gap, next%contact%gap)
       carrying = merge(next%omega_start, next%omega, is_explicit(step%scheme))
@@ -57,14 +61,15 @@ contains
       end do
       record%fields%temperature = next%temperature
       if (solves_mechanics(step%analysis)) then
-         call balance_forces(operators, model, recovery, loads, next, record)
+         call recover_stress(model, recovery, recovers, next)
+         call balance_forces(operators, model, loads, next, record)
       else
          record%force_imbalance = ieee_value(1.0_dp, ieee_quiet_nan)
          record%contact_violation = record%force_imbalance
       end if
       if (next%has_mechanics) then
          record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
-         record%fields%stress = next%stress
+         if (allocated(next%stress)) record%fields%stress = next%stress
          record%stress_error = next%stress_error
          record%fields%reaction = next%reaction
          record%fields%external_force = next%reaction + reshape(next%force_load, &
@@ -72,8 +77,8 @@ contains
       end if
       call warn_of_floor(step, record)
       if (solves_heat(step%analysis)) then
-         call recovery%recover_heat_flux(model, next%temperature, record%fields%heat_flux, &
-            record%heat_flux_error)
+         if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
+            record%fields%heat_flux, record%heat_flux_error)
          call balance_heat(operators, model, loads, step%scheme, carrying, previous, next, record)
       else
          record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -83,7 +88,7 @@ contains
          record%contacts%heat_rate = record%heat_in
       end if
       if (allocated(step%element_prints)) then
-         record%element_points = points_of_elements(model, step, next)
+         record%element_points = points_of_elements(model, step, next, record)
       end if
    end subroutine make_record
 
@@ -206,11 +211,29 @@ contains
          max(maxval(abs(temperature)), maxval(abs(model%initial_temperature))))
    end function least_displacement
 
-   !> Stress, reactions, force balance, and the contact conditions on the recovered displacements.
-   subroutine balance_forces(operators, model, recovery, loads, next, record)
-      type(interface_operators_type), intent(in) :: operators
+   !> Stress and its error where something asks for them; else none, for what the state had is of
+   !> an earlier increment.
+   subroutine recover_stress(model, recovery, recovers, next)
       type(model_type), intent(in) :: model
       type(recovery_type), intent(in) :: recovery
+      logical, intent(in) :: recovers
+      type(solution_state_type), intent(inout) :: next
+
+      next%stress_temperature = next%temperature
+      if (recovers) then
+         call recovery%recover_stress(model, reshape(next%displacement, [2, &
+            size(next%temperature)]), next%temperature - model%initial_temperature, next%stress, &
+            next%stress_error)
+      else
+         if (allocated(next%stress)) deallocate (next%stress)
+         next%stress_error = error_record_type()
+      end if
+   end subroutine recover_stress
+
+   !> Reactions, force balance, and the contact conditions on the recovered displacements.
+   subroutine balance_forces(operators, model, loads, next, record)
+      type(interface_operators_type), intent(in) :: operators
+      type(model_type), intent(in) :: model
       type(loads_type), intent(in) :: loads
       type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record
@@ -218,10 +241,6 @@ contains
       real(dp) :: least, length, scale
       logical :: along_x
 
-      call recovery%recover_stress(model, reshape(next%displacement, [2, &
-         size(next%temperature)]), next%temperature - model%initial_temperature, next%stress, &
-         next%stress_error)
-      next%stress_temperature = next%temperature
       least = least_displacement(model, next%temperature)
       length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp))
       if (size(operators%pairs%initial_gap) > 0) then

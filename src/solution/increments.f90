@@ -155,7 +155,6 @@ contains
       call warn_of_pivot(self, record)
       self%state = next
       call self%control%accept(model, clock)
-      record%last_of_step = self%control%step_is_over(model)
    end subroutine advance
 
    !> Warns of pivots so small that digits are lost which results need, again where it is a tenth.
@@ -198,6 +197,8 @@ contains
 
       record%increment = self%control%increments + 1
       record%step = self%control%step
+      record%increment_in_step = self%control%increments_of_step + 1
+      record%last_of_step = clock%step_time >= clock%period
       record%cut_backs = self%control%cut_backs
       record%time = clock%total_time
       call self%loads%move_to(clock, model)

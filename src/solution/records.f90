@@ -95,8 +95,9 @@ module records
       ! Displacement, stress and reaction are unallocated before mechanics is solved.
       real(dp), allocatable :: displacement(:, :)   !! (2, nodes) [length]
       real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
-      real(dp), allocatable :: stress(:, :)         !! (4, points) xx, yy, zz, xy [stress]
-      !> (2, points) x, y; unallocated without heat [power/length^2]
+      !> (4, points) xx, yy, zz, xy; unallocated where nothing needs it, too [stress]
+      real(dp), allocatable :: stress(:, :)
+      !> (2, points) x, y; unallocated without heat and where nothing needs it [power/length^2]
       real(dp), allocatable :: heat_flux(:, :)
       real(dp), allocatable :: reaction(:, :)       !! (2, nodes) at supports, else 0 [force]
       !> (2, nodes) reaction and applied forces, without those of the contacts [force]
@@ -126,6 +127,7 @@ module records
    type :: increment_record_type
       integer :: increment = 0               !! running number over all steps, from 1
       integer :: step = 0                    !! step number, from 1
+      integer :: increment_in_step = 0       !! number in the step, from 1
       logical :: last_of_step = .false.      !! whether the step ends here
       real(dp) :: time = 0.0_dp              !! total time [time]
       real(dp) :: load = 0.0_dp              !! value on the load axis
@@ -151,9 +153,9 @@ module records
       type(field_record_type) :: fields                         !! fields
       !> (interfaces) at the end of a step; else unallocated
       type(interface_errors_type), allocatable :: errors(:)
-      type(error_record_type) :: stress_error     !! unallocated before mechanics is solved
-      type(error_record_type) :: heat_flux_error  !! unallocated without heat
-      !> One an *EL PRINT of the step; unallocated for none.
+      type(error_record_type) :: stress_error     !! unallocated where the stress is
+      type(error_record_type) :: heat_flux_error  !! unallocated where the heat flux is
+      !> One an *EL PRINT of the step, empty where its table is not due; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work                            !! re-factorisation
       type(string_type), allocatable :: notes(:)                !! unallocated for none

@@ -20,7 +20,8 @@ module solution_state
       real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
       real(dp), allocatable :: displacement(:)      !! (2 nodes) [length]
       real(dp), allocatable :: smallest_gap(:)      !! (m) smallest gap so far [length]
-      !> (4, points) of the last increment that solved mechanics; unallocated before it [stress]
+      !> (4, points) of the last increment that solved mechanics; unallocated before it, and where
+      !> nothing needs it [stress]
       real(dp), allocatable :: stress(:, :)
       type(error_record_type) :: stress_error       !! likewise
       real(dp), allocatable :: reaction(:, :)       !! (2, nodes) likewise [force]

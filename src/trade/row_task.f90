@@ -20,7 +20,7 @@ module row_task
    private
    public :: row_task_type
 
-   !> What a row needs. It solves, and recovers all fields, but writes no results.
+   !> What a row needs. It solves, and recovers the fields that are due, but writes no results.
    type, extends(task_type) :: row_task_type
       character(:), allocatable :: path          !! the deck as given
       type(command_type) :: command              !! options of the command line

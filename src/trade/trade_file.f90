@@ -1,5 +1,6 @@
 !> The table of a trade as a CSV file.
 module trade_file
+   use csv_fields, only: quoted
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
    use text, only: to_text
@@ -122,20 +123,5 @@ contains
 
       flag = merge('1', '0', holds)
    end function flag
-
-   !> A text between double quotes, those inside it doubled.
-   pure function quoted(words) result(field)
-      character(*), intent(in) :: words
-      character(:), allocatable :: field
-      integer :: i
-
-      field = ''
-      if (len(words) == 0) return
-      do i = 1, len(words)
-         field = field//words(i:i)
-         if (words(i:i) == '"') field = field//'"'
-      end do
-      field = '"'//field//'"'
-   end function quoted
 
 end module trade_file

@@ -5,8 +5,8 @@ module trade_measurement
    use errors, only: error_type, set_error, status_deck, status_internal, status_interrupted
    use interruption, only: caught_signal
    use kinds, only: dp
-   use processes, only: collect_process, describe_end, kill_process, pause_briefly, &
-      process_end_type, start_process
+   use process_ends, only: describe_end, process_end_type
+   use processes, only: collect_process, kill_process, pause_briefly, start_process
    use progress, only: progress_type
    use row_task, only: row_task_type
    use system_calls, only: remove_file

@@ -13,9 +13,17 @@ import pytest
 POST = Path(__file__).resolve().parents[2] / "post"
 sys.path.insert(0, str(POST))
 
-from synthetic import FRICTION, edge_of_contact, edge_of_stick, write_result  # noqa: E402
+from matplotlib.collections import PolyCollection  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
+from synthetic import (  # noqa: E402
+    FRICTION,
+    edge_of_contact,
+    edge_of_stick,
+    errors_at,
+    write_result,
+)
 
-from thercon_post import fields, mesh, profiles, style, zones  # noqa: E402
+from thercon_post import element_fields, fields, mesh, profiles, style, zones  # noqa: E402
 from thercon_post.cells import Cells  # noqa: E402
 from thercon_post.cli import main, parser, spread  # noqa: E402
 from thercon_post.fine_mesh import refine  # noqa: E402
@@ -277,6 +285,53 @@ def test_fields_of_chosen_quantities_only(draw, result, tmp_path):
     columns = table(tmp_path, "case.fields-xy.csv")
     assert "xy" in columns and "temperature" not in columns
     assert parser().parse_args(spread(["fields", "--quantity", "xx", "yy", "r"])).results == ["r"]
+
+
+def test_errors_are_drawn_element_by_element(kept, result, tmp_path):
+    chosen = ["stress_error", "heat_flux_error"]
+    (figure,) = kept("fields", result, "--load", 540, "--quantity", *chosen)
+    drawn = table(tmp_path, "case.fields-stress_error-heat_flux_error-540.csv")
+    elements = np.arange(1, 81)
+    np.testing.assert_array_equal(numbers(drawn["element"]), elements)
+    np.testing.assert_array_equal(numbers(drawn["body"]), np.where(elements <= 40, 1, 2))
+    for quantity, axes in zip(chosen, figure.axes):
+        np.testing.assert_array_equal(numbers(drawn[quantity]), errors_at(80, 540.0))
+        filled = next(each for each in axes.collections if isinstance(each, PolyCollection))
+        np.testing.assert_array_equal(filled.get_array(), errors_at(80, 540.0))
+        shades = filled.to_rgba(filled.get_array())[:, :3].sum(axis=1)
+        assert (np.diff(shades) >= -0.1).all() and np.ptp(shades) > 1.0, "bright where it is large"
+        # A side is drawn in eight pieces.
+        centres = np.array([path.vertices[:-1:8].mean(axis=0) for path in filled.get_paths()])
+        places = np.column_stack([numbers(drawn[f"{axis}_drawn"]) for axis in "xy"])
+        np.testing.assert_allclose(centres, places, rtol=0.0, atol=1e-12)
+
+
+def test_errors_of_elements_of_several_types_stay_with_their_elements():
+    group = {
+        "NumberOfPoints": [5],
+        "NumberOfCells": [2],
+        "Points": np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [4, 1, 0]]),
+        "Connectivity": np.array([0, 1, 2, 3, 1, 4, 2]),
+        "Offsets": np.array([0, 4, 7]),
+        "Types": np.array([9, 5]),
+        "PointData/node_id": np.arange(1, 6),
+    }
+    cells = Cells.read(group)
+    places = element_fields.centres(cells, cells.points)
+    np.testing.assert_allclose(places, [[1.0, 1.0], [8.0 / 3.0, 1.0]])
+    window = np.array([[3.0, 0.0], [5.0, 2.0]])
+    assert list(element_fields.in_window(cells, cells.points, window)) == [False, True]
+    filled = element_fields.fill(
+        Figure().subplots(), cells, cells.points, np.array([1.0, 9.0]), np.arange(11.0), "viridis",
+        "neither"
+    )
+    corners = [len(np.unique(np.round(path.vertices[::8], 9), axis=0)) for path in filled.get_paths()]
+    assert dict(zip(corners, filled.get_array())) == {3: 9.0, 4: 1.0}
+
+
+def test_fields_of_elements_are_drawn_apart_from_those_of_nodes(fail, result):
+    message = fail("fields", result, "--quantity", "stress_error", "yy")
+    assert "stress_error and heat_flux_error are fields of elements" in message
 
 
 def test_a_load_without_fields_names_the_nearest_with_fields(fail, tmp_path):

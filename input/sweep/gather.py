@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""Gather the runs of a sweep in the current folder, which has sweep.toml and runs/.
+
+sweep.csv has every row of the values, with what became of it; sweep.png those with a result.
+"""
+
+import csv
+import re
+import sys
+import tomllib
+from collections import Counter
+from pathlib import Path
+
+import h5py
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
+
+OUTCOMES = {"1": "deck error", "2": "not converged", "3": "internal/I-O error",
+            "4": "check failed", "5": "interrupted"}
+
+
+def failure(log):
+    """Return outcome and reason of a run that left no result."""
+    text = log.read_text() if log.exists() else ""
+    status = re.findall(r"^ended with exit status (\d+)$", text, re.M)
+    reasons = re.findall(r": error: (.*)", text)
+    if status:
+        return OUTCOMES.get(status[-1], f"exit status {status[-1]}"), reasons[0] if reasons else ""
+    return "no result", ""
+
+
+def gather(settings):
+    """Return the rows of the table."""
+    stem = Path(settings["deck"]).stem
+    with open(settings["values"], newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        folder = Path("runs") / row["run"]
+        row["outcome"], row["reason"] = "solved", ""
+        row.update(dict.fromkeys(settings["quantities"], ""))
+        result = folder / f"{stem}.vtkhdf"
+        if not result.exists():
+            row["outcome"], row["reason"] = failure(folder / "messages.txt")
+            continue
+        with h5py.File(result) as file:
+            for name, dataset in settings["quantities"].items():
+                row[name] = repr(float(np.max(file[dataset][-1])))
+    return rows
+
+
+def draw(rows, x, y, curves):
+    """Draw a column over another, a curve for each value of a third."""
+    figure, axes = plt.subplots(figsize=(6.5, 4.5), layout="constrained")
+    solved = [row for row in rows if row["outcome"] == "solved"]
+    values = sorted({float(row[curves]) for row in solved})
+    for number, value in enumerate(values):
+        points = sorted((float(row[x]), float(row[y])) for row in solved
+                        if float(row[curves]) == value)
+        axes.plot(*zip(*points), ".-", label=f"{value:g}",
+                  color=plt.cm.viridis(number / max(len(values) - 1, 1)))
+    axes.set(xlabel=x, ylabel=y)
+    missing = len(rows) - len(solved)
+    axes.set_title(f"{len(solved)} runs" + (f", {missing} without a result" if missing else ""))
+    if values:
+        figure.legend(title=curves, loc="outside right upper")
+    figure.savefig("sweep.png", dpi=150)
+
+
+def main():
+    with open("sweep.toml", "rb") as file:
+        settings = tomllib.load(file)
+    rows = gather(settings)
+    with open("sweep.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    draw(rows, **settings["plot"])
+    counts = Counter(row["outcome"] for row in rows)
+    print("sweep.csv, sweep.png:", ", ".join(f"{name} {n}" for name, n in counts.items()))
+    for row in rows:
+        if row["outcome"] != "solved":
+            print(f"run {row['run']}: {row['outcome']}: {row['reason']}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,53 @@
+"""Fields with one number an element, drawn element by element."""
+
+import matplotlib
+import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import BoundaryNorm
+
+from .cells import CORNERS, outlines
+
+
+def centres(cells, points):
+    """Return the means of the corners (m, 2) of all elements, in the file's order."""
+    found = np.empty((cells.count, 2))
+    for kind, group in cells.groups.items():
+        found[cells.members[kind]] = points[group[:, : CORNERS[kind]]].mean(axis=1)
+    return found
+
+
+def in_window(cells, points, window):
+    """Tell which elements have a corner in the window."""
+    inside = np.all((points >= window[0]) & (points <= window[1]), axis=1)
+    found = np.zeros(cells.count, dtype=bool)
+    for kind, group in cells.groups.items():
+        found[cells.members[kind]] = inside[group[:, : CORNERS[kind]]].any(axis=1)
+    return found
+
+
+def fill(axes, cells, points, values, levels, colours, extend):
+    """Fill each element with the colour of its value; return what a colour bar needs."""
+    shapes = {kind: outlines(kind, group, points) for kind, group in cells.groups.items()}
+    numbers = np.concatenate([cells.members[kind] for kind in shapes])
+    colours = matplotlib.colormaps[colours]
+    filled = PolyCollection(
+        [shape for group in shapes.values() for shape in group],
+        array=np.ma.masked_invalid(values[numbers]),
+        cmap=colours,
+        norm=BoundaryNorm(levels, colours.N, extend=extend),
+        edgecolors="face",  # no light seams between elements
+        linewidths=0.15,
+    )
+    axes.add_collection(filled)
+    return filled
+
+
+def table(cells, moved, fields):
+    """Return the drawn fields as columns: one row for each element."""
+    number, body = np.empty(cells.count, dtype=int), np.empty(cells.count, dtype=int)
+    for kind, members in cells.members.items():
+        number[members], body[members] = cells.element_ids[kind], cells.bodies[kind]
+    x, y = centres(cells, cells.points).T
+    x_drawn, y_drawn = centres(cells, moved).T
+    columns = {"element": number, "body": body, "x": x, "y": y}
+    return columns | {"x_drawn": x_drawn, "y_drawn": y_drawn} | fields

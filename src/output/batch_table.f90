@@ -1,0 +1,130 @@
+!> The table of a batch: on the terminal, and as a CSV file.
+module batch_table
+   use csv_fields, only: quoted
+   use deck_outcomes, only: deck_outcome_type
+   use errors, only: error_type, set_error, status_internal
+   use kinds, only: dp
+   use system_calls, only: rename_file
+   use text, only: to_text
+   implicit none
+   private
+   public :: print_batch, write_batch, table_name
+
+   !> Name of the CSV file. Those of a deck's results end otherwise, and a table of values that
+   !> stands in the folder is likely to be called batch.csv.
+   character(*), parameter :: table_name = 'thercon-batch.csv'
+   character(*), parameter :: columns = 'deck,status,outcome,reason,increments,iterations,'// &
+      'checks_passed,checks_failed,seconds,cpu_seconds,peak_megabytes'
+   real(dp), parameter :: megabyte = 1.0e6_dp   !! [byte]
+
+contains
+
+   !> Prints the table, and how many decks ended in which way.
+   subroutine print_batch(unit, outcomes, seconds)
+      integer, intent(in) :: unit                          !! unit that is written to
+      class(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
+      real(dp), intent(in) :: seconds                      !! time that the batch took [s]
+      integer :: width, i
+
+      width = len('deck')
+      do i = 1, size(outcomes)
+         width = max(width, len(outcomes(i)%path))
+      end do
+      write (unit, '(/, 2a, 2x, a18, 2a12, 2a8, 2a10, a9)') 'deck', repeat(' ', width - 4), &
+         'outcome', 'increments', 'iterations', 'passed', 'failed', 'seconds', 'CPU s', 'peak MB'
+      do i = 1, size(outcomes)
+         associate (deck => outcomes(i))
+            write (unit, '(2a, 2x, a18)', advance='no') deck%path, &
+               repeat(' ', width - len(deck%path)), deck%words()
+            if (deck%has_run) then
+               write (unit, '(2i12, 2i8, 2f10.2, f9.1)') deck%increments, deck%iterations, &
+                  deck%verify_passed, deck%verify_failed, deck%seconds, deck%cpu_seconds, &
+                  deck%peak_bytes/megabyte
+            else
+               write (unit, '(a)') ''
+            end if
+         end associate
+      end do
+      write (unit, '(a)') to_text(size(outcomes))//' decks in '//decimal(seconds)//' s: '// &
+         counts_of(outcomes)
+   end subroutine print_batch
+
+   !> How many decks ended in which way, in the order of the first of each.
+   function counts_of(outcomes) result(string)
+      class(deck_outcome_type), intent(in) :: outcomes(:)
+      character(:), allocatable :: string
+      logical :: is_counted(size(outcomes))
+      integer :: i, k, number
+
+      string = ''
+      is_counted = .false.
+      do i = 1, size(outcomes)
+         if (is_counted(i)) cycle
+         number = 0
+         do k = i, size(outcomes)
+            if (outcomes(k)%words() /= outcomes(i)%words()) cycle
+            is_counted(k) = .true.
+            number = number + 1
+         end do
+         if (i > 1) string = string//', '
+         string = string//outcomes(i)%words()//' '//to_text(number)
+      end do
+   end function counts_of
+
+   !> Writes the CSV file; one that is there is replaced in one instant. Fields of a deck that did
+   !> not run to an end are empty.
+   !> Error: status_internal, when the file cannot be written.
+   subroutine write_batch(folder, outcomes, error)
+      character(*), intent(in) :: folder                   !! folder of the results
+      class(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
+      type(error_type), allocatable, intent(out) :: error  !! see above
+      character(:), allocatable :: path
+      integer :: unit, status, i
+
+      path = folder//'/'//table_name
+      open (newunit=unit, file=path//'.tmp', status='replace', action='write', iostat=status)
+      if (status == 0) then
+         write (unit, '(a)', iostat=status) columns
+         do i = 1, size(outcomes)
+            if (status == 0) write (unit, '(a)', iostat=status) row_of(outcomes(i))
+         end do
+         if (status == 0) then
+            close (unit, iostat=status)
+         else
+            close (unit)
+         end if
+      end if
+      if (status == 0) then
+         call rename_file(path//'.tmp', path, error)
+      else
+         call set_error(error, status_internal, 'cannot write "'//path//'"')
+      end if
+   end subroutine write_batch
+
+   function row_of(deck) result(line)
+      class(deck_outcome_type), intent(in) :: deck
+      character(:), allocatable :: line
+
+      line = quoted(deck%path)//','
+      if (.not. deck%has_run) then
+         line = line//','//deck%words()//','//quoted(deck%reason)//repeat(',', 7)
+         return
+      end if
+      line = line//to_text(deck%status)//','//deck%words()//','//quoted(deck%reason)//','// &
+         to_text(deck%increments)//','//to_text(deck%iterations)//','// &
+         to_text(deck%verify_passed)//','//to_text(deck%verify_failed)//','// &
+         decimal(deck%seconds)//','//decimal(deck%cpu_seconds)//','// &
+         decimal(deck%peak_bytes/megabyte)
+   end function row_of
+
+   !> A number with three decimals.
+   pure function decimal(number) result(string)
+      real(dp), intent(in) :: number
+      character(:), allocatable :: string
+      character(24) :: buffer
+
+      write (buffer, '(f24.3)') number
+      string = trim(adjustl(buffer))
+   end function decimal
+
+end module batch_table

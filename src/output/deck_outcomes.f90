@@ -1,0 +1,87 @@
+!> How the run of a deck ended, and the short summary of it.
+module deck_outcomes
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use errors, only: status_deck, status_internal, status_interrupted, status_no_convergence, &
+      status_ok, status_verify
+   use kinds, only: dp
+   use records, only: increment_record_type
+   use text, only: to_text
+   implicit none
+   private
+   public :: deck_outcome_type
+
+   !> How a deck ended.
+   type :: deck_outcome_type
+      character(:), allocatable :: path     !! deck as the command line names it
+      integer :: status = status_ok         !! one of the status_* constants
+      integer :: increments = 0             !! increments that were accepted
+      integer :: iterations = 0             !! passes of these and of the one that failed
+      integer :: verify_passed = 0          !! *VERIFY checks that passed
+      integer :: verify_failed = 0          !! *VERIFY checks that failed
+      real(dp) :: seconds = 0.0_dp          !! time it took [s]
+      ! The rest is what a batch knows of the deck's process.
+      logical :: has_run = .false.          !! whether it was started and has ended
+      real(dp) :: cpu_seconds = 0.0_dp      !! its own and the system's [s]
+      real(dp) :: peak_bytes = 0.0_dp       !! largest resident memory [byte]
+      character(:), allocatable :: ending   !! its outcome in words where the status says too little
+      character(:), allocatable :: reason   !! why it is not solved, one sentence; or nothing
+   contains
+      procedure :: note
+      procedure :: words
+      procedure :: print => print_outcome
+   end type deck_outcome_type
+
+contains
+
+   !> Counts the passes of an increment.
+   subroutine note(self, record, accepted)
+      class(deck_outcome_type), intent(inout) :: self     !! the run
+      type(increment_record_type), intent(in) :: record   !! the increment
+      integer, intent(in) :: accepted                     !! increments accepted so far
+
+      self%increments = accepted
+      if (allocated(record%iterations)) self%iterations = self%iterations + size(record%iterations)
+   end subroutine note
+
+   !> The outcome in words, of at most 18 characters.
+   pure function words(self) result(string)
+      class(deck_outcome_type), intent(in) :: self   !! the run
+      character(:), allocatable :: string            !! such as 'not converged'
+
+      if (allocated(self%ending)) then
+         string = self%ending
+         return
+      end if
+      select case (self%status)
+      case (status_ok)
+         string = 'solved'
+      case (status_deck)
+         string = 'deck error'
+      case (status_no_convergence)
+         string = 'not converged'
+      case (status_internal)
+         string = 'internal/I-O error'
+      case (status_verify)
+         string = 'check failed'
+      case (status_interrupted)
+         string = 'interrupted'
+      case default
+         string = 'status '//to_text(self%status)
+      end select
+   end function words
+
+   !> The short summary of one run.
+   subroutine print_outcome(self, results)
+      class(deck_outcome_type), intent(in) :: self    !! the run
+      character(*), intent(in) :: results             !! path of its results without extension
+
+      write (output_unit, '(5a, f5.2, a)') self%path, ': ', self%words(), ', ', &
+         to_text(self%increments)//' increments in ', self%seconds, ' s'
+      if (self%verify_passed + self%verify_failed > 0) write (output_unit, '(2x, 4a)') &
+         to_text(self%verify_passed), ' checks passed, ', to_text(self%verify_failed), ' failed'
+      if (self%status == status_deck .or. self%status == status_internal) return
+      write (output_unit, '(2x, 3a)') 'results: ', results, &
+         trim(merge('.vtkhdf, .lst, .sta, .cvg', '.lst, .cvg               ', self%increments > 0))
+   end subroutine print_outcome
+
+end module deck_outcomes

@@ -1,0 +1,69 @@
+!> What output is due at an increment: fields of the result file, tables of the listing, verdicts.
+!> Stress, heat flux and their errors are recovered for these alone.
+module due_output
+   use kinds, only: dp
+   use model, only: model_type, verify_type
+   use records, only: increment_record_type
+   implicit none
+   private
+   public :: fields_are_due, is_judged, needs_recovery, table_is_due
+
+   real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
+
+contains
+
+   !> Whether the result file takes the fields of an increment: every n-th of a step and its last,
+   !> of n = 0 the last alone.
+   pure logical function fields_are_due(record, model)
+      type(increment_record_type), intent(in) :: record   !! the increment
+      type(model_type), intent(in) :: model               !! the model
+
+      fields_are_due = record%last_of_step .or. &
+         is_nth(model%steps(record%step)%field_frequency, record)
+   end function fields_are_due
+
+   !> Whether a table of the listing is due: at every n-th increment of a step and its last.
+   pure logical function table_is_due(frequency, record)
+      integer, intent(in) :: frequency                    !! n; 0 never
+      type(increment_record_type), intent(in) :: record   !! the increment
+
+      table_is_due = frequency > 0 .and. (record%last_of_step .or. is_nth(frequency, record))
+   end function table_is_due
+
+   !> Whether a check is judged on an increment.
+   pure logical function is_judged(check, record, model)
+      type(verify_type), intent(in) :: check              !! the check
+      type(increment_record_type), intent(in) :: record   !! the increment
+      type(model_type), intent(in) :: model               !! the model
+
+      if (check%at_last) then
+         is_judged = record%last_of_step .and. record%step == size(model%steps)
+      else
+         is_judged = abs(record%time - check%when) <= 1.0e-12_dp*abs(check%when) &
+            + landing*model%steps(record%step)%first_increment
+      end if
+   end function is_judged
+
+   !> Whether anything asks for stress, heat flux or their errors. The last increment of a step
+   !> always does: the listing tells its errors, and steps without mechanics keep its stress.
+   pure logical function needs_recovery(record, model)
+      type(increment_record_type), intent(in) :: record   !! the increment
+      type(model_type), intent(in) :: model               !! the model
+      integer :: i
+
+      needs_recovery = record%last_of_step .or. fields_are_due(record, model)
+      do i = 1, size(model%verifications)
+         if (needs_recovery) return
+         needs_recovery = is_judged(model%verifications(i), record, model)
+      end do
+   end function needs_recovery
+
+   pure logical function is_nth(frequency, record)
+      integer, intent(in) :: frequency
+      type(increment_record_type), intent(in) :: record
+
+      is_nth = .false.
+      if (frequency > 0) is_nth = modulo(record%increment_in_step, frequency) == 0
+   end function is_nth
+
+end module due_output

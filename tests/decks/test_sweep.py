@@ -1,0 +1,108 @@
+"""input/sweep: 200 runs by Snakemake, one of them failing, and a second start that runs what is missing.
+
+Every run is held to the closed form of its two rods: with the free expansion e = a L T - a L^2 q/(2 k) of the first,
+the gap is g - e and omega = A/(B + gap) while they are apart, else p = (e - g)/(2 L/E) and omega = A/B + C p; and
+q = T/(2 L/k + 1/omega).
+"""
+
+import csv
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from deck_runs import INPUT, PROGRAM
+
+# `./setup.sh test` installs it there; the packages are none of those of the post-processing.
+SNAKEMAKE = Path(__file__).resolve().parents[2] / "build" / "sweep" / "bin" / "snakemake"
+LENGTH, CONDUCTIVITY, YOUNG, EXPANSION = 0.1, 20.0, 2e11, 12e-6
+GAS_A, GAS_B, CLOSED_C = 0.15, 1e-5, 1e-4
+AREA = 0.05 * 20.0
+WRONG = 117  # the run whose gap is no number
+
+pytestmark = pytest.mark.skipif(not SNAKEMAKE.exists(),
+                                reason="build/sweep has no Snakemake; ./setup.sh test makes it")
+
+
+def start(folder):
+    """Start the workflow; return the finished process."""
+    return subprocess.run(
+        [SNAKEMAKE, "--cores", "2", "--keep-going", "--config", f"thercon={PROGRAM}",
+         f"python={sys.executable}"],
+        cwd=folder, capture_output=True, text=True, timeout=300,
+        env={**os.environ, "HOME": str(folder), "XDG_CACHE_HOME": str(folder / "cache")},
+    )
+
+
+def change(folder, run, old, new):
+    """Change a field of a run in the table of values."""
+    path = folder / "values.csv"
+    lines = path.read_text().splitlines()
+    fields = lines[run].split(",")
+    assert fields[0] == f"{run:03d}"
+    fields[fields.index(old)] = new
+    lines[run] = ",".join(fields)
+    path.write_text("\n".join(lines) + "\n")
+
+
+def gathered(folder):
+    """Return the rows of the gathered table by run."""
+    with (folder / "sweep.csv").open(newline="") as file:
+        rows = {row["run"]: row for row in csv.DictReader(file)}
+    assert (folder / "sweep.png").read_bytes().startswith(b"\x89PNG")
+    return rows
+
+
+def ages(folder):
+    """Return when each result was written, by run."""
+    return {path.parent.name: path.stat().st_mtime_ns for path in folder.glob("runs/*/joint.vtkhdf")}
+
+
+def assert_closed_form(row):
+    """Assert that the gathered values of a run are those of its rods; the tolerance is ten times the fixed point's
+    default, and of the gap's closed form, which takes the difference of two lengths."""
+    gap, hot = float(row["gap"]), float(row["hot"])
+    flux = float(row["heat_rate"]) / AREA
+    free = EXPANSION * LENGTH * hot - EXPANSION * LENGTH**2 * flux / (2 * CONDUCTIVITY)
+    pressure = max(0.0, (free - gap) / (2 * LENGTH / YOUNG))
+    left = max(0.0, gap - free)
+    omega = GAS_A / GAS_B + CLOSED_C * pressure if pressure > 0 else GAS_A / (GAS_B + left)
+    assert flux == pytest.approx(hot / (2 * LENGTH / CONDUCTIVITY + 1 / omega), rel=1e-7)
+    assert float(row["gap_left"]) == pytest.approx(left, rel=1e-7, abs=1e-7 * gap)
+    assert float(row["pressure"]) == pytest.approx(pressure, rel=1e-7, abs=1e-7 * YOUNG * gap)
+
+
+def test_two_hundred_runs_one_of_them_failing_and_a_second_start(tmp_path):
+    folder = tmp_path / "sweep"
+    shutil.copytree(INPUT / "sweep", folder)
+    change(folder, WRONG, "8.5E-04", "8.5E-04m")
+    process = start(folder)
+    assert process.returncode == 1
+    assert f"run {WRONG}: deck error" in process.stderr + process.stdout
+    rows = gathered(folder)
+    assert len(rows) == 200
+    wrong = rows.pop(str(WRONG))
+    assert wrong["outcome"] == "deck error" and "is not a number" in wrong["reason"]
+    assert wrong["heat_rate"] == wrong["gap_left"] == wrong["pressure"] == ""
+    assert {row["outcome"] for row in rows.values()} == {"solved"}
+    for row in rows.values():
+        assert_closed_form(row)
+    closed = [row for row in rows.values() if float(row["pressure"]) > 0]
+    assert 20 < len(closed) < 180
+
+    # Mended, lost and changed rows are run, and nothing else is.
+    change(folder, WRONG, "8.5E-04m", "8.5E-04")
+    change(folder, 10, "5.0E-04", "5.2E-04")
+    shutil.rmtree(folder / "runs" / "005")
+    before = ages(folder)
+    process = start(folder)
+    assert process.returncode == 0, process.stderr
+    after = ages(folder)
+    assert {run for run in after if after[run] != before.get(run)} == {"005", "010", str(WRONG)}
+    rows = gathered(folder)
+    assert len(rows) == 200
+    for row in rows.values():
+        assert row["outcome"] == "solved"
+        assert_closed_form(row)
