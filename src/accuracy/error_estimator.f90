@@ -27,6 +27,8 @@ module error_estimator
    !> length are the change, those that fall with its square a third of it.
    real(dp), parameter :: of_doubled_increments = 0.6_dp
 
+   integer, parameter :: shear = 2   !! place of the shear force among the quantities
+
    !> What the estimates are made with.
    type :: error_estimator_type
       private
@@ -146,6 +148,8 @@ contains
       do i = 1, size(record%errors)
          associate (mesh => record%errors(i)%mesh)
             mesh = of_halved_elements*change(:, i)
+            ! The slip that friction would have left on the finer mesh is not known.
+            mesh(shear) = ieee_value(1.0_dp, ieee_quiet_nan)
             where (is_band) mesh = abs(mesh) + edge_resolution( &
                simulation%operators%interfaces(i), values(:, i))
          end associate

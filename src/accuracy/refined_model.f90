@@ -105,15 +105,18 @@ contains
    end subroutine match_pairs
 
    !> Assembles the matrices that are asked for.
-   subroutine assemble(self, with_mechanics, with_heat)
+   subroutine assemble(self, with_mechanics, with_heat, with_strain)
       class(refined_model_type), intent(inout) :: self   !! prepared
-      logical, intent(in) :: with_mechanics              !! stiffness and thermal load
+      logical, intent(in) :: with_mechanics              !! stiffness
       logical, intent(in) :: with_heat                   !! conduction
+      logical, intent(in) :: with_strain                 !! thermal load
 
       associate (model => self%model)
          if (with_mechanics .and. .not. allocated(self%stiffness%value)) then
             self%stiffness = assemble_stiffness(model%mesh, model%sections, model%materials, &
                model%orientations)
+         end if
+         if (with_strain .and. .not. allocated(self%thermal_load%value)) then
             self%thermal_load = assemble_thermal_load(model%mesh, model%sections, &
                model%materials, model%orientations)
          end if

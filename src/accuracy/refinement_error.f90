@@ -8,7 +8,7 @@
 !> P being the shape functions of the old mesh and R the values at its nodes. At rest y is the
 !> solution on the new mesh, for which no factors were ever formed.
 module refinement_error
-   use contact_operator, only: thermal_forces
+   use contact_operator, only: kept_contact, thermal_forces
    use controls, only: implicit_scheme, start_type
    use errors, only: error_type
    use increment_solution, only: recover_fields, solve_pairs
@@ -66,7 +66,8 @@ contains
       type(step_type) :: estimate_step
       integer :: k
 
-      call refined%assemble(solves_mechanics(step%analysis), solves_heat(step%analysis))
+      call refined%assemble(solves_mechanics(step%analysis), solves_heat(step%analysis), &
+         allocated(operators%thermal_load%value))
       call refined%loads%move_to(clock, refined%model)
       estimate_step = step
       estimate_step%scheme = implicit_scheme
@@ -87,7 +88,8 @@ contains
       call quantities_of_state(operators, fields%coarse, fields%coarse%omega, values)
       fields%displacement = refined%prolong(fields%coarse%displacement, 2)
       fields%temperature = refined%prolong(fields%coarse%temperature, 1)
-      call fields%pairs%begin(refined, fields%coarse%contact)
+      call fields%pairs%begin(refined, kept_contact(fields%coarse%contact, &
+         fields%coarse%has_mechanics))
       before = previous
       do k = 1, corrections
          call smooth(refined, loads, estimate_step, fields)
@@ -114,7 +116,8 @@ contains
       type(sparse_matrix_type) :: conduction
 
       associate (pairs => fields%pairs, u => fields%displacement, t => fields%temperature)
-         call pairs%take_old(refined, fields%coarse%contact)
+         call pairs%take_old(refined, kept_contact(fields%coarse%contact, &
+            fields%coarse%has_mechanics))
          if (solves_mechanics(step%analysis)) then
             call pairs%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, 2), &
                joints)
@@ -141,8 +144,9 @@ contains
       type(corrected_type), intent(in) :: fields
       real(dp) :: forces(size(fields%displacement))
 
-      forces = refined%loads%nodal_forces() + refined%thermal_load%multiply(fields%temperature - &
-         refined%model%initial_temperature)
+      forces = refined%loads%nodal_forces()
+      if (allocated(refined%thermal_load%value)) forces = forces + &
+         refined%thermal_load%multiply(fields%temperature - refined%model%initial_temperature)
    end function mechanical_load
 
    !> Solves the increment on the old mesh with what is out of balance on the new one.

@@ -23,6 +23,7 @@ class Case:
     friction: bool = False
     law: tuple[str, ...] = ()
     output: tuple[str, ...] = ()
+    errors: bool = False
 
     @property
     def on(self):
@@ -30,6 +31,7 @@ class Case:
         on = {name for name in ("heat", "mechanics", "contact", "friction") if getattr(self, name)}
         on |= {"strain by heat"} if self.heat and self.mechanics else set()
         on |= {"coupling"} if list(self.law) == VARIABLE else set()
+        on |= {"estimated errors", "refinement"} if self.errors else set()
         return on | ({"printed tables"} if list(self.output) == TABLES else set())
 
     @property
@@ -51,8 +53,10 @@ CASES = (
     Case("heat, mechanics, contact, friction", heat=True, contact=True, friction=True,
          law=tuple(CONSTANT)),
     Case("the same, coupled", heat=True, contact=True, friction=True, law=tuple(VARIABLE)),
+    Case("coupled, errors estimated", heat=True, contact=True, friction=True, law=tuple(VARIABLE),
+         errors=True),
 )
-COUPLED = CASES[-1]
+COUPLED = CASES[-2]
 
 
 def mesh():
@@ -63,7 +67,8 @@ def mesh():
 
 def write_deck(case, path, levels, increments):
     """Write the deck of a case; without heat the top is pushed. Return its path."""
-    cards = [f"*REFINE, LEVELS={levels}"] if levels else []
+    cards = [f"*OPTIONS, ERRORS={'YES' if case.errors else 'NO'}"]
+    cards += [f"*REFINE, LEVELS={levels}"] if levels else []
     if case.contact:
         cards += ["*SURFACE INTERACTION, NAME=FACES", *case.law]
         cards += ["*FRICTION", "0.155"] if case.friction else []

@@ -58,6 +58,10 @@ PARTS = {
     "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",
                                   "loose_motions"},
     "films": {"films", "loads:film_matrix", "loads:integrate_films"},
+    "estimated errors": {
+        "doubled_increments", "error_estimator", "interface_quantities", "linked_relaxation",
+        "refined_model", "refined_pairs", "refinement_error",
+    },
     "refinement": {"load_refinement", "mesh_division", "refinement"},
     "printed tables": {"element_points", "listing_prints",
                                 "listing_tables:print_contact_table"},

@@ -119,3 +119,21 @@ def test_other_word_for_errors_is_refused(tmp_path):
     process = run("check", deck)
     assert process.returncode == 1
     assert "ERRORS" in process.stderr
+
+
+def test_heat_through_faces_that_only_touch_has_no_error(tmp_path):
+    """Two rods one on the other, closed without pressure in a step of heat alone: temperatures are
+    linear, exact on any mesh."""
+    cards = ["*NODE", "1, 0., 0.", "2, 2., 0.", "3, 2., 1.", "4, 0., 1.", "11, 0., 1.",
+             "12, 2., 1.", "13, 2., 2.", "14, 0., 2.", "*ELEMENT, TYPE=CPE4, ELSET=A",
+             "1, 1, 2, 3, 4", "*ELEMENT, TYPE=CPE4, ELSET=B", "2, 11, 12, 13, 14",
+             "*MATERIAL, NAME=M", "*CONDUCTIVITY", "50.", "*SOLID SECTION, ELSET=A, MATERIAL=M",
+             "1.", "*SOLID SECTION, ELSET=B, MATERIAL=M", "1.", "*SURFACE, NAME=SA", "A, S3",
+             "*SURFACE, NAME=SB", "B, S1", "*SURFACE INTERACTION, NAME=I", "*GAP CONDUCTANCE",
+             "10., 0.", "*CONTACT PAIR, INTERACTION=I, NAME=F", "SB, SA", "*STEP",
+             "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "13, 11, 11, 100.",
+             "14, 11, 11, 100.", "1, 11, 11, 0.", "2, 11, 11, 0.", "*END STEP"]
+    (tmp_path / "rods.inp").write_text("\n".join(cards) + "\n")
+    value, mesh, *_ = errors(solve(tmp_path / "rods.inp"), "F")["heat_rate"]
+    assert abs(value) == pytest.approx(2.0 * 100.0 / (1 / 10 + 2 / 50), rel=1e-12)
+    assert abs(mesh) < 1e-9 * abs(value)

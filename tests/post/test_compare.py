@@ -46,7 +46,7 @@ def test_a_result_equals_itself_in_every_quantity(compare, result):
     status, said, _ = compare(result, result, "--block", 0)
     assert status == 0
     assert said.splitlines()[-1] == "all within tolerance"
-    for quantity in ("pressure", "status", "NT", "U1", "S12", "edge_contact"):
+    for quantity in ("pressure", "status", "NT", "U1", "S12", "edge_contact", "stress_error@body2"):
         line = line_of(said, quantity)
         assert line["ok"] and line["rows"] > 0 and line["not_in_a"] == line["not_in_b"] == 0
 

@@ -35,8 +35,14 @@ def read(path, stack):
 
 
 def history(result):
-    """Return /history with the sums and edges of the contacts, `name@contact` where several."""
-    columns = dict(result.history)
+    """Return /history with the sums and edges of the contacts, `name@contact` where several; what
+    has a value for each body is `name@body` with its number."""
+    columns = {}
+    for key, values in result.history.items():
+        if values.ndim == 1:
+            columns[key] = values
+        else:
+            columns |= {f"{key}@body{k + 1}": values[:, k] for k in range(values.shape[1])}
     for contact in result.contacts() if result.contact_names else []:
         where = f"@{contact.name}" if len(result.contact_names) > 1 else ""
         for key, values in contact.data.items():
