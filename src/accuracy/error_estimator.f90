@@ -23,6 +23,8 @@ module error_estimator
    !> Error of a mesh in the change that halving its elements makes: errors that fall with h are
    !> twice the change, those that fall with h^4 are 1.07 of it.
    real(dp), parameter :: of_halved_elements = 1.25_dp
+   !> The same for bands of edges, which shall hold errors that fall with h, and not by a hair.
+   real(dp), parameter :: of_halved_bands = 2.5_dp
    !> Error of the increments in the change that doubling them makes: those that fall with their
    !> length are the change, those that fall with its square a third of it.
    real(dp), parameter :: of_doubled_increments = 0.6_dp
@@ -150,7 +152,7 @@ contains
             mesh = of_halved_elements*change(:, i)
             ! The slip that friction would have left on the finer mesh is not known.
             mesh(shear) = ieee_value(1.0_dp, ieee_quiet_nan)
-            where (is_band) mesh = abs(mesh) + edge_resolution( &
+            where (is_band) mesh = of_halved_bands*abs(change(:, i)) + edge_resolution( &
                simulation%operators%interfaces(i), values(:, i))
          end associate
       end do
