@@ -98,12 +98,13 @@ contains
 
       associate (rows => trade%rows(:trade%count), remark => trade%remarks(wish)%value)
          i = findloc(rows%is_recommended(wish), .true., dim=1)
-         write (unit, '(3a)', advance='no') 'for ', to_text(100.0_dp*wishes(wish)), ' %: '
+         write (unit, '(3a)', advance='no') 'for ', to_text(100.0_dp*wishes(wish)), ' %'
          if (i == 0) then
-            write (unit, '(2a)') 'no row; ', remark
+            write (unit, '(2a)') ': no row; ', remark
             return
          end if
-         write (unit, '(a, i0, 8a)') 'row ', i, ' (', elements_of(rows(i)), ' x ', &
+         if (len(remark) > 0) write (unit, '(a)', advance='no') ', not of all quantities'
+         write (unit, '(a, i0, 8a)') ': row ', i, ' (', elements_of(rows(i)), ' x ', &
             to_text(2**rows(i)%level), ', increments ', &
             trim(factor_text(rows(i)%variation%increments))//comma(rows(i)%varied)//'), ', &
             seconds_text(rows(i)%cpu_seconds), ' s of CPU'
