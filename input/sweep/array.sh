@@ -12,4 +12,4 @@ set -euo pipefail
 line=$(sed -n "$((SLURM_ARRAY_TASK_ID + 1))p" values.csv)
 IFS=, read -r run gap hot <<<"${line%$'\r'}"
 [[ -n $run ]] || { echo "values.csv has no row $SLURM_ARRAY_TASK_ID" >&2; exit 1; }
-exec "${THERCON:-thercon}" run joint.inp --quiet --set "gap=$gap" --set "hot=$hot" --out "runs/$run"
+exec "${THERCON:-thercon}" run joint.inp --quiet --jobs 1 --set "gap=$gap" --set "hot=$hot" --out "runs/$run"

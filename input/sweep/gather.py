@@ -5,7 +5,6 @@ sweep.csv has every row of the values, with what became of it; sweep.png those w
 """
 
 import csv
-import re
 import sys
 import tomllib
 from collections import Counter
@@ -18,18 +17,18 @@ import numpy as np
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
 
-OUTCOMES = {"1": "deck error", "2": "not converged", "3": "internal/I-O error",
-            "4": "check failed", "5": "interrupted"}
+TOLD = "thercon-batch.csv"  # what `thercon run --jobs 1` leaves of a run in its folder
 
 
-def failure(log):
-    """Return outcome and reason of a run that left no result."""
-    text = log.read_text() if log.exists() else ""
-    status = re.findall(r"^ended with exit status (\d+)$", text, re.M)
-    reasons = re.findall(r": error: (.*)", text)
-    if status:
-        return OUTCOMES.get(status[-1], f"exit status {status[-1]}"), reasons[0] if reasons else ""
-    return "no result", ""
+def outcome(folder):
+    """Return what became of a run, and why."""
+    path = folder / TOLD
+    if not path.exists():
+        return "not run", f"no {path}"
+    with path.open(newline="") as file:
+        for row in csv.DictReader(file):
+            return row["outcome"], row["reason"]
+    return "not run", f"nothing in {path}"
 
 
 def gather(settings):
@@ -39,11 +38,11 @@ def gather(settings):
         rows = list(csv.DictReader(file))
     for row in rows:
         folder = Path("runs") / row["run"]
-        row["outcome"], row["reason"] = "solved", ""
+        row["outcome"], row["reason"] = outcome(folder)
         row.update(dict.fromkeys(settings["quantities"], ""))
         result = folder / f"{stem}.vtkhdf"
-        if not result.exists():
-            row["outcome"], row["reason"] = failure(folder / "messages.txt")
+        # What a run that failed left behind, or one before it, is no result of these values.
+        if row["outcome"] != "solved" or not result.exists():
             continue
         with h5py.File(result) as file:
             for name, dataset in settings["quantities"].items():
