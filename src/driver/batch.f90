@@ -24,6 +24,7 @@ module batch
    public :: run_batch
 
    real(dp), parameter :: table_pause = 1.0_dp   !! between two writings of the CSV file [s]
+   real(dp), parameter :: one_signal = 0.5_dp   !! time within which signals are one [s]
 
    !> A deck that is running.
    type :: slot_type
@@ -44,7 +45,8 @@ module batch
       integer :: started = 0                             !! decks that were started
       integer :: ended = 0                               !! decks that have ended
       integer :: failed = 0                              !! of these, with a status that is not 0
-      integer :: forwarded = 0                           !! signals that were passed on
+      integer :: forwarded = 0                           !! signals that were seen
+      real(dp) :: signalled = 0.0_dp                     !! when the first was passed on [s]
       real(dp) :: written = 0.0_dp                       !! when the CSV file was written [s]
       integer :: in_file = 0                             !! decks that have ended in it
    end type batch_type
@@ -64,6 +66,13 @@ contains
       if (status /= 0) return
       call catch_signals()
       call prepare(self, command, error)
+      if (allocated(error)) then
+         write (error_unit, '(2a)') 'thercon: error: ', error%message
+         status = error%status
+         return
+      end if
+      ! The table of an earlier batch must not be taken for that of this one.
+      call write_table(self, error)
       if (allocated(error)) then
          write (error_unit, '(2a)') 'thercon: error: ', error%message
          status = error%status
@@ -226,23 +235,27 @@ contains
       end associate
    end subroutine collect
 
-   !> The first signal goes on to the decks, which end after their increments; the second ends them.
+   !> The first signal goes on to the decks, which end after their increments; a later one ends
+   !> them. What comes at once, as from timeout, which signals a process and its group, is one.
    subroutine pass_on_signals(self)
       type(batch_type), intent(inout) :: self
-      integer :: s, times
+      integer :: s
+      logical :: is_first
 
-      times = caught_times()
-      if (times == self%forwarded) return
+      if (caught_times() == self%forwarded) return
+      is_first = self%forwarded == 0
+      self%forwarded = caught_times()
+      if (is_first) self%signalled = wall_seconds()
+      if (.not. is_first .and. wall_seconds() - self%signalled < one_signal) return
       do s = 1, size(self%slots)
          if (self%slots(s)%deck == 0) cycle
-         if (times > 1) then
+         if (is_first) then
+            call send_signal(self%slots(s)%process, caught_number())
+         else
             self%slots(s)%is_killed = .true.
             call send_signal(self%slots(s)%process, signal_kill)
-         else
-            call send_signal(self%slots(s)%process, caught_number())
          end if
       end do
-      self%forwarded = times
    end subroutine pass_on_signals
 
    subroutine show_progress(self)
