@@ -167,7 +167,7 @@ HEAD = ["deck", "refinements", "increments", *QUANTITIES.values(), *EDGES.values
 def tables(folder):
     """Run all cases; return the shares, the ratios and the converged values."""
     runs = Table("True error over estimate", HEAD, text="For edges, whether the band holds the converged value.")
-    values = Table("Converged values", ["deck", *QUANTITIES.values(), *EDGES.values()])
+    values = Table("Converged values of the five decks", ["deck", *QUANTITIES.values(), *EDGES.values()])
     everything = []
     for case in CASES:
         exact = limits(case, folder)
@@ -194,7 +194,7 @@ def test_cheap_runs_have_the_errors_that_the_document_tells(tmp_path):
     check_parts([TEXT])
     told = {(row["deck"], row["refinements"], row["increments"]): row
             for row in rows("True error over estimate")}
-    values = {row["deck"]: row for row in rows("Converged values")}
+    values = {row["deck"]: row for row in rows("Converged values of the five decks")}
     titles = QUANTITIES | EDGES
     for case in CASES:
         exact = {name: figure(values[case.name][title]) for name, title in titles.items()}
