@@ -137,6 +137,12 @@ def test_a_field_that_is_no_number_is_an_error_with_its_place(refused, result, t
     assert "old.lst:3: columns 6-15: '1.0X' is no number (S11@{part})" in said
 
 
+def test_patterns_of_a_template_that_no_line_fits_are_told(listing):
+    more = "\n[[value]]\nname = 'force'\npattern = 'NOT THERE (\\S+)'\n"
+    assert not any("no line fits" in note for note in listing(LISTING, FORM).notes)
+    assert any("no line fits 'NOT THERE" in note for note in listing(LISTING, FORM + more).notes)
+
+
 @pytest.mark.parametrize(
     "old, new, words",
     [

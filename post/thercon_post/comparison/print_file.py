@@ -11,6 +11,7 @@ from .series import AXES, STATES, Source, masked, split
 from .template import read_template
 
 CALCULIX_DAT = Path(__file__).with_name("calculix_dat.toml")
+PRINT_FILE = "print file"
 
 
 def read_calculix_dat(path):
@@ -18,7 +19,7 @@ def read_calculix_dat(path):
     return read(path, read_template(CALCULIX_DAT), "CalculiX .dat")
 
 
-def read(path, template, kind="print file"):
+def read(path, template, kind=PRINT_FILE):
     """Return the source of a print file."""
     try:
         text = Path(path).read_text(encoding="latin-1")
@@ -28,7 +29,8 @@ def read(path, template, kind="print file"):
     for number, line in enumerate(text.split("\n"), 1):
         # A form feed begins a page; it is no column. Tabs go to the next eighth column.
         reader.take(number, line.rstrip("\r").replace("\f", "").expandtabs(8))
-    source = Source(str(path), kind, reader.series(), reader.notes())
+    notes = reader.notes() + (reader.unfitted() if kind == PRINT_FILE else [])
+    source = Source(str(path), kind, reader.series(), notes)
     source.states = set(STATES) | reader.states
     return source
 
@@ -44,6 +46,7 @@ class Reader:
         self.rows = {}  # names of the columns -> {name: values}
         self.counts, self.first = Counter(), {}
         self.states = set()
+        self.fitted = set()  # patterns of the template that some line fits
 
     def take(self, number, line):
         """Take one line."""
@@ -66,6 +69,7 @@ class Reader:
         for form in self.template.tables:
             found = form.heading.search(line)
             if found:
+                self.fitted.add(form.heading.pattern)
                 self.remember(here, found.groupdict())
                 continued = form is self.form
                 self.form, self.skip, self.left = form, form.skip, form.rows
@@ -85,6 +89,8 @@ class Reader:
         found = False
         for form in self.template.values:
             match = form.pattern.search(line)
+            if match:
+                self.fitted.add(form.pattern.pattern)
             if match and form.name is None:
                 self.remember(here, match.groupdict())
             elif match:
@@ -177,6 +183,13 @@ class Reader:
         """Count something to report, and keep where it was first."""
         self.counts[kind] += 1
         self.first.setdefault(kind, here)
+
+    def unfitted(self):
+        """Return a note of the patterns of the template that no line fits."""
+        patterns = [form.heading.pattern for form in self.template.tables]
+        patterns += [form.pattern.pattern for form in self.template.values]
+        missing = [f"'{pattern}'" for pattern in patterns if pattern not in self.fitted]
+        return [f"no line fits {', '.join(missing)} of the template"] if missing else []
 
     def series(self):
         """Return the tables as series."""
