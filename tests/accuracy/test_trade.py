@@ -39,7 +39,7 @@ full tables are what the command prints; here with `--limit 8`.
 LIMIT = "8"
 CYLINDER = """Elements with midside nodes on the deck's own mesh cost 0.04 s and know the force to 0.2 %, heat to 2.5 %, the peak to 1.2 %. The mesh is
 what to pay for: each halving costs 4 to 8 times the time and halves the errors of heat and edges. Increments hardly matter: those four times as
-long are as good in all but the edge of stick, so that heat to 1 % is cheapest on a mesh refined twice, in increments of 80 C. Linear
+long are as good in all but the edge of stick. Linear
 elements need the mesh halved twice more for the same force, at ten times the cost; for heat and edges they are on a par. Tolerance and method change nothing here. `GALERKIN` and
 `CRANK-NICOLSON` do not damp what a pair that closes leaves in the heat rate; `MUMPS` takes nearly twice the time and 4 MB more at this size. The edge
 of stick is not known to 10 %, early in the course, because slip is frozen pair by pair."""
@@ -48,7 +48,7 @@ The reference says so itself: with these meshes heat and temperatures are known 
 all. A finer mesh helps all of them, shorter increments none. Only `NEWTON` goes through; the three others fail at
 500 and 520 C, and are listed so."""
 HERTZ = """No friction, so no path: one increment is as good as sixteen, to all digits. The linear elements of the unrefined deck know the peak
-pressure to 0.5 % for a tenth of the time of the deck as written, the force on any mesh. The edge lies between two nodes and scatters: its error hardly falls."""
+pressure to 0.5 % for a tenth of the time of the deck as written, the force on any mesh. The edge of contact is known to half a per cent."""
 ROD = """Uniform states are exact on any mesh: all rows of the grid agree with the closed form, so the cheapest will do, and which one that is
 is chance. What matters is the method: `PICARD` cycles for ever at a gain of -11, the schemes that weigh the start of the increment are
 wrong by 30 % and more in a single increment from a cold start, and TOL=1E-3 leaves 4e-7 of the heat."""
