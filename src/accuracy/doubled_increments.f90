@@ -2,7 +2,7 @@
 !> and takes one increment where the run has taken two. Of an odd number of increments in a step it
 !> takes the first alone, for the last one tells most.
 module doubled_increments
-   use controls, only: start_type
+   use companion_steps, only: companion_step
    use errors, only: error_type
    use films, only: left_films
    use increment_solution, only: recover_fields, solve_pairs
@@ -19,7 +19,6 @@ module doubled_increments
    public :: doubled_increments_type
 
    real(dp), parameter :: almost_none = 1.0e-6_dp   !! of an increment: belongs to the one before
-   real(dp), parameter :: tolerance = 1.0e-6_dp   !! of the fixed point; errors are far larger
 
    !> Where the second run stands.
    type :: doubled_increments_type
@@ -67,7 +66,7 @@ contains
       logical, intent(in) :: ends_step                           !! whether the step ends there
       type(error_type), allocatable :: error
       type(solution_state_type) :: before, next
-      type(step_type) :: doubled
+      type(step_type) :: step
       type(increment_record_type) :: record
 
       if (.not. self%is_led .or. self%is_lost) return
@@ -76,16 +75,12 @@ contains
       self%waiting = self%waiting + 1
       if (self%waiting < 2 .and. .not. ends_step) return
       self%has_doubled = self%has_doubled .or. time - self%time > 1.5_dp*accepted%increment_size
-      doubled = model%steps(number)
-      doubled%start = start_type()
-      doubled%fixed_point%finds_gain = .false.
-      doubled%fixed_point%tolerance = max(tolerance, &
-         doubled%fixed_point%tolerance)
+      step = companion_step(model%steps(number))
       next = self%state
       before = self%state
       next%contact = accepted%contact
       next%contact%tangential = self%state%contact%tangential
-      if (.not. has_memory(doubled%scheme)) then
+      if (.not. has_memory(step%scheme)) then
          ! The run's solution is a guess that is nearly right, and nothing else is taken of omega.
          before%omega = accepted%omega
          before%omega_before = accepted%omega
@@ -94,16 +89,16 @@ contains
       next%heat_load = accepted%heat_load
       next%film = accepted%film
       next%force_load = accepted%force_load
-      if (solves_heat(doubled%analysis)) then
-         call operators%set_film(left_films(doubled%scheme, self%state%film, next%film), model, &
+      if (solves_heat(step%analysis)) then
+         call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, &
             error)
       end if
-      if (.not. allocated(error)) call solve_pairs(operators, loads, model, doubled, before, &
+      if (.not. allocated(error)) call solve_pairs(operators, loads, model, step, before, &
          next, record, error)
       self%is_lost = allocated(error)
       if (self%is_lost) return
-      if (has_memory(doubled%scheme) .or. .not. solves_mechanics(doubled%analysis)) then
-         call recover_fields(operators, loads, model, doubled, next)
+      if (has_memory(step%scheme) .or. .not. solves_mechanics(step%analysis)) then
+         call recover_fields(operators, loads, model, step, next)
       end if
       self%state = next
       self%time = time

@@ -8,13 +8,11 @@ module error_estimator
    use kinds, only: dp
    use load_courses, only: step_clock_type
    use model, only: model_type
-   use records, only: estimated_quantities, increment_record_type, interface_errors_type, &
-      is_band
+   use records, only: at_shear_force, estimated_quantities, increment_record_type, &
+      interface_errors_type, is_band
    use refined_model, only: refined_model_type
    use refinement_error, only: find_change_by_refinement
-   use scheme_properties, only: is_explicit
    use solution_state, only: solution_state_type
-   use steps, only: step_type
    use text, only: append
    implicit none
    private
@@ -28,8 +26,6 @@ module error_estimator
    !> Error of the increments in the change that doubling them makes: those that fall with their
    !> length are the change, those that fall with its square a third of it.
    real(dp), parameter :: of_doubled_increments = 0.6_dp
-
-   integer, parameter :: shear = 2   !! place of the shear force among the quantities
 
    !> What the estimates are made with.
    type :: error_estimator_type
@@ -92,8 +88,8 @@ contains
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
       allocate (values(estimated_quantities, size(record%contacts)))
-      call quantities_of_state(simulation%operators, simulation%state, carrying_conductance( &
-         model%steps(self%step), simulation%state), values)
+      call quantities_of_state(simulation%operators, simulation%state, &
+         model%steps(self%step)%scheme, values)
       call store(values, record%errors)
       if (self%why_not == '') call estimate_mesh(self, model, simulation, values, record)
       call estimate_increments(self, model, simulation, values, record)
@@ -114,16 +110,6 @@ contains
          errors(i)%iteration = 0.0_dp
       end do
    end subroutine store
-
-   !> The conductances by which heat crosses in a state.
-   pure function carrying_conductance(step, state) result(omega)
-      type(step_type), intent(in) :: step
-      type(solution_state_type), intent(in) :: state
-      real(dp) :: omega(size(state%omega))
-
-      omega = state%omega
-      if (is_explicit(step%scheme)) omega = state%omega_start
-   end function carrying_conductance
 
    !> Errors of the mesh, from the change that a refined one makes.
    subroutine estimate_mesh(self, model, simulation, values, record)
@@ -151,7 +137,7 @@ contains
          associate (mesh => record%errors(i)%mesh)
             mesh = of_halved_elements*change(:, i)
             ! The slip that friction would have left on the finer mesh is not known.
-            mesh(shear) = ieee_value(1.0_dp, ieee_quiet_nan)
+            mesh(at_shear_force) = ieee_value(1.0_dp, ieee_quiet_nan)
             where (is_band) mesh = of_halved_bands*abs(change(:, i)) + edge_resolution( &
                simulation%operators%interfaces(i), values(:, i))
          end associate
@@ -171,8 +157,8 @@ contains
       if (.not. self%doubled%is_led) return
       doubled = ieee_value(1.0_dp, ieee_quiet_nan)
       if (self%doubled%has_doubled .and. .not. self%doubled%is_lost) then
-         call quantities_of_state(simulation%operators, self%doubled%state, carrying_conductance( &
-            model%steps(self%step), self%doubled%state), doubled)
+         call quantities_of_state(simulation%operators, self%doubled%state, &
+            model%steps(self%step)%scheme, doubled)
       end if
       do i = 1, size(record%errors)
          record%errors(i)%increment = of_doubled_increments*(values(:, i) - doubled(:, i))

@@ -3,10 +3,12 @@ module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use axis_limits, only: tractions
    use contact_pairs, only: contact_pairs_type
+   use controls, only: thermal_scheme_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
-   use records, only: edges_kept, estimated_quantities
-   use solution_state, only: solution_state_type
+   use records, only: at_edge_contact, at_edge_stick, at_heat_rate, at_normal_force, &
+      at_peak_pressure, at_shear_force, edges_kept, estimated_quantities
+   use solution_state, only: carrying_conductance, solution_state_type
    use zone_edges, only: contact_edges, stick_edges
    implicit none
    private
@@ -19,8 +21,7 @@ module interface_quantities
 
 contains
 
-   !> Normal force, shear force, heat rate, peak pressure, edge of contact, edge of stick, in the
-   !> order of estimated_names; NaN for an edge where there is none.
+   !> The quantities at their places; NaN for an edge where there is none.
    pure function quantities_of(pairs, friction, status, gap, force, shear_force, heat) &
       result(values)
       type(contact_pairs_type), intent(in) :: pairs   !! the pairs of the interface
@@ -30,28 +31,30 @@ contains
       real(dp), intent(in) :: force(:)                !! (m) nodal, positive in compression [force]
       real(dp), intent(in) :: shear_force(:)          !! (m) on the slave [force]
       real(dp), intent(in) :: heat(:)                 !! (m) from slave to master [power]
-      real(dp) :: values(estimated_quantities)
+      real(dp) :: values(estimated_quantities)        !! [force], [power], [stress], [length]
       real(dp) :: edges(edges_kept), pressure(size(force)), shear(size(force))
 
       pressure = tractions(force, pairs%weight, pairs%position(1, :), even=.true.)
       shear = tractions(shear_force, pairs%weight, pairs%position(1, :), even=.false.)
-      values(1) = sum(force)
-      values(2) = sum(shear_force)
-      values(3) = sum(heat)
-      values(4) = maxval(pressure)
-      call contact_edges(pairs%arc_length, status, pressure, gap, edges, values(5))
+      values(at_normal_force) = sum(force)
+      values(at_shear_force) = sum(shear_force)
+      values(at_heat_rate) = sum(heat)
+      values(at_peak_pressure) = maxval(pressure)
+      call contact_edges(pairs%arc_length, status, pressure, gap, edges, values(at_edge_contact))
       call stick_edges(pairs%arc_length, pairs%weight, status, pressure, shear, gap, friction, &
-         edges, values(6))
+         edges, values(at_edge_stick))
    end function quantities_of
 
-   !> The quantities of all interfaces in a state, with the conductances by which heat crosses.
-   subroutine quantities_of_state(operators, state, omega, values)
+   !> The quantities of all interfaces in a state.
+   subroutine quantities_of_state(operators, state, scheme, values)
       type(interface_operators_type), intent(in) :: operators   !! the bodies
       type(solution_state_type), intent(in) :: state            !! the state
-      real(dp), intent(in) :: omega(:)                          !! (m) [power/(l^2 temperature)]
+      type(thermal_scheme_type), intent(in) :: scheme           !! by which it was found
       real(dp), intent(out) :: values(:, :)                     !! (quantities, interfaces)
+      real(dp) :: omega(size(state%omega))
       integer :: first, i, last
 
+      omega = carrying_conductance(state, scheme)
       associate (pairs => operators%pairs, contact => state%contact)
          do i = 1, size(values, 2)
             first = pairs%interface_start(i)
@@ -69,11 +72,13 @@ contains
    pure function edge_resolution(pairs, values) result(resolution)
       type(contact_pairs_type), intent(in) :: pairs   !! the pairs of the interface
       real(dp), intent(in) :: values(:)               !! as quantities_of gave them
-      real(dp) :: resolution(size(values))
+      real(dp) :: resolution(size(values))            !! to either side [length]
 
       resolution = 0.0_dp
-      resolution(5) = known_contact_edge*spacing_at(pairs%arc_length, values(5))
-      resolution(6) = known_stick_edge*spacing_at(pairs%arc_length, values(6))
+      resolution(at_edge_contact) = known_contact_edge*spacing_at(pairs%arc_length, &
+         values(at_edge_contact))
+      resolution(at_edge_stick) = known_stick_edge*spacing_at(pairs%arc_length, &
+         values(at_edge_stick))
    end function edge_resolution
 
    !> Distance of the pairs on both sides of a place; 0 at or beyond the last pair.

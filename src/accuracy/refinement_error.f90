@@ -8,9 +8,12 @@
 !> P being the shape functions of the old mesh and R the values at its nodes. At rest y is the
 !> solution on the new mesh, for which no factors were ever formed.
 module refinement_error
+   use balances, only: heat_residual
+   use companion_steps, only: companion_step
    use contact_operator, only: kept_contact, thermal_forces
-   use controls, only: implicit_scheme, start_type
+   use controls, only: implicit_scheme
    use errors, only: error_type
+   use films, only: net_heat
    use increment_solution, only: recover_fields, solve_pairs
    use interface_operators, only: interface_operators_type
    use interface_quantities, only: quantities_of, quantities_of_state
@@ -20,7 +23,7 @@ module refinement_error
    use loads, only: loads_type
    use model, only: model_type
    use refined_pairs, only: refined_pairs_type
-   use records, only: increment_record_type, status_open
+   use records, only: at_normal_force, at_shear_force, increment_record_type, status_open
    use refined_model, only: refined_model_type
    use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
@@ -31,8 +34,7 @@ module refinement_error
    public :: find_change_by_refinement
 
    integer, parameter :: corrections = 4            !! solutions of the increment
-   integer, parameter :: smoothing_steps = 12        !! steps of conjugate gradients before each
-   real(dp), parameter :: tolerance = 1.0e-6_dp     !! of the fixed point; errors are far larger
+   integer, parameter :: smoothing_steps = 12       !! steps of conjugate gradients before each
 
    !> The fields of both meshes as they are corrected.
    type :: corrected_type
@@ -40,6 +42,10 @@ module refinement_error
       real(dp), allocatable :: displacement(:)      !! (2 nodes) on the new one [length]
       real(dp), allocatable :: temperature(:)       !! (nodes) likewise [temperature]
       type(refined_pairs_type) :: pairs             !! its pairs
+      logical, allocatable :: moves(:)              !! (2 nodes) displacements that are smoothed
+      logical, allocatable :: warms(:)              !! (nodes) temperatures that are
+      type(sparse_matrix_type) :: film              !! (nodes, nodes) F [power/temperature]
+      type(sparse_matrix_type) :: conduction        !! (nodes, nodes) K + F [power/temperature]
    end type corrected_type
 
 contains
@@ -69,13 +75,16 @@ contains
       call refined%assemble(solves_mechanics(step%analysis), solves_heat(step%analysis), &
          allocated(operators%thermal_load%value))
       call refined%loads%move_to(clock, refined%model)
-      estimate_step = step
+      estimate_step = companion_step(step)
       estimate_step%scheme = implicit_scheme
-      estimate_step%start = start_type()
-      estimate_step%fixed_point%finds_gain = .false.
-      estimate_step%fixed_point%tolerance = max(tolerance, step%fixed_point%tolerance)
       fields%coarse = next
+      ! Old pairs move by the solutions on the old mesh alone, which keep their conditions.
+      fields%moves = .not. (refined%prolong_set(loads%displacement%active, 2) .or. &
+         refined%at_old_pair)
       if (solves_heat(step%analysis)) then
+         fields%warms = .not. refined%prolong_set(loads%temperature%active, 1)
+         fields%film = refined%loads%film_matrix()
+         fields%conduction = refined%conduction_with(fields%film)
          call operators%set_film(next%film, model, error)
          if (allocated(error)) return
       end if
@@ -85,14 +94,14 @@ contains
          if (allocated(error)) return
          call recover_fields(operators, loads, model, estimate_step, fields%coarse)
       end if
-      call quantities_of_state(operators, fields%coarse, fields%coarse%omega, values)
+      call quantities_of_state(operators, fields%coarse, implicit_scheme, values)
       fields%displacement = refined%prolong(fields%coarse%displacement, 2)
       fields%temperature = refined%prolong(fields%coarse%temperature, 1)
       call fields%pairs%begin(refined, kept_contact(fields%coarse%contact, &
          fields%coarse%has_mechanics))
       before = previous
       do k = 1, corrections
-         call smooth(refined, loads, estimate_step, fields)
+         call smooth(refined, estimate_step, fields)
          ! The fixed point starts from the last solution; the implicit scheme takes nothing else
          ! of the conductances before.
          before%omega = fields%coarse%omega
@@ -100,20 +109,18 @@ contains
          call correct(refined, operators, loads, model, estimate_step, before, next, fields, error)
          if (allocated(error)) return
       end do
-      call smooth(refined, loads, estimate_step, fields)
+      call smooth(refined, estimate_step, fields)
       call measure(refined, fields, change)
       change = change - values
    end subroutine find_change_by_refinement
 
    !> Smooths displacements and temperatures of the new mesh.
-   subroutine smooth(refined, loads, step, fields)
+   subroutine smooth(refined, step, fields)
       type(refined_model_type), intent(in) :: refined
-      type(loads_type), intent(in) :: loads
       type(step_type), intent(in) :: step
       type(corrected_type), intent(inout) :: fields
       type(joint_type), allocatable :: joints(:)
       real(dp), allocatable :: load(:)
-      type(sparse_matrix_type) :: conduction
 
       associate (pairs => fields%pairs, u => fields%displacement, t => fields%temperature)
          call pairs%take_old(refined, kept_contact(fields%coarse%contact, &
@@ -122,18 +129,16 @@ contains
             call pairs%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, 2), &
                joints)
             load = mechanical_load(refined, fields)
-            call relax(refined%stiffness, joints, load + pairs%slip_forces(refined), .not. &
-               (refined%prolong_set(loads%displacement%active, 2) .or. refined%at_old_pair), &
-               smoothing_steps, u)
+            call relax(refined%stiffness, joints, load + pairs%slip_forces(refined), &
+               fields%moves, smoothing_steps, u)
             call pairs%update(refined, u, load - refined%stiffness%multiply(u))
             call pairs%take_old(refined, fields%coarse%contact)
          end if
          if (solves_heat(step%analysis)) then
             call pairs%conduct(refined, fields%coarse%omega, fields%coarse%resting)
-            conduction = refined%conduction_with(refined%loads%film_matrix())
             call pairs%conducting_joints(refined, joints)
-            call relax(conduction, joints, refined%loads%heat_load(), &
-               .not. refined%prolong_set(loads%temperature%active, 1), smoothing_steps, t)
+            call relax(fields%conduction, joints, refined%loads%heat_load(), fields%warms, &
+               smoothing_steps, t)
          end if
       end associate
    end subroutine smooth
@@ -189,18 +194,11 @@ contains
       type(solution_state_type), intent(in) :: coarse
       real(dp), intent(in) :: temperature(:)
       real(dp) :: heat(size(temperature))
-      real(dp) :: rate
-      integer :: k
 
-      heat = operators%thermal%matrix%multiply(temperature)
-      if (allocated(coarse%film%value)) heat = heat + coarse%film%multiply(temperature)
-      do k = 1, size(coarse%omega)
-         associate (s => operators%pairs%slave(k), m => operators%pairs%master(k))
-            rate = operators%pairs%weight(k)*coarse%omega(k)*(temperature(s) - temperature(m))
-            heat(s) = heat(s) + rate
-            heat(m) = heat(m) - rate
-         end associate
-      end do
+      associate (pairs => operators%pairs, t => temperature)
+         heat = heat_residual(operators%thermal%matrix%multiply(t), net_heat(0.0_dp*t, &
+            coarse%film, t), pairs, pairs%weight*coarse%omega*(t(pairs%slave) - t(pairs%master)))
+      end associate
    end function heat_taken
 
    !> Q - K T - F T - what the pairs take, on the new mesh.
@@ -208,20 +206,12 @@ contains
       type(refined_model_type), intent(in) :: refined
       type(corrected_type), intent(in) :: fields
       real(dp) :: residual(size(fields%temperature))
-      type(sparse_matrix_type) :: film
-      real(dp) :: rates(size(refined%old_pair))
-      integer :: k
 
-      film = refined%loads%film_matrix()
-      residual = refined%loads%heat_load() - refined%conduction%multiply(fields%temperature)
-      if (allocated(film%value)) residual = residual - film%multiply(fields%temperature)
-      rates = fields%pairs%heat(refined%pairs, fields%temperature)
-      do k = 1, size(rates)
-         associate (s => refined%pairs%slave(k), m => refined%pairs%master(k))
-            residual(s) = residual(s) - rates(k)
-            residual(m) = residual(m) + rates(k)
-         end associate
-      end do
+      associate (t => fields%temperature)
+         residual = -heat_residual(refined%conduction%multiply(t), &
+            net_heat(refined%loads%heat_load(), fields%film, t), refined%pairs, &
+            fields%pairs%heat(refined%pairs, t))
+      end associate
    end function heat_out_of_balance
 
    !> The quantities on the new mesh.
@@ -244,8 +234,8 @@ contains
                merge(pairs%force(first:last), 0.0_dp, closed), &
                merge(pairs%shear_force(first:last), 0.0_dp, closed), rates(first:last))
             ! What the old mesh lacks at open pairs, the new ones about them carry.
-            values(1, i) = sum(pairs%force(first:last))
-            values(2, i) = sum(pairs%shear_force(first:last))
+            values(at_normal_force, i) = sum(pairs%force(first:last))
+            values(at_shear_force, i) = sum(pairs%shear_force(first:last))
          end do
       end associate
    end subroutine measure

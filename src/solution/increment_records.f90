@@ -17,8 +17,7 @@ module increment_records
    use mesh, only: extent_of
    use model, only: model_type
    use records, only: contact_record_type, error_record_type, increment_record_type, status_open
-   use scheme_properties, only: is_explicit
-   use solution_state, only: solution_state_type
+   use solution_state, only: carrying_conductance, solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use text, only: append, to_text
    use zone_edges, only: contact_edges, stick_edges
@@ -53,7 +52,7 @@ contains
       recovers = needs_recovery(record, model)
       if (solves_mechanics(step%analysis)) call settle_slip(operators, previous, next)
       next%smallest_gap = min(previous%smallest_gap, next%contact%gap)
-      carrying = merge(next%omega_start, next%omega, is_explicit(step%scheme))
+      carrying = carrying_conductance(next, step%scheme)
       allocate (record%contacts(size(operators%interfaces)))
       do i = 1, size(operators%interfaces)
          record%contacts(i) = contact_record(operators, solves_heat(step%analysis), i, next, &

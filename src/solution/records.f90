@@ -10,6 +10,8 @@ module records
    public :: field_record_type, work_record_type, attempt_record_type, error_record_type
    public :: add_attempts, note_failure
    public :: interface_errors_type, estimated_quantities, estimated_names, is_band
+   public :: at_normal_force, at_shear_force, at_heat_rate, at_peak_pressure, at_edge_contact, &
+      at_edge_stick
    public :: status_open, status_slip, status_stick, edges_kept
 
    integer, parameter :: status_open = 0    !! gap, zone I
@@ -18,6 +20,9 @@ module records
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
    integer, parameter :: estimated_quantities = 6   !! quantities with an estimated error
+   ! Their places in arrays over them.
+   integer, parameter :: at_normal_force = 1, at_shear_force = 2, at_heat_rate = 3
+   integer, parameter :: at_peak_pressure = 4, at_edge_contact = 5, at_edge_stick = 6
    character(13), parameter :: estimated_names(estimated_quantities) = [character(13) :: &
       'normal_force', 'shear_force', 'heat_rate', 'peak_pressure', 'edge_contact', &
       'edge_stick']   !! in the order of interface_errors_type

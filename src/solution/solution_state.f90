@@ -1,12 +1,14 @@
 !> What changes from increment to increment.
 module solution_state
    use contact_states, only: contact_state_type
+   use controls, only: thermal_scheme_type
    use kinds, only: dp
+   use scheme_properties, only: is_explicit
    use records, only: error_record_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
-   public :: solution_state_type
+   public :: solution_state_type, carrying_conductance
 
    !> State at the end of an increment.
    type :: solution_state_type
@@ -34,5 +36,18 @@ module solution_state
       !> Whether the last increment solved heat by a scheme that keeps an imbalance for ever.
       logical :: keeps_imbalance = .false.
    end type solution_state_type
+
+contains
+
+   !> The conductances by which heat crosses in an increment: explicit schemes take those of its
+   !> start.
+   pure function carrying_conductance(state, scheme) result(omega)
+      type(solution_state_type), intent(in) :: state    !! state at the end of the increment
+      type(thermal_scheme_type), intent(in) :: scheme   !! scheme of (3.4)
+      real(dp) :: omega(size(state%omega))              !! (m) [power/(length^2 temperature)]
+
+      omega = state%omega
+      if (is_explicit(scheme)) omega = state%omega_start
+   end function carrying_conductance
 
 end module solution_state

@@ -59,7 +59,7 @@ PARTS = {
                                   "loose_motions"},
     "films": {"films", "loads:film_matrix", "loads:integrate_films"},
     "estimated errors": {
-        "doubled_increments", "error_estimator", "interface_quantities", "linked_relaxation",
+        "companion_steps", "doubled_increments", "error_estimator", "interface_quantities", "linked_relaxation",
         "refined_model", "refined_pairs", "refinement_error",
     },
     "refinement": {"load_refinement", "mesh_division", "refinement"},
