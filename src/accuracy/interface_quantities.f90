@@ -1,13 +1,13 @@
 !> The global quantities of an interface whose errors are estimated.
 module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use axis_limits, only: tractions
    use contact_pairs, only: contact_pairs_type
    use controls, only: thermal_scheme_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
+   use pair_tractions, only: pressures, shears
    use records, only: at_edge_contact, at_edge_stick, at_heat_rate, at_normal_force, &
-      at_peak_pressure, at_shear_force, edges_kept, estimated_quantities
+      at_peak_pressure, at_shear_force, edges_kept, estimated_quantities, status_open
    use solution_state, only: carrying_conductance, solution_state_type
    use zone_edges, only: contact_edges, stick_edges
    implicit none
@@ -34,8 +34,8 @@ contains
       real(dp) :: values(estimated_quantities)        !! [force], [power], [stress], [length]
       real(dp) :: edges(edges_kept), pressure(size(force)), shear(size(force))
 
-      pressure = tractions(force, pairs%weight, pairs%position(1, :), even=.true.)
-      shear = tractions(shear_force, pairs%weight, pairs%position(1, :), even=.false.)
+      pressure = pressures(pairs, force, status /= status_open)
+      shear = shears(pairs, shear_force, status /= status_open, friction, pressure)
       values(at_normal_force) = sum(force)
       values(at_shear_force) = sum(shear_force)
       values(at_heat_rate) = sum(heat)

@@ -7,8 +7,12 @@ module chain_geometry
    implicit none
    private
    public :: arc_lengths, edge_lengths, tributary_lengths, tributary_rings, chain_tangents
+   public :: at_tips
 
    real(dp), parameter :: two_pi = 6.283185307179586477_dp
+   !> Slope of a side at its end, over the chord, that counts as 0. The side turns away from such a
+   !> slope within the square of this part of its length.
+   real(dp), parameter :: no_slope = 1.0e-3_dp
 
 contains
 
@@ -118,21 +122,68 @@ contains
       end do
    end function integrals
 
+   !> Corners that are the tip of all sides that meet there: these have quarter points, and the
+   !> integral of the corner's shape function along the line is 0.
+   pure function at_tips(x, side_nodes, closed) result(tip)
+      real(dp), intent(in) :: x(:, :)      !! (2, nodes) the line [length]
+      integer, intent(in) :: side_nodes    !! nodes of a side, 2 or 3
+      logical, intent(in) :: closed        !! whether it is a ring
+      logical :: tip(size(x, 2))           !! (nodes)
+      integer :: place(side_nodes), q, side
+
+      tip = side_nodes == 3
+      do side = 1, side_total(size(x, 2), side_nodes, closed)
+         place = places(side, side_nodes, size(x, 2))
+         do q = 1, side_nodes
+            tip(place(q)) = tip(place(q)) .and. is_tip(x(:, place), q)
+         end do
+      end do
+   end function at_tips
+
+   !> Whether a side has no slope at one of its nodes: the end next to a quarter point.
+   pure logical function is_tip(x, node)
+      real(dp), intent(in) :: x(:, :)
+      integer, intent(in) :: node
+
+      associate (chord => x(:, size(x, 2)) - x(:, 1))
+         is_tip = abs(dot_product(slope_at(x, node), chord)) <= no_slope*dot_product(chord, chord)
+      end associate
+   end function is_tip
+
+   !> Derivative of a side at one of its nodes.
+   pure function slope_at(x, node) result(slope)
+      real(dp), intent(in) :: x(:, :)
+      integer, intent(in) :: node
+      real(dp) :: slope(2)
+
+      slope = matmul(x, side_slope(size(x, 2), 2*(node - 1.0_dp)/(size(x, 2) - 1) - 1))
+   end function slope_at
+
+   !> Direction of a side at one of its nodes. At a tip it is the limit, that of the way to the
+   !> quarter point.
+   pure function direction_at(x, node) result(along)
+      real(dp), intent(in) :: x(:, :)
+      integer, intent(in) :: node
+      real(dp) :: along(2)
+
+      along = slope_at(x, node)
+      if (is_tip(x, node)) along = (x(:, 2) - x(:, node))*(2 - node)
+      along = along/norm2(along)
+   end function direction_at
+
    !> Unit tangents at the nodes along the line; at a shared corner the direction midway.
    pure function chain_tangents(x, side_nodes, closed) result(tangent)
       real(dp), intent(in) :: x(:, :)      !! (2, nodes) the line [length]
       integer, intent(in) :: side_nodes    !! nodes of a side, 2 or 3
       logical, intent(in) :: closed        !! whether it is a ring
       real(dp) :: tangent(2, size(x, 2))   !! (2, nodes)
-      real(dp) :: along(2)
       integer :: place(side_nodes), node, q, side
 
       tangent = 0.0_dp
       do side = 1, side_total(size(x, 2), side_nodes, closed)
          place = places(side, side_nodes, size(x, 2))
          do q = 1, side_nodes
-            along = matmul(x(:, place), side_slope(side_nodes, 2*(q - 1.0_dp)/(side_nodes - 1) - 1))
-            tangent(:, place(q)) = tangent(:, place(q)) + along/norm2(along)
+            tangent(:, place(q)) = tangent(:, place(q)) + direction_at(x(:, place), q)
          end do
       end do
       do node = 1, size(x, 2)

@@ -1,7 +1,7 @@
 !> Contact node pairs: geometry, normals and tributary areas, taken once from the undeformed mesh.
 module contact_pairs
-   use chain_geometry, only: arc_lengths, chain_tangents, edge_lengths, tributary_lengths, &
-      tributary_rings
+   use chain_geometry, only: arc_lengths, at_tips, chain_tangents, edge_lengths, &
+      tributary_lengths, tributary_rings
    use contact_definitions, only: contact_definition_type
    use element_kinds, only: axisymmetric
    use errors, only: error_type
@@ -11,9 +11,9 @@ module contact_pairs
    use surface_chains, only: chain_faces, precedes, surface_chain_type
    implicit none
    private
-   public :: contact_pairs_type, make_pairs, never_approached
+   public :: contact_pairs_type, make_pairs, never_approached, on_axis
 
-   real(dp), parameter :: on_axis = 1.0e-9_dp    !! part of the largest radius that counts as 0
+   real(dp), parameter :: no_radius = 1.0e-9_dp  !! part of the largest radius that counts as 0
    real(dp), parameter :: weightless = 0.01_dp   !! part of its neighbour's weight below which the
    !! corner on the axis has none
    real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
@@ -27,13 +27,14 @@ module contact_pairs
       real(dp), allocatable :: position(:, :)  !! (2, m) undeformed slave [length]
       real(dp), allocatable :: arc_length(:)   !! (m) s from the first pair [length]
       !> (m) tributary length times thickness, axisymmetric times 2 pi r; 0 where three-node sides
-      !> give the axis none [length^2]
+      !> give the axis or the tip of quarter points none [length^2]
       real(dp), allocatable :: weight(:)
       real(dp), allocatable :: normal(:, :)    !! (2, m) common unit normal, outward from the slave
       real(dp), allocatable :: tangent(:, :)   !! (2, m) unit tangent towards growing s
       real(dp), allocatable :: initial_gap(:)  !! (m) h [length]
       real(dp), allocatable :: edge(:)         !! (m) longest side of the slave there [length]
       integer :: side_nodes = 2                !! nodes of a side, 2 or 3
+      logical :: about_axis = .false.          !! whether the model is axisymmetric
    end type contact_pairs_type
 
 contains
@@ -49,7 +50,7 @@ contains
       type(contact_pairs_type), intent(out) :: pairs          !! the pairs
       type(error_type), allocatable, intent(out) :: error     !! see above
       type(surface_chain_type) :: slave, master
-      logical :: about_axis, turned_slave, turned_master
+      logical :: turned_slave, turned_master
       integer :: first, last
 
       pairs%name = definition%name
@@ -64,8 +65,8 @@ contains
          if (allocated(error)) return
          pairs%slave_node = slave%nodes
          pairs%master_node = master%nodes
-         about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
-         call set_weights(mesh, slave, master, thickness, about_axis, pairs%weight)
+         pairs%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
+         call set_weights(mesh, slave, master, thickness, pairs%about_axis, pairs%weight)
       end associate
       first = 1
       last = size(slave%nodes)
@@ -78,7 +79,7 @@ contains
       pairs%side_nodes = slave%side_nodes
       pairs%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       call cut_ends(first, last, pairs)
-      call check_weights(mesh, pairs%name, pairs%slave_node, pairs%weight, about_axis, error)
+      call check_weights(mesh, pairs%name, pairs%slave_node, pairs%weight, error)
       if (allocated(error)) return
       call check_opposite(mesh, pairs%name, pairs%slave_node, pairs%master_node, &
          pairs%tangent, max(pairs%edge, abs(pairs%initial_gap)), error)
@@ -130,8 +131,19 @@ contains
       end associate
    end subroutine align
 
-   !> Weights on the line midway between the faces. On three-node sides the integral for a corner on
-   !> the axis vanishes but for the curvature of the side; what that leaves goes to its neighbour.
+   !> Whether a pair lies on the axis of an axisymmetric model.
+   elemental logical function on_axis(pairs, k)
+      type(contact_pairs_type), intent(in) :: pairs  !! pairs of one interface
+      integer, intent(in) :: k                       !! one of them
+
+      on_axis = .false.
+      if (pairs%about_axis) on_axis = abs(pairs%position(1, k)) <= &
+         no_radius*maxval(abs(pairs%position(1, :)))
+   end function on_axis
+
+   !> Weights on the line midway between the faces. On three-node sides the integral vanishes for a
+   !> corner on the axis but for the curvature of the side, and at the tip of quarter points but for
+   !> the radius; what these leave goes to the neighbours.
    subroutine set_weights(mesh, slave, master, thickness, about_axis, weight)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(in) :: slave, master
@@ -139,25 +151,37 @@ contains
       logical, intent(in) :: about_axis
       real(dp), allocatable, intent(out) :: weight(:)
       real(dp) :: middle(2, size(slave%nodes))
-      integer :: finish, k, neighbour, n
+      logical :: without(size(slave%nodes))
+      integer :: k, n
+      integer, allocatable :: beside(:)
 
       n = size(slave%nodes)
       middle = 0.5_dp*(mesh%coordinates(:, slave%nodes) + mesh%coordinates(:, master%nodes))
-      if (.not. about_axis) then
+      without = at_tips(middle, slave%side_nodes, slave%closed)
+      if (about_axis) then
+         weight = tributary_rings(middle, slave%side_nodes, slave%closed)
+         if (slave%side_nodes == 3 .and. .not. slave%closed) then
+            without(1) = without(1) .or. is_bare(1, 2)
+            without(n) = without(n) .or. is_bare(n, n - 1)
+         end if
+      else
          weight = thickness*tributary_lengths(middle, slave%side_nodes, slave%closed)
-         return
       end if
-      weight = tributary_rings(middle, slave%side_nodes, slave%closed)
-      if (slave%closed .or. slave%side_nodes == 2) return
-      do finish = 1, 2
-         k = merge(1, n, finish == 1)
-         neighbour = merge(2, n - 1, finish == 1)
-         if (maxval(abs(mesh%coordinates(1, [slave%nodes(k), master%nodes(k)]))) > &
-            on_axis*maxval(abs(middle(1, :)))) cycle
-         if (abs(weight(k)) >= weightless*abs(weight(neighbour))) cycle
-         weight(neighbour) = weight(neighbour) + weight(k)
+      do k = 1, n
+         if (.not. without(k)) cycle
+         beside = modulo([k - 1, k + 1] - 1, n) + 1
+         if (.not. slave%closed) beside = pack(beside, abs(beside - k) == 1)
+         weight(beside) = weight(beside) + weight(k)/size(beside)
          weight(k) = 0.0_dp
       end do
+   contains
+      pure logical function is_bare(corner, neighbour)
+         integer, intent(in) :: corner, neighbour
+
+         is_bare = maxval(abs(mesh%coordinates(1, [slave%nodes(corner), master%nodes(corner)]))) &
+            <= no_radius*maxval(abs(middle(1, :))) .and. &
+            abs(weight(corner)) < weightless*abs(weight(neighbour))
+      end function is_bare
    end subroutine set_weights
 
    !> Positions, arc length, common tangents and normals, and gaps. An unturned line has its body on

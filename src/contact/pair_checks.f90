@@ -142,16 +142,16 @@ contains
       end associate
    end subroutine check_sides
 
-   !> Every node has a weight; 0 is that of a corner on the axis.
-   subroutine check_weights(mesh, name, slave, weight, about_axis, error)
+   !> No node has a negative weight; 0 is that of a corner on the axis or at the tip of quarter
+   !> points.
+   subroutine check_weights(mesh, name, slave, weight, error)
       type(mesh_type), intent(in) :: mesh                 !! the mesh
       character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
       integer, intent(in) :: slave(:)                     !! (m) slave nodes
       real(dp), intent(in) :: weight(:)                   !! (m) [length^2]
-      logical, intent(in) :: about_axis                   !! whether the model is axisymmetric
       type(error_type), allocatable, intent(out) :: error !! the node with the smallest weight
 
-      if (all(weight > 0.0_dp .or. (about_axis .and. weight >= 0.0_dp))) return
+      if (all(weight >= 0.0_dp)) return
       call set_error(error, status_deck, 'contact pair '//name// &
          ': no length of the face belongs to slave node '// &
          to_text(mesh%node_number(slave(minloc(weight, dim=1))))// &

@@ -1,7 +1,6 @@
 !> One pass of the contact operator U = chi H L of section 2: conductance -> temperature jumps ->
 !> contact state -> conductance, all on the pairs.
 module contact_operator
-   use axis_limits, only: tractions
    use closing_instant, only: solve_increment
    use conductance_laws, only: conductance, conductance_slope
    use contact_states, only: contact_state_type
@@ -10,6 +9,7 @@ module contact_operator
    use finite_values, only: check_finite
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
+   use pair_tractions, only: pressures
    use records, only: status_open, status_slip, work_record_type
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
@@ -135,8 +135,8 @@ contains
       do i = 1, size(operators%interfaces)
          first = operators%pairs%interface_start(i)
          last = operators%pairs%interface_start(i + 1) - 1
-         pressure(first:last) = tractions(state%force(first:last), &
-            operators%interfaces(i)%weight, operators%interfaces(i)%position(1, :), even=.true.)
+         pressure(first:last) = pressures(operators%interfaces(i), state%force(first:last), &
+            state%status(first:last) /= status_open)
       end do
    end function law_pressure
 

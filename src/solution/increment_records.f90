@@ -1,8 +1,8 @@
 !> The record of an accepted increment, made from its state.
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use axis_limits, only: tractions, with_axis_limit
    use balances, only: contact_violation, force_residual, imbalance
+   use conductance_laws, only: conductance
    use contact_operator, only: kept_contact, thermal_forces
    use contact_states, only: contact_state_type
    use contact_system, only: contact_system_type
@@ -16,7 +16,9 @@ module increment_records
    use loads, only: loads_type
    use mesh, only: extent_of
    use model, only: model_type
-   use records, only: contact_record_type, error_record_type, increment_record_type, status_open
+   use pair_tractions, only: in_contact, pressures, shears
+   use records, only: contact_record_type, error_record_type, increment_record_type, status_open, &
+      status_slip, status_stick
    use solution_state, only: carrying_conductance, solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use text, only: append, to_text
@@ -137,7 +139,8 @@ contains
    end subroutine settle_slip
 
    !> Instant at which a pair without a tangential unknown closed, as a fraction of the increment:
-   !> relieved of its force alone it would overlap by force/stiffness.
+   !> relieved of its force alone it would overlap by force/stiffness. One that carries no force, as
+   !> at rest, closes at the end.
    pure function closing_fraction(system, gap, force, place) result(fraction)
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: gap, force
@@ -145,7 +148,7 @@ contains
       real(dp) :: fraction
       real(dp) :: stiffness(1, 1)
 
-      fraction = 0.0_dp
+      fraction = merge(1.0_dp, 0.0_dp, gap > 0.0_dp)
       if (gap <= 0.0_dp .or. force <= 0.0_dp) return
       ! Zero where the pair alone holds a body, but for rounding: it then closes at once.
       stiffness = max(system%stiffness([place]), 0.0_dp)
@@ -161,7 +164,8 @@ contains
       real(dp), intent(in) :: carrying(:)
       type(contact_record_type) :: record
       type(contact_state_type) :: contact
-      integer :: first, last
+      logical :: closed(size(operators%interfaces(i)%slave_node)), touches(size(closed))
+      integer :: first, k, last
 
       first = operators%pairs%interface_start(i)
       last = operators%pairs%interface_start(i + 1) - 1
@@ -170,10 +174,16 @@ contains
          record%status = contact%status(first:last)
          record%gap = contact%gap(first:last)
          record%smallest_gap = next%smallest_gap(first:last)
-         record%pressure = tractions(contact%force(first:last), pairs%weight, &
-            pairs%position(1, :), even=.true.)
-         record%shear = tractions(contact%shear_force(first:last), pairs%weight, &
-            pairs%position(1, :), even=.false.)
+         closed = in_contact(pairs, record%status /= status_open, record%gap)
+         touches = closed .and. record%status == status_open
+         where (touches)
+            record%status = merge(status_stick, status_slip, &
+               operators%pairs%friction(first:last) > 0.0_dp)
+            record%gap = 0.0_dp
+         end where
+         record%pressure = pressures(pairs, contact%force(first:last), closed)
+         record%shear = shears(pairs, contact%shear_force(first:last), closed, &
+            operators%pairs%friction(first), record%pressure)
          record%slip = contact%tangential(first:last) - next%closing(first:last)
          record%normal_force = sum(contact%force(first:last))
          record%shear_force = sum(contact%shear_force(first:last))
@@ -188,8 +198,11 @@ contains
          end if
          if (.not. with_heat) return
          record%conductance = carrying(first:last)
-         record%heat_flux = with_axis_limit(carrying(first:last)*next%jump(first:last), &
-            pairs%weight, pairs%position(1, :), even=.true.)
+         do k = 1, size(touches)
+            if (touches(k)) record%conductance(k) = conductance( &
+               operators%pairs%law(first - 1 + k), .true., 0.0_dp, record%pressure(k))
+         end do
+         record%heat_flux = record%conductance*next%jump(first:last)
          record%heat_rate = sum(pairs%weight*record%heat_flux)
       end associate
    end function contact_record

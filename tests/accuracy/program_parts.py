@@ -2,7 +2,7 @@
 that all decks need, which exist for that part only."""
 
 CONTACT_FOLDER = {
-    "active_set", "axis_limits", "chain_geometry", "closing_instant", "closing_path",
+    "active_set", "pair_tractions", "chain_geometry", "closing_instant", "closing_path",
     "contact_pairs", "contact_states", "contact_system", "contact_tangent", "friction",
     "loose_motions", "pair_checks", "pair_rings", "pair_warnings", "ring_links", "surface_chains",
     "zone_edges",
@@ -31,7 +31,7 @@ PARTS = {
     },
     "mechanics": CONTACT_FOLDER - {
         # Pairs conduct, whether bodies move or not: these make them and their results.
-        "axis_limits", "chain_geometry", "contact_pairs", "pair_checks", "pair_rings",
+        "pair_tractions", "chain_geometry", "contact_pairs", "pair_checks", "pair_rings",
         "pair_warnings", "ring_links", "surface_chains", "zone_edges"} | {
         "balances:contact_violation", "balances:force_residual", "contact_reduction",
         "element_elasticity", "element_fields:element_stress", "field_recovery:recover_stress",

@@ -175,6 +175,80 @@ def bent(count, plane, slope):
         "gap": crack.bent_opening(outside, HALF, slope, YOUNG, POISSON, plane)}, (inside, outside)
 
 
+def pressed(side, plane, stress, tip):
+    """Return two blocks of square elements that touch on y = 0 but for a lens -a < x < a, which is
+    twice as high as the stress far away closes it; the lens is a crack that a compression narrows.
+
+    Elements about its tips have their midside nodes at `tip` of their sides, from there.
+    """
+    flat = crack.widest(HALF, stress, YOUNG, POISSON, plane)
+    count = round(HALF / side)
+
+    def block(sign):
+        def to(x, y):
+            for end in (-HALF, HALF):
+                if abs(abs(x - end) + abs(y) - side / 2) < 1e-9:
+                    x, y = end + 2 * tip * (x - end), 2 * tip * y
+            if y == 0.0 and abs(x) < HALF:
+                y = sign * flat * np.sqrt(1 - (x / HALF) ** 2)
+            return float(x), float(y)
+
+        xs = [k * HALF / count for k in range(-2 * count, 2 * count + 1)]
+        ys = sorted(sign * k * HALF / count for k in range(2 * count + 1))
+        return mesh("UP" if sign > 0 else "LOW", xs, ys, FAMILY[plane], 1 if sign > 0 else 100001,
+                    to=to)
+
+    deck = ["*SURFACE INTERACTION, NAME=SMOOTH",
+            "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=CRACK", "UP.BOTTOM, LOW.TOP",
+            "*STEP", "*STATIC", "1., 1."]
+    cards = []
+    for name, sign in (("UP", 1.0), ("LOW", -1.0)):
+        cards += [*block(sign), *material(name, (YOUNG, POISSON))]
+        outer = {n: p for n, p in nodes_of(block(sign)).items()
+                 if max(abs(p[0]), abs(p[1])) > 2 * HALF - 1e-9}
+        x, y = np.array(list(outer.values())).T
+        zeta = np.arccosh((np.abs(x) + 1j * np.abs(y)) / HALF)
+        u, v = crack.tension_displacement(zeta.real, zeta.imag, HALF, -stress, YOUNG, POISSON,
+                                          plane)
+        # The ends of the face are held along x only.
+        on_face = {f"{n}, 2, 2, " for n, p in outer.items() if abs(p[1]) < 1e-9}
+        deck += [card for card in prescribed(outer, u * np.sign(x), v * np.sign(y))
+                 if not card.startswith(tuple(on_face))]
+    return [*cards, *deck, "*END STEP"]
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_quarter_points_at_the_tips_of_a_crack_in_a_contact_face(tmp_path, plane):
+    """The gap narrows as an ellipse, and beside it the faces press as s x/sqrt(x^2 - a^2), without
+    bound at the tips: elements about them follow it with quarter points only."""
+    stress, errors = 5e-4, {}
+    for tip in (0.25, 0.5):
+        path = solve(write(tmp_path / "crack.inp", ["*OPTIONS, WIDTH=300"],
+                           pressed(HALF / 6, plane, stress, tip)))
+        with h5py.File(path) as file:
+            pairs = {name: values[-1] if name not in ("x", "weight") else values[:]
+                     for name, values in file["contact/CRACK"].items()}
+        x = pairs["x"]
+        inside, beside = np.abs(x) < HALF - 1e-9, np.abs(x) > HALF + 1e-9
+        assert not pairs["status"][inside].any()
+        assert pairs["status"][~inside].all()
+        assert pairs["weight"].sum() == pytest.approx(4 * HALF, rel=1e-9)
+        gap = crack.widest(HALF, stress, YOUNG, POISSON, plane) * np.sqrt(
+            1 - (x[inside] / HALF) ** 2)
+        pressure = stress * np.abs(x[beside]) / np.sqrt(x[beside] ** 2 - HALF**2)
+        errors[tip] = {
+            "gap": pairs["gap"][inside] / gap - 1, "pressure": pairs["pressure"][beside] / pressure
+            - 1, "force": pairs["normal_force"] / (2 * stress * HALF * np.sqrt(3)) - 1}
+        if tip == 0.25:
+            assert set(pairs["weight"][~inside & ~beside]) == {0.0}
+    worst = {tip: {name: np.abs(values).max() for name, values in found.items()}
+             for tip, found in errors.items()}
+    assert worst[0.25]["gap"] < 0.04 < 0.12 < worst[0.5]["gap"]
+    assert worst[0.25]["pressure"] < 0.06 < 0.14 < worst[0.5]["pressure"]
+    assert worst[0.25]["force"] < 0.003 < 0.01 < worst[0.5]["force"]
+    assert abs(errors[0.25]["gap"][len(gap) // 2]) < 0.001
+
+
 def at_pair(pairs, name, x):
     """Return the value of the pair at x."""
     places = pairs["x"][:]

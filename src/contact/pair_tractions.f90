@@ -1,0 +1,122 @@
+!> Tractions from nodal forces, and their limits at pairs of weight 0: on the axis of an
+!> axisymmetric model, where a three-node side gives its corner the integral of N1 2 pi r, and at
+!> the tip of sides with quarter points.
+module pair_tractions
+   use contact_pairs, only: contact_pairs_type, on_axis
+   use kinds, only: dp
+   implicit none
+   private
+   public :: in_contact, pressures, shears
+
+   !> Part of the side's length below which a gap is rounding.
+   real(dp), parameter :: no_gap = 1.0e-12_dp
+
+contains
+
+   !> Pairs in contact. A pair of weight 0 under uniform pressure carries no force, so that rounding
+   !> alone says whether it is open: it is not, where it has no gap and the pairs beside it press.
+   pure function in_contact(pairs, closed, gap) result(contact)
+      type(contact_pairs_type), intent(in) :: pairs  !! pairs of one interface
+      logical, intent(in) :: closed(:)               !! (m) as the active set has them
+      real(dp), intent(in) :: gap(:)                 !! (m) [length]
+      logical :: contact(size(closed))               !! (m)
+      integer :: k
+
+      contact = closed
+      do k = 1, size(closed)
+         if (pairs%weight(k) > 0.0_dp .or. gap(k) > no_gap*pairs%edge(k)) cycle
+         contact(k) = closed(k) .or. any(closed(max(k - 1, 1):min(k + 1, size(closed))))
+      end do
+   end function in_contact
+
+   !> Nodal force over weight. A closed pair of weight 0 has the limit of the profile, no further
+   !> than 0 where the pairs beside it press; an open one has none.
+   pure function pressures(pairs, force, closed) result(pressure)
+      type(contact_pairs_type), intent(in) :: pairs  !! pairs of one interface
+      real(dp), intent(in) :: force(:)               !! (m) nodal forces, 0 at open pairs [force]
+      logical, intent(in) :: closed(:)               !! (m) pairs in contact
+      real(dp) :: pressure(size(force))              !! (m) [stress]
+      integer :: k
+
+      pressure = over_weight(pairs, force)
+      do k = 1, size(force)
+         if (closed(k) .and. pairs%weight(k) <= 0.0_dp) pressure(k) = limit(pairs, pressure, k)
+      end do
+   end function pressures
+
+   !> The same of friction. On the axis it vanishes; elsewhere the limit is no larger than the
+   !> friction that the limit of the pressure allows.
+   pure function shears(pairs, force, closed, friction, pressure) result(shear)
+      type(contact_pairs_type), intent(in) :: pairs  !! pairs of one interface
+      real(dp), intent(in) :: force(:)               !! (m) nodal forces, 0 at open pairs [force]
+      logical, intent(in) :: closed(:)               !! (m) pairs in contact
+      real(dp), intent(in) :: friction               !! mu [-]
+      real(dp), intent(in) :: pressure(:)            !! (m) as from pressures [stress]
+      real(dp) :: shear(size(force))                 !! (m) [stress]
+      integer :: k
+
+      shear = over_weight(pairs, force)
+      do k = 1, size(force)
+         if (pairs%weight(k) > 0.0_dp .or. .not. closed(k) .or. on_axis(pairs, k)) cycle
+         shear(k) = limit(pairs, shear, k)
+         shear(k) = sign(min(abs(shear(k)), friction*pressure(k)), shear(k))
+      end do
+   end function shears
+
+   !> Nodal force over weight, 0 where that is 0.
+   pure function over_weight(pairs, force) result(traction)
+      type(contact_pairs_type), intent(in) :: pairs
+      real(dp), intent(in) :: force(:)
+      real(dp) :: traction(size(force))
+
+      traction = 0.0_dp
+      where (pairs%weight > 0.0_dp) traction = force/pairs%weight
+   end function over_weight
+
+   !> Limit of a profile at pair k: the mean of those from the sides that meet there. With a single
+   !> neighbour it is that one's value, with none 0.
+   pure real(dp) function limit(pairs, values, k)
+      type(contact_pairs_type), intent(in) :: pairs
+      real(dp), intent(in) :: values(:)
+      integer, intent(in) :: k
+      integer :: sides, way
+
+      limit = 0.0_dp
+      sides = 0
+      do way = -1, 1, 2
+         if (k + way < 1 .or. k + way > size(values)) cycle
+         sides = sides + 1
+         if (k + 2*way < 1 .or. k + 2*way > size(values)) then
+            limit = limit + values(k + way)
+         else
+            limit = limit + continued(values(k + [way, 2*way]), coordinate(pairs, k, &
+               k + [way, 2*way]))
+         end if
+      end do
+      if (sides > 0) limit = limit/sides
+   end function limit
+
+   !> Coordinate from pair k in which a profile begins as a line: the square of the radius on the
+   !> axis, where a pressure is even; at the tip of sides with quarter points the root of the
+   !> distance, which is their own coordinate.
+   elemental real(dp) function coordinate(pairs, k, other)
+      type(contact_pairs_type), intent(in) :: pairs
+      integer, intent(in) :: k, other
+
+      if (on_axis(pairs, k)) then
+         coordinate = pairs%position(1, other)**2
+      else
+         coordinate = sqrt(abs(pairs%arc_length(other) - pairs%arc_length(k)))
+      end if
+   end function coordinate
+
+   !> The line through two values continued to 0, no further than 0 where both have one sign.
+   pure real(dp) function continued(values, place)
+      real(dp), intent(in) :: values(2), place(2)
+
+      continued = values(1) + (values(1) - values(2))*place(1)/(place(2) - place(1))
+      if (minval(values) >= 0.0_dp) continued = max(continued, 0.0_dp)
+      if (maxval(values) <= 0.0_dp) continued = min(continued, 0.0_dp)
+   end function continued
+
+end module pair_tractions
