@@ -131,7 +131,7 @@ contains
             joint%is_rigid = .true.
             joint%direction = reshape([pairs%normal(:, k), -pairs%normal(:, k)], [4, 1])
             joint%rest = [pairs%initial_gap(k)]
-            if (self%status(k) == status_slip) cycle
+            if (self%status(k) == status_slip .or. pairs%held_axis(k) > 0) cycle
             relative = displacement(s - 1:s) - displacement(m - 1:m)
             joint%direction = reshape([joint%direction, pairs%tangent(:, k), &
                -pairs%tangent(:, k)], [4, 2])
@@ -164,7 +164,7 @@ contains
       real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
       real(dp), intent(in) :: load(:) !! (2 nodes) forces that the pairs must hold [force]
       real(dp) :: relative(2), on_slave(2)
-      integer :: k
+      integer :: free, k
 
       do k = 1, size(self%status)
          if (refined%old_pair(k) > 0) cycle
@@ -178,8 +178,15 @@ contains
             else
                on_slave = 0.5_dp*(load(m - 1:m) - load(s - 1:s))
                self%gap(k) = 0.0_dp
-               self%force(k) = -dot_product(pairs%normal(:, k), on_slave)
-               self%shear_force(k) = dot_product(pairs%tangent(:, k), on_slave)
+               free = 3 - pairs%held_axis(k)
+               if (free < 3) then
+                  ! Supports take the rest, and friction with it.
+                  self%force(k) = -on_slave(free)/pairs%normal(free, k)
+                  self%shear_force(k) = 0.0_dp
+               else
+                  self%force(k) = -dot_product(pairs%normal(:, k), on_slave)
+                  self%shear_force(k) = dot_product(pairs%tangent(:, k), on_slave)
+               end if
                if (self%status(k) == status_slip) self%shear_force(k) = &
                   self%direction(k)*pairs%friction(k)*self%force(k)
             end if

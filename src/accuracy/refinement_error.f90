@@ -22,6 +22,7 @@ module refinement_error
    use load_courses, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
+   use pair_rows, only: find_held_axes
    use refined_pairs, only: refined_pairs_type
    use records, only: at_normal_force, at_shear_force, increment_record_type, status_open
    use refined_model, only: refined_model_type
@@ -78,6 +79,7 @@ contains
       estimate_step = companion_step(step)
       estimate_step%scheme = implicit_scheme
       fields%coarse = next
+      call find_held_axes(refined%pairs, refined%prolong_set(loads%displacement%active, 2))
       ! Old pairs move by the solutions on the old mesh alone, which keep their conditions.
       fields%moves = .not. (refined%prolong_set(loads%displacement%active, 2) .or. &
          refined%at_old_pair)

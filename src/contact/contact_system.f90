@@ -41,7 +41,8 @@ module contact_system
       integer, allocatable :: normal(:)           !! (m) place of d_n on the tail
       integer, allocatable :: tangent(:) !! (m) place of d_t, 0 without friction or held
       real(dp), allocatable :: schur(:, :)        !! (tail, tail) S [force/length]
-      real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
+      !> (m) h less the part of d_n that supports prescribe, which is no part of d_n here [length]
+      real(dp), allocatable :: initial_gap(:)
       real(dp), allocatable :: friction(:)        !! (m) mu [-]
       type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing pairs
       real(dp), allocatable :: give(:) !! (m) of stuck pairs, not zero in rings [length/force]

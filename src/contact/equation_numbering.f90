@@ -8,17 +8,20 @@ module equation_numbering
    use ring_links, only: ring_link_type
    implicit none
    private
-   public :: make_map
+   public :: make_map, least_slant
 
-   real(dp), parameter :: aligned = 1.0_dp - 1.0e-9_dp !! cosine of an aligned frame
+   !> Component of a normal along the only free axis that is rounding: the normal motion of such a
+   !> pair is prescribed.
+   real(dp), parameter :: least_slant = 1.0e-9_dp
    !> Sum of direction cosines that is rounding, where a walk round a ring comes back.
    real(dp), parameter :: negligible = 1.0e-14_dp
 
 contains
 
-   !> Numbers the unknowns. Degree of freedom c of node i is components*(i - 1) + c.
-   !> Error: a pair whose normal motion, component 1, is prescribed on both nodes, or whose motion
-   !> is prescribed on both nodes along a direction that is neither normal nor tangent.
+   !> Numbers the unknowns. Degree of freedom c of node i is components*(i - 1) + c. Where both
+   !> nodes of a pair are prescribed along one axis, its relative value along the normal is the part
+   !> that the motion along the other axis adds, and it has none along the tangent.
+   !> Error: a pair whose normal motion is prescribed on both nodes.
    subroutine make_map(used, prescribed, slave, master, frame, on_tail, map, error, slave_leads)
       logical, intent(in) :: used(:)                      !! (nodes) whether a node carries unknowns
       logical, intent(in) :: prescribed(:)                !! (dofs) prescribed values
@@ -31,12 +34,13 @@ contains
       !> (m) whether the slave is to lead where neither node is prescribed; else the master does.
       logical, intent(in), optional :: slave_leads(:)
       logical :: closes(size(slave)), held(size(frame, 1), size(slave)), leads(size(slave))
+      real(dp) :: ways(size(frame, 1), size(frame, 2), size(slave))
       integer :: components, k, tied(size(slave)), twins
 
       leads = .false.
       if (present(slave_leads)) leads = slave_leads
 
-      call find_held(prescribed, slave, master, frame, held, error)
+      call find_ways(prescribed, slave, master, frame, held, ways, error)
       if (allocated(error)) return
       components = size(frame, 1)
       closes = close_rings(slave, master, reshape(prescribed, [components, size(used)]))
@@ -48,7 +52,7 @@ contains
          tied(k) = size(used) + twins
       end do
       call tie_nodes(map, [used, spread(.true., 1, twins)], &
-         [prescribed, spread(.false., 1, components*twins)], tied, master, frame, held, &
+         [prescribed, spread(.false., 1, components*twins)], tied, master, ways, held, &
          on_tail, closes, leads)
       call make_links(map, slave, master, tied, components)
    end subroutine make_map
@@ -168,31 +172,39 @@ contains
       map%coefficient(1, dof) = 1.0_dp
    end subroutine own_unknown
 
-   !> Relative values that are prescribed, because both nodes are.
+   !> Relative values that are prescribed, because both nodes are, and the ways in which the other
+   !> ones move a slave: the columns of its frame, and for a pair with one free axis along this.
    !> Error: as make_map.
-   subroutine find_held(prescribed, slave, master, frame, held, error)
+   subroutine find_ways(prescribed, slave, master, frame, held, ways, error)
       logical, intent(in) :: prescribed(:)
       integer, intent(in) :: slave(:), master(:)
       real(dp), intent(in) :: frame(:, :, :)
       logical, intent(out) :: held(:, :)
+      real(dp), intent(out) :: ways(:, :, :)
       type(error_type), allocatable, intent(out) :: error
-      integer :: c, components, k
+      logical :: both(size(frame, 1))
+      integer :: c, components, free, k
 
       components = size(frame, 1)
       held = .false.
+      ways = frame
       do k = 1, size(slave)
-         do c = 1, components
-            if (.not. (prescribed(components*(slave(k) - 1) + c) .and. &
-               prescribed(components*(master(k) - 1) + c))) cycle
-            held(:, k) = held(:, k) .or. abs(frame(c, :, k)) > aligned
-            if (components > 1 .and. (held(1, k) .or. .not. held(components, k))) then
-               call set_error(error, status_deck, &
-                  'a contact pair whose normal motion is prescribed on both nodes')
-               return
-            end if
-         end do
+         both = [(prescribed(components*(slave(k) - 1) + c) .and. &
+            prescribed(components*(master(k) - 1) + c), c=1, components)]
+         if (.not. any(both)) cycle
+         held(components, k) = .true.
+         if (components == 1) cycle
+         free = findloc(both, .false., dim=1)
+         if (free > 0) held(1, k) = abs(frame(free, 1, k)) <= least_slant
+         if (free == 0 .or. held(1, k)) then
+            call set_error(error, status_deck, &
+               'a contact pair whose normal motion is prescribed on both nodes')
+            return
+         end if
+         ways(:, 1, k) = 0.0_dp
+         ways(free, 1, k) = 1.0_dp/frame(free, 1, k)
       end do
-   end subroutine find_held
+   end subroutine find_ways
 
    !> Numbers the relative values: first those that stay free, then the tail. On it the forces of
    !> the links stand behind the relative values that stiffness holds and before those of the pairs

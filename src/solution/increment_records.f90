@@ -16,6 +16,7 @@ module increment_records
    use loads, only: loads_type
    use mesh, only: extent_of
    use model, only: model_type
+   use pair_rows, only: tangential_position
    use pair_tractions, only: in_contact, pressures, shears
    use records, only: contact_record_type, error_record_type, increment_record_type, status_open, &
       status_slip, status_stick
@@ -108,26 +109,24 @@ contains
    end subroutine warn_of_floor
 
    !> Slip counts from the instant of closing. Tangential positions that the contact system does not
-   !> carry, of frictionless pairs, are taken from the recovered displacements, and such a pair
-   !> closes where it is at that instant on the straight line between its ends.
+   !> carry, of pairs that are frictionless or held, are taken from the recovered displacements, and
+   !> such a pair closes where it is at that instant on the straight line between its ends.
    pure subroutine settle_slip(operators, previous, next)
       type(interface_operators_type), intent(in) :: operators
       type(solution_state_type), intent(in) :: previous
       type(solution_state_type), intent(inout) :: next
-      real(dp) :: relative(2)
-      integer :: k, m, s
+      real(dp) :: before
+      integer :: k
 
       associate (pairs => operators%pairs, contact => next%contact)
          do k = 1, size(pairs%slave)
             if (operators%contact%tangent(k) == 0) then
-               s = 2*pairs%slave(k)
-               m = 2*pairs%master(k)
-               relative = next%displacement(s - 1:s) - next%displacement(m - 1:m)
-               contact%tangential(k) = dot_product(relative, pairs%tangent(:, k))
-               contact%reference(k) = previous%contact%tangential(k) + &
+               before = tangential_position(pairs, k, previous%displacement)
+               contact%tangential(k) = tangential_position(pairs, k, next%displacement)
+               contact%reference(k) = before + &
                   closing_fraction(operators%contact, previous%contact%gap(k), &
                   contact%force(k), operators%contact%normal(k))* &
-                  (contact%tangential(k) - previous%contact%tangential(k))
+                  (contact%tangential(k) - before)
             end if
             if (contact%status(k) == status_open) then
                next%closing(k) = contact%tangential(k)

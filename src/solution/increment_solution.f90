@@ -13,6 +13,7 @@ module increment_solution
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
+   use pair_rows, only: held_approach
    use records, only: increment_record_type, iteration_record_type, status_open
    use scheme_properties, only: is_explicit
    use scheme_start, only: warn_of_imbalance
@@ -217,6 +218,8 @@ contains
       call operators%mechanical%set_load(next%force_load + thermal, loads%displacement%value)
       call operators%mechanical%condense_load()
       data%welded_load = operators%mechanical%condensed
+      operators%contact%initial_gap = operators%pairs%initial_gap - &
+         held_approach(operators%pairs, loads%displacement%value)
    end subroutine load_mechanics
 
    !> Fields of the whole bodies, from the solution on the pairs.
@@ -237,7 +240,7 @@ contains
       end if
       allocate (on_tail(operators%mechanical%map%tail))
       on_tail(operators%contact%normal) = merge(next%contact%approach, &
-         operators%pairs%initial_gap - next%contact%gap, next%contact%status == status_open)
+         operators%contact%initial_gap - next%contact%gap, next%contact%status == status_open)
       do k = 1, size(next%contact%status)
          if (operators%contact%tangent(k) > 0) then
             on_tail(operators%contact%tangent(k)) = next%contact%tangential(k)

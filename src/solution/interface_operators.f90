@@ -13,7 +13,7 @@ module interface_operators
    use kinds, only: dp
    use mesh, only: extent_of
    use model, only: model_type
-   use pair_rows, only: align_frames, pair_row_type, pair_surfaces, row_of
+   use pair_rows, only: find_held_axes, pair_row_type, pair_surfaces, row_of
    use rigid_motions, only: unsupported_motions
    use ring_links, only: stiffness_alone
    use sparse_matrix, only: sparse_matrix_type
@@ -85,7 +85,7 @@ contains
       logical :: on_tail(2, size(self%pairs%slave))
 
       if (mechanics) then
-         call align_frames(self%pairs, held)
+         call find_held_axes(self%pairs, held)
          call unsupported_motions(model%mesh%coordinates, model%mesh%node_body, &
             bodies_on_axis(model%mesh), held, self%rigid)
       end if

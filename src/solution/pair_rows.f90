@@ -2,15 +2,14 @@
 module pair_rows
    use conductance_laws, only: conductance_law_type
    use contact_pairs, only: contact_pairs_type, make_pairs
+   use equation_numbering, only: least_slant
    use errors, only: error_type
    use kinds, only: dp
    use model, only: model_type
    implicit none
    private
-   public :: pair_row_type, pair_surfaces, row_of, align_frames, over_constrained
-
-   !> Cosine of a normal that counts as along an axis.
-   real(dp), parameter :: nearly_aligned = 0.99_dp
+   public :: pair_row_type, pair_surfaces, row_of
+   public :: find_held_axes, over_constrained, held_approach, tangential_position
 
    !> The pairs of all interfaces in one row.
    type :: pair_row_type
@@ -21,6 +20,9 @@ module pair_rows
       real(dp), allocatable :: friction(:)                    !! (m) mu [-]
       real(dp), allocatable :: normal(:, :), tangent(:, :)    !! (2, m) unit vectors
       type(conductance_law_type), allocatable :: law(:)       !! (m) conductance laws
+      !> (m) the axis, 1 or 2, along which supports hold both nodes, while they leave one of them
+      !> free along the other axis; else 0
+      integer, allocatable :: held_axis(:)
    end type pair_row_type
 
 contains
@@ -58,6 +60,7 @@ contains
       m = row%interface_start(size(interfaces) + 1) - 1
       allocate (row%slave(m), row%master(m), row%weight(m), row%initial_gap(m), row%friction(m), &
          row%normal(2, m), row%tangent(2, m), row%law(m))
+      allocate (row%held_axis(m), source=0)
       do i = 1, size(interfaces)
          first = row%interface_start(i)
          last = row%interface_start(i + 1) - 1
@@ -72,29 +75,23 @@ contains
       end do
    end function row_of
 
-   !> A pair that is held along one axis on both nodes, as on an axis of symmetry, moves along the
-   !> other one. Its normal, which a curved side gives only nearly so, is then taken along the axes.
-   pure subroutine align_frames(pairs, held)
+   !> Finds the pairs that supports hold along one axis on both nodes. Their contact condition
+   !> stays, along their own normal; the only relative motion that is free is the one along the
+   !> other axis.
+   pure subroutine find_held_axes(pairs, held)
       type(pair_row_type), intent(inout) :: pairs           !! all pairs
       logical, intent(in) :: held(:)                        !! (2 nodes) prescribed displacements
       logical :: both(2)
-      integer :: along, k
+      integer :: k
 
       do k = 1, size(pairs%slave)
-         both = held(2*pairs%slave(k) - 1:2*pairs%slave(k)) .and. &
-            held(2*pairs%master(k) - 1:2*pairs%master(k))
-         if (both(1) .eqv. both(2)) cycle
-         along = merge(2, 1, both(1))
-         if (abs(pairs%normal(along, k)) < nearly_aligned) cycle
-         pairs%normal(3 - along, k) = 0.0_dp
-         pairs%normal(along, k) = sign(1.0_dp, pairs%normal(along, k))
-         pairs%tangent(along, k) = 0.0_dp
-         pairs%tangent(3 - along, k) = sign(1.0_dp, pairs%tangent(3 - along, k))
+         both = on_both_nodes(pairs, held, k)
+         pairs%held_axis(k) = merge(merge(1, 2, both(1)), 0, both(1) .neqv. both(2))
       end do
-   end subroutine align_frames
+   end subroutine find_held_axes
 
-   !> Pairs whose normal motion is prescribed on both nodes, or their motion along a direction that
-   !> is neither their normal nor their tangent, once frames are aligned.
+   !> Pairs whose normal motion is prescribed: both nodes are held along both axes, or along the one
+   !> that is their normal.
    pure function over_constrained(pairs, held) result(too_much)
       type(pair_row_type), intent(in) :: pairs     !! the pairs
       logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
@@ -103,11 +100,55 @@ contains
       integer :: k
 
       do k = 1, size(pairs%slave)
-         both = held(2*pairs%slave(k) - 1:2*pairs%slave(k)) .and. &
-            held(2*pairs%master(k) - 1:2*pairs%master(k))
+         both = on_both_nodes(pairs, held, k)
          too_much(k) = any(both) .and. (all(both) .or. &
-            abs(pairs%normal(merge(2, 1, both(1)), k)) < nearly_aligned)
+            abs(pairs%normal(merge(2, 1, both(1)), k)) <= least_slant)
       end do
    end function over_constrained
+
+   !> Axes along which both nodes of a pair are held.
+   pure function on_both_nodes(pairs, held, k) result(both)
+      type(pair_row_type), intent(in) :: pairs
+      logical, intent(in) :: held(:)
+      integer, intent(in) :: k
+      logical :: both(2)
+
+      both = held(2*pairs%slave(k) - 1:2*pairs%slave(k)) .and. &
+         held(2*pairs%master(k) - 1:2*pairs%master(k))
+   end function on_both_nodes
+
+   !> Part of the relative normal displacement that supports prescribe.
+   pure function held_approach(pairs, given) result(approach)
+      type(pair_row_type), intent(in) :: pairs     !! all pairs
+      real(dp), intent(in) :: given(:)             !! (2 nodes) prescribed displacements [length]
+      real(dp) :: approach(size(pairs%slave))      !! (m) [length]
+      integer :: axis, k
+
+      approach = 0.0_dp
+      do k = 1, size(approach)
+         axis = pairs%held_axis(k)
+         if (axis > 0) approach(k) = pairs%normal(axis, k)* &
+            (given(2*pairs%slave(k) - 2 + axis) - given(2*pairs%master(k) - 2 + axis))
+      end do
+   end function held_approach
+
+   !> Position of a slave node along the tangent, relative to its master. A pair held along an axis
+   !> slides only as its supports do: while it is open, the position counts that it would have if
+   !> it closed with the supports where they are.
+   pure function tangential_position(pairs, k, displacement) result(position)
+      type(pair_row_type), intent(in) :: pairs     !! all pairs
+      integer, intent(in) :: k                     !! one of them
+      real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
+      real(dp) :: position                         !! [length]
+      real(dp) :: relative(2)
+      integer :: axis
+
+      relative = displacement(2*pairs%slave(k) - 1:2*pairs%slave(k)) - &
+         displacement(2*pairs%master(k) - 1:2*pairs%master(k))
+      axis = pairs%held_axis(k)
+      if (axis > 0) relative(3 - axis) = (pairs%initial_gap(k) - pairs%normal(axis, k)* &
+         relative(axis))/pairs%normal(3 - axis, k)
+      position = dot_product(relative, pairs%tangent(:, k))
+   end function tangential_position
 
 end module pair_rows
