@@ -75,7 +75,7 @@ contains
       type(step_reduction_type) :: reduction
       integer :: step, unknowns
 
-      ! Supports turn the frames of pairs; those of later steps must not show in the first.
+      ! Supports say which pairs are held; those of later steps must not show in the first.
       trial%pairs = pairs
       given = loads
       do step = 1, size(model%steps)
