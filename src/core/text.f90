@@ -6,7 +6,7 @@ module text
    private
    public :: string_type
    public :: to_text, to_upper, without_blanks, read_integer, read_real, append
-   public :: integer_fault, real_fault
+   public :: is_whole, integer_fault, real_fault
    public :: nearest_name, nearest_known, edit_distance, likely_slip
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
@@ -198,8 +198,8 @@ contains
 
    !> Whether a text is an optional sign and at least one digit.
    pure function is_whole(string) result(valid)
-      character(*), intent(in) :: string
-      logical :: valid
+      character(*), intent(in) :: string   !! text without blanks around it
+      logical :: valid                     !! of any length, so that it need not be an integer
       integer :: first
 
       valid = .false.

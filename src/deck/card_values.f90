@@ -5,10 +5,16 @@ module card_values
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp
-   use text, only: integer_fault, read_integer, read_real, real_fault
+   use text, only: integer_fault, is_whole, read_integer, read_real, real_fault
    implicit none
    private
+
+   !> Freezing point of water in kelvin. A whole number below it behind a property may well be
+   !> decimals; one above it is rather the temperature that the property was measured at.
+   real(dp), parameter :: least_plausible = 273.0_dp
+
    public :: has_field, field_text, field_place, need_field, take_field, check_extra
+   public :: may_be_decimals, check_unneeded, check_unneeded_temperature
 
    !> Value of a field; an error where it is missing.
    interface need_field
@@ -64,6 +70,57 @@ contains
       if (size(data%fields) <= most) return
       call report%error(field_place(data, most + 1), 'extra field; the card is '//layout)
    end subroutine check_extra
+
+   !> Whether a field may be the decimals of the one before it, torn off by a decimal comma, as in
+   !> 0,155 for 0.155: that one is written without a point and an exponent, this one is digits with
+   !> or without an exponent. Zeros alone are no decimals that matter.
+   pure logical function may_be_decimals(data, i)
+      type(data_card_type), intent(in) :: data   !! data card
+      integer, intent(in) :: i                   !! position of the field, from 1
+      character(:), allocatable :: decimals
+      real(dp) :: number
+
+      may_be_decimals = .false.
+      if (i < 2) return
+      decimals = field_text(data, i)
+      if (.not. is_whole(field_text(data, i - 1)) .or. verify(decimals, '0') == 0) return
+      if (scan(decimals(1:1), '0123456789') == 0 .or. index(decimals, '.') > 0) return
+      call read_real(decimals, number, may_be_decimals)
+   end function may_be_decimals
+
+   !> Warns of a field that is read and means nothing where it may be the decimals of the field
+   !> before it.
+   subroutine check_unneeded(data, i, what, report)
+      type(data_card_type), intent(in) :: data            !! data card
+      integer, intent(in) :: i                            !! position of the field, from 2
+      character(*), intent(in) :: what                    !! what the field is, with its article
+      type(deck_report_type), intent(inout) :: report     !! receives the warning
+
+      if (.not. may_be_decimals(data, i)) return
+      associate (whole => data%fields(i - 1)%text, decimals => data%fields(i)%text)
+         call report%warning(field_place(data, i - 1), 'decimal comma? '//whole//','//decimals// &
+            ' is two fields: '//whole//', and '//what//', which is not needed; write '//whole// &
+            '.'//decimals//', or '//whole//'. if that is meant')
+      end associate
+   end subroutine check_unneeded
+
+   !> As check_unneeded for the temperature behind a property: a plausible one is no decimals,
+   !> unless it stands directly behind the comma of `0,`.
+   subroutine check_unneeded_temperature(data, i, report)
+      type(data_card_type), intent(in) :: data            !! data card
+      integer, intent(in) :: i                            !! position of the field, from 2
+      type(deck_report_type), intent(inout) :: report     !! receives the warning
+      real(dp) :: temperature
+      logical :: is_number
+
+      if (.not. may_be_decimals(data, i)) return
+      call read_real(field_text(data, i), temperature, is_number)
+      associate (before => data%fields(i - 1), field => data%fields(i))
+         if (temperature >= least_plausible .and. (verify(before%text, '+-0') > 0 .or. &
+            field%place%column > before%place%column + len(before%text) + 1)) return
+      end associate
+      call check_unneeded(data, i, 'a temperature', report)
+   end subroutine check_unneeded_temperature
 
    subroutine need_text_field(data, i, what, report, value, valid)
       type(data_card_type), intent(in) :: data

@@ -1,7 +1,8 @@
 !> *NODE and *ELEMENT -> nodes and elements of the mesh.
 module deck_builder_mesh
    use card_parameters, only: need_parameter, parameter_place
-   use card_values, only: check_extra, field_place, has_field, need_field, take_field
+   use card_values, only: check_extra, check_unneeded, field_place, has_field, may_be_decimals, &
+      need_field, take_field
    use cards, only: cards_type, data_card_type
    use deck_builder_lines, only: element_card_count, is_line_card
    use deck_context, only: deck_context_type, plane_by_element
@@ -57,6 +58,7 @@ contains
          end do
       end do
       call check_heights(cards, card, heights, mesh%coordinates, report)
+      call check_normals(cards, card, report)
       call check_repeated('node', cards, card, mesh%node_number, report)
       call context%node_index%build(mesh%node_number)
    end subroutine build_nodes
@@ -109,6 +111,21 @@ contains
             'models are two-dimensional: z must be 0')
       end do
    end subroutine check_heights
+
+   !> Warns of the first node whose coordinates may be torn by decimal commas, so that the last of
+   !> their parts means nothing.
+   subroutine check_normals(cards, card, report)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: card(:)
+      type(deck_report_type), intent(inout) :: report
+      integer :: i
+
+      do i = 1, size(card)
+         if (.not. may_be_decimals(cards%data(card(i)), 5)) cycle
+         call check_unneeded(cards%data(card(i)), 5, 'a direction', report)
+         return
+      end do
+   end subroutine check_normals
 
    !> The number of a node or element, from 1; 0 after an error.
    subroutine read_number(data, what, report, number)

@@ -1,7 +1,8 @@
 !> Constants of a property of a material, as they stand on its data cards.
 module property_constants
    use card_parameters, only: choose
-   use card_values, only: check_extra, field_place, has_field, need_field, take_field
+   use card_values, only: check_extra, check_unneeded_temperature, field_place, has_field, &
+      need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -107,6 +108,7 @@ contains
       call check_extra(data, position, layout//', temperature', report)
       if (has_field(data, position)) then
          call context%note('the temperature field of a single property row is read and not needed')
+         if (valid) call check_unneeded_temperature(data, position, report)
       end if
    end subroutine read_temperature
 
