@@ -3,7 +3,7 @@
 module pair_warnings
    use contact_pairs, only: contact_pairs_type
    use kinds, only: dp
-   use mesh, only: mesh_type
+   use mesh, only: extent_of, mesh_type
    use text, only: to_text
    implicit none
    private
@@ -44,7 +44,7 @@ contains
          'and a moment of force times offset is lost; put the nodes opposite each other'
    end function offset_warning
 
-   !> Names the pair whose faces overlap most, where that is an element edge or more.
+   !> Names the pair whose faces overlap most, where that is more than the rounding of coordinates.
    pure function overlap_warning(mesh, pairs) result(warning)
       type(mesh_type), intent(in) :: mesh                !! the mesh
       type(contact_pairs_type), intent(in) :: pairs      !! pairs of one interface
@@ -52,12 +52,13 @@ contains
       integer :: k
 
       warning = ''
-      if (.not. any(-pairs%initial_gap >= pairs%edge*(1.0_dp - rounding))) return
-      k = minloc(pairs%initial_gap/pairs%edge, dim=1)
+      if (.not. any(-pairs%initial_gap > rounding*extent_of(mesh%coordinates))) return
+      k = minloc(pairs%initial_gap, dim=1)
       warning = 'contact pair '//pairs%name//': the faces overlap by '// &
          to_text(-pairs%initial_gap(k))//' at '//nodes_of(mesh, pairs, k)// &
-         ', where the element edge is '//to_text(pairs%edge(k))//'; see whether the bodies '// &
-         'are where they should be, or say by *CLEARANCE what is meant'
+         ', where the element edge is '//to_text(pairs%edge(k))//'; they are pressed apart in '// &
+         'the first increment: see whether the bodies are where they should be, or say by '// &
+         '*CLEARANCE what is meant'
    end function overlap_warning
 
    pure function nodes_of(mesh, pairs, k) result(words)

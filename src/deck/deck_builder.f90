@@ -31,6 +31,7 @@ module deck_builder
    use refinement, only: refine
    use steps, only: analysis_coupled, analysis_static, solves_heat
    use text, only: to_text
+   use usage_checks, only: check_usage
    use variations, only: apply_variation, variation_type
    implicit none
    private
@@ -85,7 +86,7 @@ contains
       if (.not. report%has_errors()) then
          if (present(variation)) call apply_variation(variation, context%order, context%levels, &
             model)
-         call drop_idle_heat(context, model)
+         call drop_idle_heat(context, model, report)
          call check_heat_quantities(model, report)
          call apply_loads(context, model, report)
          deck_nodes = size(model%mesh%node_number)
@@ -94,6 +95,7 @@ contains
          call apply_temperatures(context, deck_nodes, .false., model)
          call apply_boundaries(context, model)
          call apply_order(context, model, report)
+         if (.not. report%has_errors()) call check_usage(cards, context, model, report)
          call find_bodies(model%mesh)
          call note_defaults(cards, context, model)
       end if
@@ -102,17 +104,19 @@ contains
    end subroutine build_model
 
    !> A step in which, and before which, no temperature is prescribed and no heat loaded solves
-   !> none.
-   subroutine drop_idle_heat(context, model)
-      type(deck_context_type), intent(inout) :: context
+   !> none. That is rarely meant.
+   subroutine drop_idle_heat(context, model, report)
+      type(deck_context_type), intent(in) :: context
       type(model_type), intent(inout) :: model
+      type(deck_report_type), intent(inout) :: report
       integer :: s
 
       do s = 1, first_heat(context, model) - 1
          if (model%steps(s)%analysis /= analysis_coupled) cycle
          model%steps(s)%analysis = analysis_static
-         call context%note('step '//to_text(s)//' solves no heat: no temperature is '// &
-            'prescribed, no heat loaded')
+         call report%warning(context%step_place(s), 'step '//to_text(s)//' solves no heat: '// &
+            'nothing prescribes a temperature and nothing heats the bodies; give *BOUNDARY '// &
+            'with degree of freedom 11, or take *STATIC')
       end do
    end subroutine drop_idle_heat
 

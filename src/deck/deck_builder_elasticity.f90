@@ -8,7 +8,7 @@ module deck_builder_elasticity
    use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
       is_positive_definite, isotropic_elasticity, orthotropic_elasticity
    use kinds, only: dp
-   use materials, only: material_type
+   use materials, only: material_type, set_constants
    use property_constants, only: read_constants, refuse_not_positive
    implicit none
    private
@@ -43,6 +43,7 @@ contains
       case ('ENGINEERING CONSTANTS')
          call read_constants(cards, card, engineering_names, context, report, constants(:9), valid)
          if (.not. valid) return
+         call set_constants(material, card%name, engineering_names, constants(:9))
          if (.not. all(constants([1, 2, 3, 7, 8, 9]) > 0.0_dp)) then
             call refuse_not_positive(cards, card, engineering_names, constants, &
                [1, 2, 3, 7, 8, 9], report)
@@ -52,10 +53,12 @@ contains
       case ('ORTHO', 'ORTHOTROPIC')
          call read_constants(cards, card, orthotropic_names, context, report, constants(:9), valid)
          if (.not. valid) return
+         call set_constants(material, card%name, orthotropic_names, constants(:9))
          d = orthotropic_elasticity(constants(:9))
       case ('ANISO', 'ANISOTROPIC')
          call read_constants(cards, card, anisotropic_names, context, report, constants, valid)
          if (.not. valid) return
+         call set_constants(material, card%name, anisotropic_names, constants)
          d = anisotropic_elasticity(constants)
       case default
          call build_isotropic(cards, card, context, report, material)
@@ -85,6 +88,7 @@ contains
 
       call read_constants(cards, card, names, context, report, constants, valid)
       if (.not. valid) return
+      call set_constants(material, card%name, names, constants)
       call refuse_not_positive(cards, card, names, constants, [1], report)
       if (constants(2) <= -1.0_dp .or. constants(2) >= 0.5_dp) then
          call report%error(field_place(cards%data(card%first_data), 2), &

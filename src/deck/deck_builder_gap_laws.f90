@@ -1,17 +1,16 @@
-!> *GAP LAW and *GAP CONDUCTANCE: the conductance of a surface interaction.
+!> *GAP LAW -> one side of the conductance of a surface interaction, and the rows of its tables.
 module deck_builder_gap_laws
    use card_parameters, only: choose, has_parameter
-   use card_values, only: check_extra, field_place, has_field, need_field, take_field
+   use card_values, only: check_extra, field_place, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power, &
-      law_pressure
+   use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use text, only: to_text
    implicit none
    private
-   public :: build_gap_law, build_gap_conductance, join_gap_conductance
+   public :: build_gap_law, read_table, note_ends
 
    !> Largest n of C0 + C1 p^n: laws that are measured have 1/2 to 2, and p^10 stays within the
    !> range of numbers for every pressure that a material bears.
@@ -55,46 +54,6 @@ contains
          call build_power_law(cards%data(card%first_data), report, law)
       end if
    end subroutine build_gap_law
-
-   !> Takes one *GAP CONDUCTANCE into a law of its own: whether it holds is seen when all laws of
-   !> the interaction are known.
-   subroutine build_gap_conductance(cards, card, name, context, report, law)
-      type(cards_type), intent(in) :: cards                !! the cards
-      type(keyword_card_type), intent(in) :: card          !! the card
-      character(*), intent(in) :: name                     !! name of the surface interaction
-      type(deck_context_type), intent(inout) :: context    !! receives notes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
-      type(conductance_law_type), intent(inout) :: law     !! receives the closed side
-
-      if (law%closed_kind /= law_none) then
-         call report%error(card%place, 'a second *GAP CONDUCTANCE in one surface interaction')
-      end if
-      law%closed_kind = law_pressure
-      call read_table(cards, card, 'pressure', report, law%table_pressure, law%closed_omega)
-      call check_temperatures(cards%data(card%first_data:card%last_data), context, report)
-      call note_ends('*GAP CONDUCTANCE', name, 'pressures', law%table_pressure, context)
-      call context%note('*GAP CONDUCTANCE: CalculiX switches NLGEOM on; here displacements and '// &
-         'strains are small')
-   end subroutine build_gap_conductance
-
-   !> Gives a law the closed side of *GAP CONDUCTANCE, unless *GAP LAW gives it another: then the
-   !> table is for CalculiX, which knows no *GAP LAW.
-   subroutine join_gap_conductance(table, name, context, law)
-      type(conductance_law_type), intent(in) :: table      !! what build_gap_conductance made
-      character(*), intent(in) :: name                     !! name of the surface interaction
-      type(deck_context_type), intent(inout) :: context    !! receives notes
-      type(conductance_law_type), intent(inout) :: law     !! receives the closed side
-
-      if (table%closed_kind == law_none) return
-      if (law%closed_kind /= law_none) then
-         call context%note('*GAP CONDUCTANCE of '//name// &
-            ' is left to CalculiX: *GAP LAW, TYPE=POWER holds')
-         return
-      end if
-      law%closed_kind = table%closed_kind
-      law%table_pressure = table%table_pressure
-      law%closed_omega = table%closed_omega
-   end subroutine join_gap_conductance
 
    !> omega = A/(B + gamma).
    subroutine build_gas_law(data, report, law)
@@ -144,14 +103,15 @@ contains
       end if
    end subroutine build_power_law
 
-   !> Rows of conductance and what it belongs to; a table over the pressure may have a temperature
+   !> Rows of conductance and what it belongs to; those of *GAP CONDUCTANCE may have a temperature
    !> behind it.
    subroutine read_table(cards, card, noun, report, abscissas, omega)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: noun
-      type(deck_report_type), intent(inout) :: report
-      real(dp), allocatable, intent(out) :: abscissas(:), omega(:)
+      type(cards_type), intent(in) :: cards                !! the cards
+      type(keyword_card_type), intent(in) :: card          !! the card
+      character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      real(dp), allocatable, intent(out) :: abscissas(:)   !! (rows) gap or pressure, ascending
+      real(dp), allocatable, intent(out) :: omega(:)       !! (rows) conductance
       integer :: i, n
       logical :: valid(2), valid_before
 
@@ -163,8 +123,8 @@ contains
             valid = .true.
             call need_field(data, 1, 'conductance', report, omega(i), valid(1))
             call need_field(data, 2, noun, report, abscissas(i), valid(2))
-            if (noun == 'pressure') then
-               call check_extra(data, 3, 'conductance, pressure, temperature', report)
+            if (card%name == 'GAP CONDUCTANCE') then
+               call check_extra(data, 3, 'conductance, '//noun//', temperature', report)
             else
                call check_extra(data, 2, 'conductance, '//noun, report)
             end if
@@ -183,34 +143,13 @@ contains
       end do
    end subroutine read_table
 
-   !> Temperatures behind the rows: one for all of them means nothing.
-   subroutine check_temperatures(rows, context, report)
-      type(data_card_type), intent(in) :: rows(:)
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      real(dp) :: first, temperature
-      integer :: i
-      logical :: valid
-
-      valid = .true.
-      do i = 1, size(rows)
-         temperature = 0.0_dp
-         call take_field(rows(i), 3, 'temperature', report, temperature, valid)
-         if (has_field(rows(i), 3)) call context%note('*GAP CONDUCTANCE: the temperature, the '// &
-            'same in every row, is read and not needed')
-         if (i == 1) first = temperature
-         if (.not. valid .or. abs(temperature - first) <= 0.0_dp) cycle
-         call report%error(field_place(rows(i), 3), &
-            'another temperature than in the first row: properties that vary with temperature '// &
-            'are refused')
-         return
-      end do
-   end subroutine check_temperatures
-
+   !> Notes that a table holds its end values.
    subroutine note_ends(what, name, noun, abscissas, context)
-      character(*), intent(in) :: what, name, noun
-      real(dp), intent(in) :: abscissas(:)
-      type(deck_context_type), intent(inout) :: context
+      character(*), intent(in) :: what                     !! the card
+      character(*), intent(in) :: name                     !! name of the surface interaction
+      character(*), intent(in) :: noun                     !! gaps or pressures
+      real(dp), intent(in) :: abscissas(:)                 !! (rows) gaps or pressures
+      type(deck_context_type), intent(inout) :: context    !! receives the note
 
       call context%note(what//' of '//name//': the table holds its end values outside the '// &
          noun//' '//to_text(abscissas(1))//' to '//to_text(abscissas(size(abscissas))))

@@ -1,11 +1,13 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
-   use card_parameters, only: choose, need_parameter, parameter_place, parameter_text
-   use card_values, only: check_extra, field_place, need_field, take_field
+   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, parameter_text
+   use card_values, only: check_extra, check_unneeded, field_place, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use conductance_laws, only: conductance, conductance_law_type, law_jump
+   use conductance_laws, only: conductance, conductance_law_type, law_jump, table_jump
    use contact_definitions, only: interaction_type
-   use deck_builder_gap_laws, only: build_gap_conductance, build_gap_law, join_gap_conductance
+   use deck_builder_gap_conductance, only: build_gap_clearance, build_gap_conductance, &
+      join_gap_conductance
+   use deck_builder_gap_laws, only: build_gap_law
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
@@ -89,7 +91,11 @@ contains
             case ('GAP LAW')
                call build_gap_law(cards, card, interaction%name, context, report, interaction%law)
             case ('GAP CONDUCTANCE')
-               call build_gap_conductance(cards, card, interaction%name, context, report, table)
+               if (has_parameter(card, 'CLEARANCE')) then
+                  call build_gap_clearance(cards, card, context, report, interaction%law)
+               else
+                  call build_gap_conductance(cards, card, interaction%name, context, report, table)
+               end if
             case default
                cycle
             end select
@@ -142,16 +148,22 @@ contains
       end if
       if (size(data%fields) > 1) then
          call context%note('*FRICTION: the stick slope is read and not needed')
+         call check_unneeded(data, 2, 'a stick slope', report)
       end if
    end subroutine build_friction
 
-   !> Warns of a law that jumps where the gap closes.
+   !> Warns of a law that jumps, where the gap closes or where its table of clearances ends.
    subroutine check_law(card, interaction, report)
       type(keyword_card_type), intent(in) :: card
       type(interaction_type), intent(in) :: interaction
       type(deck_report_type), intent(inout) :: report
       real(dp) :: jump, larger
 
+      if (table_jump(interaction%law) > 0.0_dp) call report%warning(card%place, &
+         'the conductance of '//interaction%name//' falls from '// &
+         to_text(table_jump(interaction%law))//' to 0 where the gap exceeds that of the last '// &
+         'row, '//to_text(maxval(interaction%law%table_gap))//'; an increment in which a gap '// &
+         'would stay there has no solution: end the table with a row of conductance 0')
       jump = law_jump(interaction%law)
       larger = max(conductance(interaction%law, .true., 0.0_dp, 0.0_dp), &
          conductance(interaction%law, .false., 0.0_dp, 0.0_dp))

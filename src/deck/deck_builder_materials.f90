@@ -1,13 +1,14 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY.
 module deck_builder_materials
    use card_parameters, only: need_parameter, parameter_place
+   use card_values, only: check_unneeded
    use cards, only: cards_type, keyword_card_type
    use deck_builder_elasticity, only: build_elasticity
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
    use kinds, only: dp
-   use materials, only: material_type
+   use materials, only: material_type, set_constants
    use model, only: model_type
    use property_constants, only: choose_symmetry, read_constants, refuse_not_positive
    implicit none
@@ -98,6 +99,7 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(material_type), intent(inout) :: material
+      character(*), parameter :: iso_name(1) = ['coefficient of expansion']
       character(*), parameter :: names(3) = ['alpha11', 'alpha22', 'alpha33']
       character(:), allocatable :: kind
       logical :: valid
@@ -107,9 +109,10 @@ contains
       material%has_expansion = .true.
       if (kind == 'ORTHO') then
          call read_constants(cards, card, names, context, report, material%expansion, valid)
+         call set_constants(material, card%name, names, material%expansion)
       else
-         call read_constants(cards, card, ['coefficient of expansion'], context, report, &
-            material%expansion(:1), valid)
+         call read_constants(cards, card, iso_name, context, report, material%expansion(:1), valid)
+         call set_constants(material, card%name, iso_name, material%expansion(:1))
          material%expansion = material%expansion(1)
       end if
    end subroutine build_expansion
@@ -136,11 +139,17 @@ contains
          call read_constants(cards, card, names(:n), context, report, constants(:n), valid)
          if (n == 3) call context%note('*CONDUCTIVITY: K33 is read and not needed')
          if (valid) call refuse_not_positive(cards, card, names, constants, [1, 2], report)
+         ! Across the plane most materials conduct as along one of its axes.
+         if (valid .and. n == 3 .and. all(abs(constants(:2) - constants(3)) > 0.0_dp)) then
+            call check_unneeded(cards%data(card%first_data), 3, 'K33', report)
+         end if
          material%conductivity = constants(:2)
+         call set_constants(material, card%name, names(:2), constants(:2))
       else
          call read_constants(cards, card, iso_name, context, report, constants(:1), valid)
          if (valid) call refuse_not_positive(cards, card, iso_name, constants, [1], report)
          material%conductivity = constants(1)
+         call set_constants(material, card%name, iso_name, constants(:1))
       end if
    end subroutine build_conductivity
 
@@ -157,6 +166,7 @@ contains
       call read_constants(cards, card, names, context, report, constants, valid)
       if (valid) call refuse_not_positive(cards, card, names, constants, [1], report)
       material%density = constants(1)
+      call set_constants(material, card%name, names, constants)
       material%has_density = .true.
    end subroutine build_density
 

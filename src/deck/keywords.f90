@@ -72,7 +72,7 @@ module keywords
       known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 0, 'NAME='), &
       known_keyword_type('FRICTION', built, in_model, 1, 1, ''), &
       known_keyword_type('GAP CONDUCTANCE', built, in_model, 1, many, &
-      '!USER/!PRESSURE/!DEPENDENCIES='), &
+      'PRESSURE/CLEARANCE/!USER/!DEPENDENCIES='), &
       known_keyword_type('GAP LAW', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
       'PRESSURE-OVERCLOSURE='), &
@@ -142,14 +142,13 @@ module keywords
    type(known_keyword_type), parameter :: known_keywords(60) = &
       [model_keywords, control_keywords, step_keywords]
 
-   type(refusal_type), parameter :: refusals(26) = [ &
+   type(refusal_type), parameter :: refusals(25) = [ &
       refusal_type('TRANSFORM', '', 'displacements and forces are along x and y; give them so'), &
       refusal_type('EQUATION', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('MPC', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('RIGID BODY', '', 'every body is elastic; give it a high modulus'), &
       refusal_type('GAP CONDUCTANCE', 'USER', 'no routine of the user is called; give the table'), &
-      refusal_type('GAP CONDUCTANCE', 'PRESSURE', 'the table is one of pressure without it'), &
-      refusal_type('GAP CONDUCTANCE', 'DEPENDENCIES', 'conductance depends on the pressure only'), &
+      refusal_type('GAP CONDUCTANCE', 'DEPENDENCIES', 'conductance depends on one quantity only'), &
       refusal_type('CONTACT PAIR', 'ADJUST', 'it would move nodes; gaps are those of the mesh'), &
       refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; let the bodies share nodes'), &
       refusal_type('', 'TIME POINTS', 'FREQUENCY= says which increments are printed'), &

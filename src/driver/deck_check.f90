@@ -6,6 +6,7 @@ module deck_check
    use deck_preparation, only: prepare_deck
    use increments, only: simulation_type
    use model, only: model_type
+   use model_words, only: closed_law_words, friction_words, material_words, open_law_words
    use run_description, only: describe_run
    use run_summaries, only: run_summary_type
    use text, only: to_text
@@ -48,6 +49,16 @@ contains
       call line('unknown temperatures', to_text(run%equations_thermal))
       call line('unknown displacements', to_text(run%equations_mechanical))
       call line('contact unknowns', to_text(run%contact_unknowns))
+      do i = 1, size(model%materials)
+         call line('material '//model%materials(i)%name, material_words(model%materials(i)))
+      end do
+      do i = 1, size(model%interactions)
+         associate (interaction => model%interactions(i))
+            call line('interaction '//interaction%name, 'friction '// &
+               friction_words(interaction%friction)//'; conductance, open: '// &
+               open_law_words(interaction%law)//'; closed: '//closed_law_words(interaction%law))
+         end associate
+      end do
       do i = 1, size(simulation%operators%interfaces)
          associate (pairs => simulation%operators%interfaces(i))
             call line('contact pair '//pairs%name, to_text(size(pairs%slave_node))// &

@@ -5,7 +5,8 @@ module conductance_laws
    implicit none
    private
    public :: conductance_law_type, law_none, law_gas, law_power, law_clearance, law_pressure
-   public :: conductance, conductance_slope, conductance_inverse, law_jump, law_jumps, is_constant
+   public :: conductance, conductance_slope, conductance_inverse, law_jump, law_jumps, table_jump, &
+      is_constant
 
    integer, parameter :: law_none = 0        !! this side of the law was not given
    integer, parameter :: law_gas = 1         !! open: omega = A/(B + gamma)
@@ -14,7 +15,7 @@ module conductance_laws
    integer, parameter :: law_pressure = 4    !! closed: table over p
 
    !> The open and the closed law of one surface interaction. Tables are straight lines between
-   !> their rows and hold their end values outside.
+   !> their rows and hold their end values outside, unless open_ends.
    type :: conductance_law_type
       integer :: open_kind = law_none      !! law_none, law_gas or law_clearance
       integer :: closed_kind = law_none    !! law_none, law_power or law_pressure
@@ -25,6 +26,7 @@ module conductance_laws
       real(dp) :: power_n = 1.0_dp         !! n [-]
       real(dp), allocatable :: table_gap(:)        !! (rows) ascending gamma >= 0 [length]
       real(dp), allocatable :: open_omega(:)       !! (rows) omega there
+      logical :: open_ends = .false.               !! omega is 0 beyond the last of these gaps
       real(dp), allocatable :: table_pressure(:)   !! (rows) ascending p >= 0 [stress]
       real(dp), allocatable :: closed_omega(:)     !! (rows) omega there
    end type conductance_law_type
@@ -123,6 +125,15 @@ contains
          conductance(law, .false., 0.0_dp, 0.0_dp))
    end function law_jumps
 
+   !> What omega loses beyond the last gap of a table that ends there; zero for any other law.
+   pure function table_jump(law) result(jump)
+      type(conductance_law_type), intent(in) :: law !! the law
+      real(dp) :: jump                              !! [power/(length^2 temperature)]
+
+      jump = 0.0_dp
+      if (law%open_ends) jump = law%open_omega(size(law%open_omega))
+   end function table_jump
+
    !> Whether omega is the same at every gap and pressure.
    elemental logical function is_constant(law)
       type(conductance_law_type), intent(in) :: law !! the law
@@ -131,6 +142,7 @@ contains
       if (abs(law_jump(law)) > 0.0_dp .or. law%open_kind == law_gas) return
       if (law%open_kind == law_clearance) then
          if (.not. is_level(law%open_omega)) return
+         if (table_jump(law) > 0.0_dp) return
       end if
       select case (law%closed_kind)
       case (law_power)
@@ -158,6 +170,7 @@ contains
          omega = law%gas_a/(law%gas_b + gap)
       else if (law%open_kind == law_clearance) then
          omega = line_value(law%table_gap, law%open_omega, gap)
+         if (law%open_ends .and. gap > law%table_gap(size(law%table_gap))) omega = 0.0_dp
       end if
    end function open_law
 

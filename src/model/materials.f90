@@ -3,7 +3,14 @@ module materials
    use kinds, only: dp
    implicit none
    private
-   public :: material_type, section_type
+   public :: material_type, section_type, constant_type, set_constants
+
+   !> A constant of a material as the deck gives it.
+   type :: constant_type
+      character(16) :: property = ''    !! keyword of its card
+      character(24) :: name = ''        !! what it is called
+      real(dp) :: value = 0.0_dp        !! its value
+   end type constant_type
 
    !> Linear elasticity, expansion and conductivity along the material's own axes 1 and 2 in the
    !> plane and 3 across it.
@@ -18,6 +25,8 @@ module materials
       logical :: has_expansion = .false.              !! *EXPANSION was given
       logical :: has_conductivity = .false.           !! *CONDUCTIVITY was given
       logical :: has_density = .false.                !! *DENSITY was given
+      !> All constants as the deck gives them; unallocated for none
+      type(constant_type), allocatable :: constants(:)
    end type material_type
 
    !> One *SOLID SECTION.
@@ -26,5 +35,23 @@ module materials
       integer :: orientation = 0        !! index into model%orientations, 0 for x and y
       real(dp) :: thickness = 1.0_dp    !! thickness [length]
    end type section_type
+
+contains
+
+   !> Keeps the constants of a property; those of an earlier card of the same property end.
+   pure subroutine set_constants(material, property, names, values)
+      type(material_type), intent(inout) :: material    !! the material
+      character(*), intent(in) :: property              !! keyword of the card
+      character(*), intent(in) :: names(:)              !! (constants) what they are called
+      real(dp), intent(in) :: values(:)                 !! (constants) their values
+      type(constant_type) :: constants(size(values))
+
+      constants%property = property
+      constants%name = names
+      constants%value = values
+      if (.not. allocated(material%constants)) allocate (material%constants(0))
+      material%constants = [pack(material%constants, material%constants%property /= property), &
+         constants]
+   end subroutine set_constants
 
 end module materials

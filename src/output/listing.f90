@@ -27,12 +27,13 @@ module listing
       logical :: is_open = .false.                             !! whether the file is open
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       character(:), allocatable :: failure                     !! why the run ended early
-      type(string_type), allocatable :: warnings(:)            !! warnings of the increments
+      type(string_type), allocatable :: warnings(:)            !! of increments and of the run
       type(contact_record_type), allocatable :: contacts(:)    !! contact at the last increment
    contains
       procedure :: open => open_listing
       procedure :: add
       procedure :: add_failure
+      procedure :: warn
       procedure :: finish
    end type listing_type
 
@@ -115,6 +116,17 @@ contains
       if (allocated(record%iterations)) call print_iterations(self%unit, &
          pack(record%iterations, record%iterations%cut_backs == record%cut_backs))
    end subroutine add_failure
+
+   !> Takes the warnings of the run as a whole.
+   subroutine warn(self, warnings)
+      class(listing_type), intent(inout) :: self             !! the listing
+      type(string_type), intent(in) :: warnings(:)           !! the warnings
+      integer :: i
+
+      do i = 1, size(warnings)
+         call append(self%warnings, warnings(i)%value)
+      end do
+   end subroutine warn
 
    !> Ends the listing: verdicts, times, zone diagrams, all warnings again.
    !> Error: status_internal, when its end cannot be written.

@@ -1,10 +1,10 @@
 !> The listing's summary of the model: what will be modelled and why, sizes, interfaces.
 module listing_model
-   use conductance_laws, only: law_clearance, law_gas, law_power, law_pressure
    use contact_pairs, only: contact_pairs_type
    use kinds, only: dp
    use listing_text, only: print_title, print_wrapped
    use model, only: model_type
+   use model_words, only: closed_law_words, friction_words, material_words, open_law_words
    use steps, only: analysis_heat, analysis_static, solves_heat
    use run_summaries, only: or_blank, run_summary_type
    use text, only: to_text
@@ -20,6 +20,7 @@ contains
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(run_summary_type), intent(in) :: run           !! the run
+      integer :: i
 
       call print_title(unit, 'WHAT IS MODELLED')
       call print_wrapped(unit, '   ', or_blank(run%modelled))
@@ -42,6 +43,10 @@ contains
          ' of its diagonal entry')
       call print_entry(unit, 'load axis', or_blank(model%load_label))
       if (run%has_biot) call print_entry(unit, 'contact Biot number', from_to(run%contact_biot))
+      do i = 1, size(model%materials)
+         call print_entry(unit, 'material '//model%materials(i)%name, &
+            material_words(model%materials(i)))
+      end do
       call print_interfaces(unit, model, pairs)
    end subroutine print_model
 
@@ -60,14 +65,10 @@ contains
          call print_entry(unit, 'initial gaps', &
             from_to([minval(pairs(i)%initial_gap), maxval(pairs(i)%initial_gap)]))
          associate (interaction => model%interactions(model%contacts(i)%interaction))
-            if (interaction%friction > 0.0_dp) then
-               call print_entry(unit, 'coefficient of friction', to_text(interaction%friction))
-            else
-               call print_entry(unit, 'coefficient of friction', 'none')
-            end if
+            call print_entry(unit, 'coefficient of friction', friction_words(interaction%friction))
             if (.not. has_heat) cycle
-            call print_entry(unit, 'conductance, open', law_text(interaction%law%open_kind))
-            call print_entry(unit, 'conductance, closed', law_text(interaction%law%closed_kind))
+            call print_entry(unit, 'conductance, open', open_law_words(interaction%law))
+            call print_entry(unit, 'conductance, closed', closed_law_words(interaction%law))
          end associate
       end do
    end subroutine print_interfaces
@@ -101,24 +102,6 @@ contains
       call print_entry(unit, step_range(first, size(model%steps)), before)
    end subroutine print_steps
 
-   pure function law_text(kind) result(words)
-      integer, intent(in) :: kind
-      character(:), allocatable :: words
-
-      select case (kind)
-      case (law_gas)
-         words = 'A/(B + gap)'
-      case (law_clearance)
-         words = 'table over the gap'
-      case (law_power)
-         words = 'C0 + C1 p^n'
-      case (law_pressure)
-         words = 'table over the pressure'
-      case default
-         words = 'not given'
-      end select
-   end function law_text
-
    pure function step_range(first, last) result(words)
       integer, intent(in) :: first, last
       character(:), allocatable :: words
@@ -140,7 +123,7 @@ contains
       character(*), intent(in) :: name
       character(*), intent(in) :: value
 
-      write (unit, '(3x, 4a)') name, ' ', repeat('.', 26 - len(name)), ' '//value
+      call print_wrapped(unit, '   '//name//' '//repeat('.', max(26 - len(name), 2))//' ', value)
    end subroutine print_entry
 
    pure function from_to(ends) result(string)

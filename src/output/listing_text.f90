@@ -77,7 +77,7 @@ contains
       character(*), intent(in) :: string   !! the text
       integer :: first, last, room
 
-      room = page_width - len(mark)
+      room = max(page_width - len(mark), page_width/2)
       first = 1
       do
          last = len_trim(string)

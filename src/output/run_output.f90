@@ -10,6 +10,7 @@ module run_output
    use progress, only: progress_type
    use records, only: increment_record_type, iteration_record_type
    use results, only: results_type
+   use run_judgement, only: run_judgement_type
    use run_summaries, only: or_blank, run_summary_type
    use clock, only: wall_seconds
    use text, only: append, string_type, to_text
@@ -26,6 +27,7 @@ module run_output
       type(listing_type) :: listing                            !! `.lst`
       type(verifier_type) :: verifier                          !! *VERIFY cards
       type(progress_type) :: progress                          !! progress line
+      type(run_judgement_type) :: judgement                    !! what the whole run shows
       type(iteration_record_type), allocatable :: failed(:)    !! passes of an increment that failed
       integer, allocatable :: point_node(:)                    !! (points) node index of each point
    contains
@@ -78,24 +80,23 @@ contains
       since = wall_seconds()
       call self%listing%add(record, model, pairs)
       call self%verifier%judge(record, model, pairs, self%point_node)
-      call print_warnings(self, record)
+      call self%judgement%take(record, model, pairs)
+      if (allocated(record%warnings)) call print_warnings(self, record%warnings)
       call self%progress%show(record)
       call self%results%append(record, model, pairs, self%run, error)
       if (allocated(error)) call self%progress%clear()
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine accept
 
-   !> Prints the warnings of an increment on stderr.
-   subroutine print_warnings(self, record)
+   !> Prints warnings of an increment or of the run on stderr.
+   subroutine print_warnings(self, warnings)
       class(run_output_type), intent(inout) :: self
-      type(increment_record_type), intent(in) :: record
+      type(string_type), intent(in) :: warnings(:)
       integer :: i
 
-      if (.not. allocated(record%warnings)) return
       call self%progress%clear()
-      do i = 1, size(record%warnings)
-         write (error_unit, '(3a)') or_blank(self%run%deck_path), ': warning: ', &
-            record%warnings(i)%value
+      do i = 1, size(warnings)
+         write (error_unit, '(3a)') or_blank(self%run%deck_path), ': warning: ', warnings(i)%value
       end do
    end subroutine print_warnings
 
@@ -106,6 +107,7 @@ contains
       type(increment_record_type), intent(in) :: record      !! attempts and passes; empty for none
 
       if (allocated(record%iterations)) self%failed = record%iterations
+      call self%judgement%fail()
       call self%listing%add_failure(reason, record, self%results%accepted)
    end subroutine fail
 
@@ -118,6 +120,7 @@ contains
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(error_type), allocatable :: listing_error
+      type(string_type), allocatable :: warnings(:)
       real(dp) :: since
 
       since = wall_seconds()
@@ -125,9 +128,11 @@ contains
       self%run%verify_failed = self%verifier%failed_count()
       call self%results%finish(model, pairs, self%run, self%failed, error)
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
+      warnings = self%judgement%warnings(model, pairs)
+      call self%listing%warn(warnings)
       call self%listing%finish(model, pairs, self%verifier%outcomes, self%run, listing_error)
       if (allocated(listing_error) .and. .not. allocated(error)) error = listing_error
-      call self%progress%clear()
+      call print_warnings(self, warnings)
    end subroutine finish
 
    !> One line for each *VERIFY card that failed.

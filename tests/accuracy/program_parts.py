@@ -43,7 +43,8 @@ PARTS = {
     "contact": CONTACT_FOLDER | COUPLING | {
         "balances:contact_violation", "conductance_laws", "contact_operator:law_conductance",
         "contact_operator:temperature_jumps", "contact_reduction", "deck_builder_contact",
-        "deck_builder_gap_laws", "deck_builder_interactions", "increment_records:contact_record",
+        "deck_builder_gap_conductance", "deck_builder_gap_laws", "deck_builder_interactions",
+        "increment_records:contact_record",
         "increment_records:settle_slip", "increment_solution:conduct",
         "listing_increments:print_interface", "listing_tables:print_contact_table",
         "pair_reports", "pair_rows", "result_fields:face_values", "result_fields:find_faces",

@@ -1,6 +1,6 @@
 """Cards of rectangular blocks of eight-node elements, for small decks."""
 
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 
 def block(name, xs, ys, first=1, skew=0.0):
@@ -38,6 +38,15 @@ def block(name, xs, ys, first=1, skew=0.0):
     cards += [f"*SURFACE, NAME={name}.BOTTOM"] + [f"{first + k}, S1" for k in range(columns)]
     cards += [f"*SURFACE, NAME={name}.TOP"]
     return cards + [f"{first + k}, S3" for k in range(count - columns, count)]
+
+
+def without_unused_surfaces(cards):
+    """Return the cards without the surfaces that no pair and no surface load names."""
+    keywords = list(accumulate(cards, lambda last, card: card if card.startswith("*") else last))
+    used = {field.strip() for keyword, card in zip(keywords, cards, strict=True)
+            if keyword.startswith(("*CONTACT PAIR", "*DSLOAD")) for field in card.split(",")}
+    return [card for keyword, card in zip(keywords, cards, strict=True)
+            if not keyword.startswith("*SURFACE, NAME=") or keyword.split("=")[1] in used]
 
 
 def solid(name, young, poisson, expansion=0.0, conductivity=1.0):

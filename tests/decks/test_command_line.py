@@ -4,11 +4,11 @@ import os
 
 import h5py
 import pytest
-from blocks import block, solid, write
+from blocks import block, solid, without_unused_surfaces, write
 from deck_runs import run
 
 GOOD = [
-    *block("BLOCK", [0.0, 1.0], [0.0, 1.0]),
+    *without_unused_surfaces(block("BLOCK", [0.0, 1.0], [0.0, 1.0])),
     *solid("BLOCK", 1000.0, 0.25),
     *["*BOUNDARY", "BLOCK.BOTTOM, 2, 2, 0.", "BLOCK.LEFT, 1, 1, 0."],
     *["*STEP", "*STATIC", "0.5, 1.", "*DLOAD", "1, P3, 1.", "*END STEP"],

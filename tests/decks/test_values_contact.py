@@ -45,6 +45,46 @@ def test_every_field_of_a_table_of_pressure(tmp_path, other):
     follows(tmp_path, make, (0.5, 0.0, 1.5, 10.0), other)
 
 
+@pytest.mark.changes("GAP CONDUCTANCE, PRESSURE", "GAP CONDUCTANCE, CLEARANCE")
+def test_the_second_column_is_what_the_parameter_says(tmp_path):
+    """Under the pressure 5: the mean of two rows, or the value at clearance 0."""
+    def make(parameter):
+        return pressed(f"*GAP CONDUCTANCE, {parameter}", "0.5, 0.", "1.5, 10.", "0., 20."), \
+            crossing({"PRESSURE": 1.0, "CLEARANCE": 0.5}[parameter])
+
+    follows(tmp_path, make, "PRESSURE", "CLEARANCE")
+
+
+@pytest.mark.changes("GAP CONDUCTANCE")
+@pytest.mark.parametrize("other", [(0.9, 0.0, 0.2, 0.4), (0.8, 0.05, 0.2, 0.4),
+                                   (0.8, 0.0, 0.3, 0.4), (0.8, 0.0, 0.2, 0.5)])
+def test_every_field_of_a_table_of_clearance(tmp_path, other):
+    """The faces are 0.1 apart."""
+    def make(rows):
+        low, start, high, end = rows
+        omega = low + (high - low) * (0.1 - start) / (end - start)
+        return pressed("*GAP CONDUCTANCE, CLEARANCE", f"{low!r}, {start!r}", f"{high!r}, {end!r}",
+                       gap=0.1), crossing(omega)
+
+    follows(tmp_path, make, (0.8, 0.0, 0.2, 0.4), other)
+
+
+@pytest.mark.parametrize(("last", "end"), [(0.2, 0.099), (0.0, 0.05)])
+def test_no_heat_crosses_beyond_the_last_clearance(tmp_path, last, end):
+    none = [("conductance", "FACE", "LAST", 0.0, 0.0), ("heat_flux", "FACE", "LAST", 0.0, 0.0)]
+    table = ["0.8, 0.", f"{last!r}, {end!r}"]
+    judge(tmp_path, pressed("*GAP CONDUCTANCE, CLEARANCE", *table, gap=0.1), none)
+    held = crossing(last) if last else none
+    judge(tmp_path, pressed("*GAP LAW, TYPE=CLEARANCE", *table, gap=0.1), held)
+
+
+def test_tables_of_pressure_and_clearance_stand_in_one_interaction(tmp_path):
+    laws = ["*GAP CONDUCTANCE, PRESSURE", "0.5, 0.", "1.5, 10.",
+            "*GAP CONDUCTANCE, CLEARANCE", "0.5, 0.", "0., 0.4"]
+    judge(tmp_path, pressed(*laws), crossing(1.0))
+    judge(tmp_path, pressed(*laws, gap=0.1), crossing(0.375))
+
+
 @pytest.mark.changes("GAP LAW")
 @pytest.mark.parametrize("other", [(0.6, 0.1, 2.0), (0.5, 0.12, 2.0), (0.5, 0.1, 1.5)])
 def test_every_field_of_a_power_law(tmp_path, other):

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from blocks import block, solid, write
+from blocks import block, solid, without_unused_surfaces, write
 from deck_runs import run
 from physics import nodes_of
 
@@ -28,10 +28,22 @@ PRESSED = ["*STEP", "*STATIC", "1., 1.", "*DSLOAD", "B.TOP, P, 1.", "*END STEP"]
 
 def warnings(folder, *cards, status=0):
     """Check a deck; return its warnings as (line image, message)."""
-    deck = write(folder / "deck.inp", *cards)
+    deck = write(folder / "deck.inp", without_unused_surfaces([c for part in cards for c in part]))
     process = run("check", deck)
     assert process.returncode == status, process.stderr
     return re.findall(r"^.*: warning: (.*)\n(.*)$", process.stderr, re.M)
+
+
+def warnings_of_run(folder, *cards, status=0):
+    """Solve a deck; return the warnings of the run, which have no place in the deck."""
+    deck = write(folder / "deck.inp", without_unused_surfaces([c for part in cards for c in part]))
+    process = run("run", "--quiet", deck, "--out", folder)
+    assert process.returncode == status, process.stderr
+    found = re.findall(r"^[^:\n]*\.inp: warning: (.*)$", process.stderr, re.M)
+    listing = deck.with_suffix(".lst").read_text()
+    told = " ".join(listing[listing.rindex("WARNINGS\n"):].split()) if found else ""
+    assert all(message in told for message in found)
+    return found
 
 
 def one(found, card):
@@ -73,14 +85,18 @@ def test_warnings_of_pairs_stand_in_the_listing_too(tmp_path):
     assert "contact pair F: slave node" in listing[listing.index("WARNINGS"):]
 
 
-@pytest.mark.parametrize(("gap", "clearance", "warned"), [
-    (-0.9, None, False), (-1.0, None, True), (-1.0, -1e-3, False)])
-def test_bodies_inside_each_other(tmp_path, gap, clearance, warned):
+@pytest.mark.parametrize(("gap", "clearance", "told"), [
+    (-1.0, None, "1"), (-0.25, None, "0.25"), (-1e-7, None, "1E-7"), (-1e-10, None, None),
+    (0.0, None, None), (1e-7, None, None), (-1.0, -1e-3, None)])
+def test_bodies_inside_each_other(tmp_path, gap, clearance, told):
+    """An overlap within the rounding of coordinates is none."""
     found = warnings(tmp_path, blocks(gap=gap, clearance=clearance), PRESSED)
-    if not warned:
+    if told is None:
         assert found == []
         return
-    assert "the faces overlap by 1 at slave node " in one(found, "*CONTACT PAIR")
+    message = one(found, "*CONTACT PAIR")
+    overlap = float(re.search(r"the faces overlap by (\S+) at slave node ", message)[1])
+    assert overlap == pytest.approx(float(told), rel=1e-6)
 
 
 def test_swapped_faces(tmp_path):
@@ -210,3 +226,119 @@ def test_faces_far_apart_are_paired_all_the_same(tmp_path):
     process = run("check", deck)
     assert process.returncode == 0, process.stderr
     assert "9 node pairs, initial gaps 1E+12 to 1E+12" in process.stdout.replace("1E12", "1E+12")
+
+
+def conducting(step, conductivity="50.", expansion="1.E-5"):
+    """Return one block with cards of its step and two properties as written."""
+    return [*block("A", XS, [0.0, 1.0, 2.0]), "*MATERIAL, NAME=A", "*ELASTIC", "1000., 0.",
+            "*EXPANSION", expansion, "*CONDUCTIVITY", conductivity,
+            "*SOLID SECTION, ELSET=A, MATERIAL=A", *step]
+
+
+HEATED = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", "*BOUNDARY",
+          "A.BOTTOM, 1, 2", "A.BOTTOM, 11", "A.TOP, 11, 11, 5.", "*END STEP"]
+
+
+def test_decimal_commas(tmp_path):
+    """The number is read as the two fields that it is, and said to be."""
+    message = one(warnings(tmp_path, conducting(HEATED, "1,18")), "1,18")
+    assert message.startswith("decimal comma? 1,18 is two fields: 1, and a temperature, which ")
+    assert "write 1.18, or 1. if that is meant" in message
+    for legitimate in ("1.18", "50, 293", "50., 20.", "50., 20"):
+        assert warnings(tmp_path, conducting(HEATED, legitimate)) == []
+
+
+def test_constants_are_printed_as_understood(tmp_path):
+    laws = ["*FRICTION", "0,155", "*GAP LAW, TYPE=GAS", "0.5, 0.25", "*GAP CONDUCTANCE, PRESSURE",
+            "2., 0.", "3., 10."]
+    cards = blocks()
+    at = cards.index("*SURFACE INTERACTION, NAME=I") + 1
+    cards[cards.index("*ELASTIC") + 1] = "20000, 0,4"
+    cards = [*cards[:at], *laws, *cards[at:]]
+    heat = [*PRESSED[:1], "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", *PRESSED[2:-1],
+            "*BOUNDARY", "A.BOTTOM, 11", "B.TOP, 11, 11, 5.", "*END STEP"]
+    deck = write(tmp_path / "deck.inp", cards, heat)
+    checked = " ".join(run("check", deck).stdout.split())
+    assert run("run", "--quiet", deck, "--out", tmp_path).returncode == 0
+    listed = " ".join(deck.with_suffix(".lst").read_text().split())
+    for text in (checked, listed):
+        for constants in ("Young's modulus 20000, Poisson's ratio 0, coefficient of expansion 0, "
+                          "conductivity 1", "A/(B + gap), A = 0.5, B = 0.25",
+                          "table over the pressure: 2 at 0, 3 at 10"):
+            assert constants in text, constants
+    assert "interaction I ............. friction none" in checked
+    assert "coefficient of friction ... none" in listed
+
+
+def test_every_kind_of_constant_is_printed(tmp_path):
+    """Of a property that is given twice the later card holds."""
+    cards = conducting(HEATED, "50.")
+    at = cards.index("*SOLID SECTION, ELSET=A, MATERIAL=A")
+    more = ["*ELASTIC, TYPE=ENGINEERING CONSTANTS", "9., 8., 7., 0.1, 0.2, 0.15, 3., 4.", "5.",
+            "*EXPANSION, TYPE=ORTHO", "1.E-6, 2.E-6, 3.E-6", "*CONDUCTIVITY, TYPE=ORTHO", "6., 7.",
+            "*DENSITY", "2.5"]
+    deck = write(tmp_path / "deck.inp", cards[:at], more, cards[at:])
+    process = run("check", deck)
+    assert process.returncode == 0, process.stderr
+    assert ("material A ................ E1 9, E2 8, E3 7, nu12 0.1, nu13 0.2, nu23 0.15, G12 3, "
+            "G13 4, G23 5, alpha11 1E-6, alpha22 2E-6, alpha33 3E-6, K11 6, K22 7, density 2.5"
+            ) in process.stdout
+
+
+def test_a_coupled_step_without_heat(tmp_path):
+    cold = [card for card in HEATED if ", 11" not in card]
+    message = one(warnings(tmp_path, conducting(cold)), "*STEP")
+    assert message.startswith("step 1 solves no heat: nothing prescribes a temperature")
+    assert warnings(tmp_path, conducting(HEATED)) == []
+
+
+def test_definitions_that_nothing_uses(tmp_path):
+    spare = ["*MATERIAL, NAME=SPARE", "*ELASTIC", "1., 0."]
+    assert one(warnings(tmp_path, spare, conducting(HEATED)), "*MATERIAL, NAME=SPARE") == \
+        "nothing uses the material SPARE"
+
+
+def test_an_amplitude_that_ends_long_before_its_step(tmp_path):
+    cards = ["*AMPLITUDE, NAME=RISE", "0., 0., 1., 1."]
+    slow = [card.replace("1., 1.", "9., 900.") for card in HEATED]
+    slow[3] = "*BOUNDARY, AMPLITUDE=RISE"
+    message = one(warnings(tmp_path, cards, conducting(slow)), "*AMPLITUDE")
+    assert message == ("amplitude RISE ends at 1, long before the end of step 1 at 900: its last "
+                       "factor, 1, is held")
+
+
+@pytest.mark.parametrize(("gap", "closes"), [(1e-3, True), (0.2, False)])
+def test_contact_that_never_closes(tmp_path, gap, closes):
+    """The upper block is pushed down by 0.1."""
+    pushed = ["*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY", "B.TOP, 2, 2, -0.1", "*END STEP"]
+    found = warnings_of_run(tmp_path, blocks(gap=gap), pushed)
+    assert found == ([] if closes else ["contact pair F never closes: its smallest gap is 0.1"])
+
+
+def test_loads_that_never_act(tmp_path):
+    """An amplitude that is 0, and temperatures that are prescribed as they are."""
+    curve = ["*AMPLITUDE, NAME=NONE", "0., 0., 1., 0."]
+    none = [*HEATED[:-2], "A.TOP, 11", "*DLOAD, AMPLITUDE=NONE", "A, BX, 1.", "*END STEP"]
+    found = warnings_of_run(tmp_path, curve, conducting(none))
+    assert found == ["no load acts: all displacements are 0 in all increments",
+                     "no heat is loaded: all temperatures keep their initial values in all "
+                     "increments"]
+    assert warnings_of_run(tmp_path, conducting(HEATED)) == []
+    pulled = [*none[:-2], "A, BX, 1.", "*END STEP"]
+    pulled[-3] = "*DLOAD"
+    found = warnings_of_run(tmp_path, conducting(pulled))
+    assert [message.split(":")[0] for message in found] == ["no heat is loaded"]
+    cold = warnings_of_run(tmp_path, conducting(HEATED, expansion="0."))
+    assert [message.split(":")[0] for message in cold] == ["no load acts"]
+
+
+@pytest.mark.parametrize("nlgeom", ["", ", NLGEOM=NO"])
+@pytest.mark.parametrize(("strain", "told"), [(0.099, False), (0.101, True)])
+def test_large_strains(tmp_path, strain, told, nlgeom):
+    """A block that is stretched uniformly, nu = 0; half of it in the first increment."""
+    stretched = [f"*STEP{nlgeom}", "*STATIC", "0.5, 1.", "*BOUNDARY", "A.BOTTOM, 1, 2",
+                 f"A.TOP, 2, 2, {2 * strain!r}", "A.TOP, 1", "A.LEFT, 1", "A.RIGHT, 1", "*END STEP"]
+    found = warnings_of_run(tmp_path, conducting(stretched))
+    assert len(found) == told
+    if told:
+        assert re.match(r"increment 2: the strain of element \d+ is 10.1 %; strains and ", found[0])

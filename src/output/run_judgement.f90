@@ -1,0 +1,118 @@
+!> What only a whole run shows of a deck that may not be meant so: contact that never closes, no
+!> load that acts, large strains.
+module run_judgement
+   use contact_pairs, only: contact_pairs_type
+   use kinds, only: dp
+   use mesh, only: extent_of
+   use model, only: model_type
+   use records, only: increment_record_type, status_open
+   use steps, only: solves_heat, solves_mechanics
+   use strains, only: largest_strain
+   use text, only: append, string_type, to_text
+   implicit none
+   private
+   public :: run_judgement_type
+
+   real(dp), parameter :: small_strain = 0.1_dp    !! largest for which small strains hold
+   real(dp), parameter :: unmoved = 1.0e-12_dp     !! part of the extent that is no displacement
+   real(dp), parameter :: unheated = 1.0e-12_dp    !! part of a temperature that is no change
+
+   !> What was seen of a run so far.
+   type :: run_judgement_type
+      private
+      logical :: moves = .false.                   !! whether a node was displaced
+      logical :: warms = .false.                   !! whether a temperature left its initial value
+      logical, allocatable :: closes(:)            !! (interfaces) whether a pair was closed
+      real(dp), allocatable :: smallest_gap(:)     !! (interfaces) [length]
+      real(dp) :: strain = 0.0_dp                  !! largest so far [-]
+      integer :: element = 0                       !! element that has it
+      integer :: increment = 0                     !! increment that has it
+      logical :: ended_early = .false.             !! whether the run failed
+   contains
+      procedure :: take
+      procedure :: fail
+      procedure :: warnings
+   end type run_judgement_type
+
+contains
+
+   !> Takes an accepted increment.
+   subroutine take(self, record, model, pairs)
+      class(run_judgement_type), intent(inout) :: self    !! what was seen
+      type(increment_record_type), intent(in) :: record   !! the increment
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      real(dp) :: strain
+      integer :: element, i
+
+      if (.not. allocated(self%closes)) then
+         allocate (self%closes(size(pairs)), source=.false.)
+         self%smallest_gap = [(minval(pairs(i)%initial_gap), i=1, size(pairs))]
+      end if
+      associate (analysis => model%steps(record%step)%analysis, fields => record%fields)
+         if (solves_heat(analysis)) self%warms = self%warms .or. any(abs(fields%temperature - &
+            model%initial_temperature) > unheated*maxval(abs(fields%temperature)))
+         if (.not. solves_mechanics(analysis)) return
+         self%moves = self%moves .or. &
+            any(abs(fields%displacement) > unmoved*extent_of(model%mesh%coordinates))
+         do i = 1, size(pairs)
+            self%closes(i) = self%closes(i) .or. any(record%contacts(i)%status /= status_open)
+            self%smallest_gap(i) = min(self%smallest_gap(i), &
+               minval(record%contacts(i)%smallest_gap))
+         end do
+         if (.not. allocated(fields%stress)) return
+         call largest_strain(model%mesh, fields%displacement, strain, element)
+         if (strain <= self%strain) return
+         self%strain = strain
+         self%element = element
+         self%increment = record%increment
+      end associate
+   end subroutine take
+
+   !> Notes that the run ended early, so that what never happened might still have done.
+   pure subroutine fail(self)
+      class(run_judgement_type), intent(inout) :: self    !! what was seen
+
+      self%ended_early = .true.
+   end subroutine fail
+
+   !> What is to be said of the run.
+   pure function warnings(self, model, pairs) result(lines)
+      class(run_judgement_type), intent(in) :: self       !! what was seen
+      type(model_type), intent(in) :: model               !! the model
+      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(string_type), allocatable :: lines(:)          !! one a warning
+      integer :: i
+
+      allocate (lines(0))
+      if (.not. allocated(self%closes)) return
+      if (self%strain > small_strain) call append(lines, 'increment '// &
+         to_text(self%increment)//': the strain of element '// &
+         to_text(model%mesh%element_number(self%element))//' is '//percent(self%strain)// &
+         '; strains and displacements are taken as small, which fails above '// &
+         percent(small_strain))
+      if (self%ended_early) return
+      if (any(solves_mechanics(model%steps%analysis))) then
+         if (.not. self%moves) call append(lines, 'no load acts: all displacements are 0 in '// &
+            'all increments')
+         do i = 1, size(pairs)
+            if (self%closes(i)) cycle
+            call append(lines, 'contact pair '//pairs(i)%name//' never closes: its smallest '// &
+               'gap is '//to_text(self%smallest_gap(i)))
+         end do
+      end if
+      if (any(solves_heat(model%steps%analysis)) .and. .not. self%warms) call append(lines, &
+         'no heat is loaded: all temperatures keep their initial values in all increments')
+   end function warnings
+
+   pure function percent(part) result(words)
+      real(dp), intent(in) :: part
+      character(:), allocatable :: words
+      real(dp) :: rounded
+
+      rounded = 1000.0_dp*part
+      if (rounded < 1.0e6_dp) rounded = real(nint(rounded), dp)
+      words = to_text(rounded/10)//' %'
+   end function percent
+
+end module run_judgement
