@@ -1,15 +1,18 @@
 """The cylinder against tests/reference/cylinder_reference.py, which shares nothing but the deck:
 flexibility in place of stiffness, Newton's method in place of eq. (4.2)."""
 
+import shutil
+import subprocess
 import sys
 
 import h5py
 import numpy as np
 import pytest
 
-from deck_runs import CYLINDER, DECKS, copy_deck, solve
+from deck_runs import CYLINDER, DECKS, OWN_MESH, copy_deck, solve
 
-sys.path.insert(0, str(DECKS.parent / "reference"))
+sys.path[:0] = [str(DECKS.parent / "reference"), str(CYLINDER.parent)]
+import make_decks  # noqa: E402
 from cylinder_reference import solve_deck  # noqa: E402
 
 DATASETS = {"gap": "g", "pressure": "p", "shear": "t", "slip": "slip", "heat_flux": "q"}
@@ -38,3 +41,22 @@ def test_every_increment_is_that_of_the_independent_solver(tmp_path, levels):
         np.testing.assert_allclose(
             found[name], values, rtol=0.0, atol=TOLERANCE * scale, err_msg=name
         )
+
+
+def test_checks_of_the_deck_are_those_of_the_independent_solver():
+    """Nine digits of what it finds on the deck's own mesh, in the deck as in the script."""
+    _, states = solve_deck(CYLINDER)
+    at = {state.load: state for state in states}
+    for load, *values in make_decks.SAME_MESH:
+        expected = at[load].shear_force, at[load].edge_contact, at[load].edge_stick
+        np.testing.assert_allclose(values, expected, rtol=5e-9, err_msg=load)
+    _, checks = CYLINDER.read_text().split(OWN_MESH)
+    assert checks.endswith("\n" + make_decks.same_mesh_cards() + "\n")
+
+
+def test_deck_is_the_one_that_the_script_writes(tmp_path):
+    folder = tmp_path / "cylinder"
+    shutil.copytree(CYLINDER.parent, folder, ignore=shutil.ignore_patterns("*.inp"))
+    subprocess.run([sys.executable, folder / "make_decks.py"], check=True, timeout=60)
+    for deck in CYLINDER.parent.glob("*.inp"):
+        assert (folder / deck.name).read_text() == deck.read_text(), deck.name

@@ -9,8 +9,12 @@ CYLINDER = Path(__file__).resolve().parents[2] / "input" / "cylinder" / "cylinde
 
 
 def write_deck(path, model_cards=(), end_cards=()):
-    """Write the published deck with more cards before its first *STEP and at its end."""
-    lines = CYLINDER.read_text().splitlines()
+    """Write the published deck with more cards before its first *STEP and at its end; refined, it
+    loses the checks of its own mesh."""
+    text = CYLINDER.read_text()
+    if any(card.startswith("*REFINE") for card in model_cards):
+        text = text.split("** On this mesh")[0]
+    lines = text.splitlines()
     step = next(i for i, line in enumerate(lines) if line.upper().startswith("*STEP"))
     path.write_text("\n".join([*lines[:step], *model_cards, *lines[step:], *end_cards]) + "\n")
     return path
