@@ -141,14 +141,19 @@ def test_a_heat_step_keeps_displacement_and_stress_and_a_static_one_temperatures
     assert np.all(rows["temperature"][0] == 0)
 
 
-def test_sizes_are_the_largest_of_all_steps(orders):
-    # 42 nodes: 10 with a temperature; u_x of all, u_y of 10 held. 5 pairs, without friction.
-    with h5py.File(orders) as file:
+def test_sizes_are_the_largest_of_all_steps(orders, tmp_path):
+    # 42 nodes: 10 with a temperature; u_x of all, u_y of 10 held. 5 pairs, without friction. Both
+    # fields have one unknown a node, of the same nodes: their factors are of one size.
+    heat = solve(rods(tmp_path / "heat.inp", [(HEAT, HEATED)], elastic=False))
+    with h5py.File(orders) as file, h5py.File(heat) as half:
         attributes = dict(file["run"].attrs)
+        of_one_field = half["run"].attrs["factor_bytes"]
     assert attributes["equations_thermal"] == 42 - 10
     assert attributes["equations_mechanical"] == 42 - 10
     assert attributes["contact_unknowns"] == 5 + 5
-    assert attributes["factor_bytes"] > 0
+    assert attributes["factor_bytes"] == 2 * of_one_field
+    # More than a chain has and less than a full triangle; tests/unit/linalg knows the profile.
+    assert 8 * (32 + 31) < of_one_field < 8 * 32 * 33 // 2
 
 
 def test_supports_that_a_later_step_removes_make_its_problem_the_larger_one(tmp_path):

@@ -134,6 +134,28 @@ def test_newton_does_not_mind_how_steep_the_law_is(rod, name, kept, exponent):
     np.testing.assert_allclose(omega, expected, rtol=max(1e-8, 4e-18 / b))
 
 
+@pytest.mark.parametrize(("exponent", "factor"), [(0.5, 0.1), (2.0, 1e-11)])
+def test_newton_squares_the_residual_under_a_power_of_the_pressure(rod, tmp_path, exponent, factor):
+    """Its derivative has the exponent in it: with another one the residual falls by a constant
+    factor. Closed rods with a gain of -4 or less."""
+    gap, a, b = 5.2e-4, 1e-5, 1e-5
+    both, open_law, _ = known(gap, 12e-6, 0.0, a, b)
+    laws = open_law, rods.power(a / b, factor, exponent)
+    expected, = rods.solutions(both, *laws)
+    assert rods.gain(both, *laws, expected) < -4.0
+    law = {"<touch>, 1.E-4, 1.": f"<touch>, {factor!r}, {exponent!r}"}
+    values = {"gap": gap, "a": a, "b": b, "touch": a / b}
+    sets = [word for name, value in values.items() for word in ("--set", f"{name}={value!r}")]
+    process, omega, *_ = rod("r1b", law, *sets)
+    assert omega is not None, process.stderr
+    np.testing.assert_allclose(omega, expected, rtol=1e-9)
+    with h5py.File(tmp_path / "rods" / "r1b.vtkhdf") as file:
+        residual = file["convergence/residual"][()]
+    near = residual[np.argmax(residual < 0.1):]
+    assert len(near) <= 6   # 0.1, 1e-2, 1e-4, 1e-8, 1e-16, and one for the constant
+    assert (near[1:-1] < near[:-2]**1.5).all(), near
+
+
 def test_several_solutions_are_said_only_on_proof(rod):
     process, _, gain, _ = rod("r3-middle")
     assert "at least two other solutions" in process.stderr

@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline 
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 INCREMENTS, NODES, ELEMENTS, PAIRS = 45, 326, 92, 21
+ENDS, AXIS = 5 + 5, 13 + 13   # nodes of the heated and the cold section, of the axis of symmetry
 QUADRATIC_QUAD = 23
 
 
@@ -191,8 +192,14 @@ def test_the_file_holds_the_card_images_and_the_run(results, stored):
     assert cards == (results / "cylinder.inp").read_text().splitlines()
     run_attributes = stored["run"].attrs
     assert run_attributes["solver"].upper() == "SKYLINE"
-    for name in "equations_thermal equations_mechanical contact_unknowns factor_bytes".split():
-        assert run_attributes[name] > 0, name
+    thermal, mechanical = NODES - ENDS, 2 * NODES - ENDS - AXIS
+    assert run_attributes["equations_thermal"] == thermal
+    assert run_attributes["equations_mechanical"] == mechanical
+    # Jumps, gaps and slips; both nodes on the axis are held along it.
+    assert run_attributes["contact_unknowns"] == 3 * PAIRS - 1
+    diagonals, triangles = (sum(f(n) for n in (thermal, mechanical))
+                            for f in (lambda n: n, lambda n: n * (n + 1) // 2))
+    assert 8 * diagonals < run_attributes["factor_bytes"] < 8 * triangles
     assert 0 < run_attributes["smallest_pivot"] <= 1
     for name in "read assemble reduce iterate recover write".split():
         assert run_attributes[f"seconds_{name}"] > 0, name
