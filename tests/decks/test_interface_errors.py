@@ -54,13 +54,18 @@ def test_error_of_hertz_peak_pressure(tmp_path):
     assert abs(fine["edge_contact"][0] - value) <= mesh
 
 
-def test_mesh_of_a_coupled_run(tmp_path):
-    """What is estimated for the mesh is 1.25 of what the next one gives, without factoring it."""
-    coarse = errors(solve(bare(CYLINDER, tmp_path, "coarse.inp")), "FACE")
-    fine = errors(solve(bare(CYLINDER, tmp_path, "fine.inp", ["*REFINE, LEVELS=1"])), "FACE")
+@pytest.mark.parametrize("friction", ["*FRICTION\n0.155, 1.E5\n", ""])
+def test_mesh_of_a_coupled_run(tmp_path, friction):
+    """What is estimated for the mesh is 1.25 of what the next one gives, without factoring it: to
+    the few per cent that four corrections leave. In one increment, before which nothing has
+    slipped: what friction left on the finer mesh is not known."""
+    changes = {"20., 900.": "900., 900.", "*FRICTION\n0.155, 1.E5\n": friction}
+    coarse = errors(solve(bare(CYLINDER, tmp_path, "coarse.inp", changes=changes)), "FACE")
+    fine = errors(solve(bare(CYLINDER, tmp_path, "fine.inp", ["*REFINE, LEVELS=1"], changes)),
+                  "FACE")
     for name in ("normal_force", "heat_rate", "peak_pressure"):
         value, mesh, *_ = coarse[name]
-        assert 1.25 * (fine[name][0] - value) == pytest.approx(mesh, rel=0.25), name
+        assert 1.25 * (fine[name][0] - value) == pytest.approx(mesh, rel=0.05), name
 
 
 def test_error_of_increments(tmp_path):

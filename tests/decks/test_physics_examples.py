@@ -95,16 +95,27 @@ def turbine_joint():
 
 
 def thermal_cycling():
-    """A strip in one dimension."""
+    """A strip: forces in one dimension, edges between two nodes in two."""
     strip = 1.0, 1e5, 1e-5
+    places, stuck = thermal_cycling_zones()
     found = {("shear_force", "SOLE", f"{time}."): -friction_strip.held_force(*strip, rise)
              for time, rise in ((1, 60.0), (3, 60.0), (4, 90.0))}
-    for time, slip in ((1, friction_strip.slip_length(*strip, 60.0, 0.3, 10.0)),
-                       (2, friction_strip.reversed_slip_length(*strip, 60.0, 0.3, 10.0)),
-                       (3, friction_strip.reversed_slip_length(*strip, 60.0, 0.3, 10.0)),
-                       (4, friction_strip.slip_length(*strip, 90.0, 0.3, 10.0))):
-        found["edge_stick", "SOLE", f"{time}."] = 40.0 - slip
+    for when, row, slip in (
+            ("1.", 20, friction_strip.slip_length(*strip, 60.0, 0.3, 10.0)),
+            ("2.", 40, friction_strip.reversed_slip_length(*strip, 60.0, 0.3, 10.0)),
+            ("2.9", 58, friction_strip.reversed_slip_length(*strip, 54.0, 0.3, 10.0)),
+            ("4.", 80, friction_strip.slip_length(*strip, 90.0, 0.3, 10.0))):
+        last = np.flatnonzero(stuck[row])[-1]
+        edge = places[last:last + 2].mean()
+        assert edge == pytest.approx(40.0 - slip, abs=1.0)   # the height
+        found["edge_stick", "SOLE", when] = edge
     return found
+
+
+def thermal_cycling_zones():
+    """Return the nodes behind the held one, and which of them stick after each increment."""
+    rises = np.cumsum([0.0] + 20 * [3.0] + 20 * [-3.0] + 20 * [3.0] + 20 * [1.5])
+    return friction_strip.strip_zones(40.0, 1.0, 1e5, 1e-5, 0.3, 10.0, rises, 40)
 
 
 def brake_pad():
@@ -121,6 +132,19 @@ def test_example_passes_its_checks(tmp_path, name):
     with h5py.File(tmp_path / f"{name}.vtkhdf") as file:
         # Rounding of sums over some hundred nodes; the shrink fit's radial sums are no imbalance.
         assert np.nanmax(file["history/force_imbalance"][()]) < 1e-9
+
+
+def test_zones_of_the_cycled_strip_are_those_of_the_independent_solution(tmp_path):
+    """Every node at every increment but the one at time 3, where all that slipped back is on the
+    verge of slipping again."""
+    process = run("run", "--quiet", EXAMPLES / "thermal_cycling.inp", "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    with h5py.File(tmp_path / "thermal_cycling.vtkhdf") as file:
+        status, s = file["contact/SOLE/status"][()], file["contact/SOLE/s"][()]
+    places, stuck = thermal_cycling_zones()
+    np.testing.assert_allclose(s[1:], places, rtol=1e-12)
+    clear = np.arange(len(stuck)) != 60
+    np.testing.assert_array_equal(status[clear, 1:], np.where(stuck, 2, 1)[clear])
 
 
 @pytest.mark.parametrize("name", NAMES)
