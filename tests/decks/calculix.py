@@ -128,8 +128,9 @@ def differences(theirs, ours):
         # CalculiX has more points, in further layers, or fewer: one in a three-node triangle.
         assert {row[:1] for row in rows} == {row[:1] for row in table}, key
         assert kind_of(quantity) in ("S", "HFL") or len(rows) == len(table) == len(ours[key]), key
-        off = max(abs(table[row] - ours[key][row]) for row in rows)
-        worst[quantity] = max(worst.get(quantity, 0.0), off / (scale[kind_of(quantity)] or 1.0))
+        off = np.max([abs(table[row] - ours[key][row]) for row in rows])   # NaN, unlike max, if any is
+        worst[quantity] = float(np.maximum(worst.get(quantity, 0.0),
+                                           off / (scale[kind_of(quantity)] or 1.0)))
     return worst
 
 

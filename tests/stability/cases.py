@@ -53,6 +53,11 @@ def deviation(value, expected, scale=None):
     return float(np.abs(value - expected).max() / scale)
 
 
+def largest(*deviations):
+    """Return the largest; NaN, as max does not, where any is."""
+    return float(np.max(deviations))
+
+
 def judged(name, outcome, off, allowed):
     """Return the row of a case whose result is off by so much."""
     return [name, off, allowed, *outcome.figures(), report.verdict(off <= allowed)]

@@ -59,12 +59,12 @@ def solve(folder, name, method="NEWTON", levels=0, increments=45, cards=(), chan
 def difference(one, other):
     """Return the largest difference of two runs in the increments that both have, by the largest
     value of each quantity in the increment."""
-    largest = 0.0
+    deviations = []
     for name in QUANTITIES:
         for a, b in zip(one.contact[name], other.contact[name], strict=False):
             scale = np.abs(a).max()
-            largest = max(largest, np.abs(a - b).max() / scale if scale > 0.0 else np.abs(b).max())
-    return float(largest)
+            deviations.append(np.abs(a - b).max() / (scale if scale > 0.0 else 1.0))
+    return float(np.max(deviations))   # NaN where any is
 
 
 def resting(run):

@@ -7,7 +7,7 @@ import fuzzing
 import lame
 import numpy as np
 import rods
-from cases import HEAD, Outcome, deviation, judged, refused
+from cases import HEAD, Outcome, deviation, judged, largest, refused
 from conduction import wall
 from physics import material, mesh
 
@@ -87,9 +87,9 @@ def two_rods(folder, name, bar, gas, closed, allowed, steps=1):
     answer = rods.solve(bar, rods.gas(a, b), rods.power(c0, c1, 1.0))
     off = deviation(case.last("heat_flux"), answer.flux)
     if answer.gap > 0.0:
-        off = max(off, deviation(case.last("gap"), answer.gap, bar.gap))
+        off = largest(off, deviation(case.last("gap"), answer.gap, bar.gap))
     else:
-        off = max(off, deviation(case.last("pressure"), answer.pressure))
+        off = largest(off, deviation(case.last("pressure"), answer.pressure))
     return judged(name, case, off, allowed)
 
 
@@ -124,10 +124,10 @@ def dragged(folder, mu):
         material("A", (1000.0, 0.3)), material("B", (1000.0, 0.3)), law("*FRICTION", f"{mu!r}"),
         STATIC, bases("A.BOTTOM, 1, 2", "B.TOP, 2, 2, -1.E-4", "B.TOP, 1, 1, 0.5"), ["*END STEP"])
     pressure, shear = case.last("pressure"), case.last("shear")
-    off = max(deviation(shear, -mu * pressure, pressure.max()),
-              max(-pressure.min(), 0.0) / pressure.max(),
-              abs(case.last("shear_force") + mu * case.last("normal_force"))
-              / case.last("normal_force"))
+    off = largest(deviation(shear, -mu * pressure, pressure.max()),
+                  max(-pressure.min(), 0.0) / pressure.max(),
+                  abs(case.last("shear_force") + mu * case.last("normal_force"))
+                  / case.last("normal_force"))
     assert np.all(case.last("status") <= 1)
     return judged(f"mu = {mu:g}", case, off, ROUNDING)
 
@@ -153,8 +153,8 @@ def pressed(folder, name, young, allowed, poisson=0.0, xs=XS, heights=(1.0, 1.0)
     p, moduli = 5.0, [e / (1 - poisson**2) for e in young]
     case = Outcome(folder, "pressed", *pressed_cards(young, poisson, xs, heights, p))
     top = -p * sum(h / e for h, e in zip(heights, moduli, strict=True))
-    off = max(deviation(case.last("pressure"), p),
-              deviation(case.field("displacement")[:, 1].min(), top))
+    off = largest(deviation(case.last("pressure"), p),
+                  deviation(case.field("displacement")[:, 1].min(), top))
     return judged(name, case, off, allowed)
 
 
@@ -288,7 +288,7 @@ def strip(folder, thickness):
         *(material(name, (1000.0, 0.0)) for name in "ABC"),
         law("*FRICTION", "0.5"), ["*CONTACT PAIR, INTERACTION=I, NAME=G", "C.BOTTOM, B.TOP"], STATIC,
         bases("A.BOTTOM, 1, 2"), ["*DSLOAD", f"C.TOP, P, {p!r}", "*END STEP"])
-    off = max(deviation(case.last("pressure", name), p) for name in "FG")
+    off = largest(*(deviation(case.last("pressure", name), p) for name in "FG"))
     return judged(f"strips {thickness:.0e} as thick as long", case, off, ROUNDING)
 
 
@@ -309,8 +309,9 @@ def increments(folder):
     many = 1000 if DEBUG else 10000
     one, cut = grown(folder, 1), grown(folder, many)
     names = ("gap", "pressure", "shear", "slip")
-    off = max(deviation(cut.last(name), one.last(name), max(abs(one.last(name)).max(), floor))
-              for name, floor in zip(names, (1e-3, 1.0, 1.0, 1e-3), strict=True))
+    off = largest(*(
+        deviation(cut.last(name), one.last(name), max(abs(one.last(name)).max(), floor))
+        for name, floor in zip(names, (1e-3, 1.0, 1.0, 1e-3), strict=True)))
     slips, sticks = (int((one.last("status") == k).sum()) for k in (1, 2))
     assert slips > 0 and sticks > 0, "the case has both zones"
     table = report.Table("A load in many increments", HEAD, text="Pressed and pushed in proportion, so that the "

@@ -3,6 +3,7 @@
 import sys
 from collections import Counter
 
+import numpy as np
 import report
 from cylinder_runs import DECKS, OPEN_LAW, difference, resting, solve
 from report import Table, verdict
@@ -82,7 +83,7 @@ def group(folder, cases, method, tally):
         solution, error = landed(case, outcome)
         passes.append(outcome.passes)
         gains.append(solution.gain)
-        worst = max(worst, error / case.allowed(solution))
+        worst = np.maximum(worst, error / case.allowed(solution))   # NaN where any is
         if method in PLAIN and not case.jumps:
             right = right and attracts(method, solution.gain)
     tally.add(method, len(cases), passes)
