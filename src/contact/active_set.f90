@@ -13,6 +13,7 @@ module active_set
    use contact_system, only: contact_system_type
    use errors, only: error_type, set_error, status_no_convergence
    use friction, only: next_status
+   use idle_pairs, only: find_idle_pairs
    use kinds, only: dp
    use records, only: status_open, status_slip, status_stick
    implicit none
@@ -24,11 +25,13 @@ module active_set
    real(dp), parameter :: first_hold = 1.0e-3_dp   !! of the pairs' stiffness, in the first of them
    real(dp), parameter :: least_hold = 1.0e-10_dp  !! the same in the last ones
    real(dp), parameter :: nothing = 1.0e-12_dp     !! part of the largest stiffness that is rounding
+   real(dp), parameter :: barely = 10.0_dp         !! lengths of rounding by which a pair overlaps
    character(*), parameter :: unsettled = 'the contact zones do not settle'
 
 contains
 
-   !> Contact state under a condensed load, the references of friction being given.
+   !> Contact state under a condensed load, the references of friction being given, and its idle
+   !> pairs.
    !> Errors: no active set satisfies all conditions; the bodies are not held, and then driven is
    !> set, and the status is the one in which they are driven away.
    subroutine solve_contact(system, load, state, error)
@@ -36,6 +39,19 @@ contains
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
       type(contact_state_type), intent(inout) :: state    !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error !! see above
+
+      call find_state(system, load, state, error)
+      if (allocated(error)) return
+      call find_idle_pairs(system, load, force_rounding(system, load, state), state)
+   end subroutine solve_contact
+
+   !> A state that satisfies all contact conditions.
+   !> Errors: as solve_contact.
+   subroutine find_state(system, load, state, error)
+      type(contact_system_type), intent(inout) :: system
+      real(dp), intent(in) :: load(:)
+      type(contact_state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: guess
 
       guess = state
@@ -53,7 +69,7 @@ contains
          call follow_closing_path(system, load, state, error)
          if (.not. allocated(error)) call system%solve_set(load, state, error)
       end if
-   end subroutine solve_contact
+   end subroutine find_state
 
    !> Takes, in place of a state at which the path of states turns back, one at which it goes on,
    !> where it can be found.
@@ -111,7 +127,7 @@ contains
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       type(contact_system_type) :: soft
-      real(dp) :: hold, place(size(system%motion, 2))
+      real(dp) :: hold, place(size(system%motion, 2)), way(size(system%motion, 2))
       integer :: step
 
       soft = system
@@ -126,8 +142,14 @@ contains
             if (allocated(error)) call follow_closing_path(soft, soft_load, state, error)
          end associate
          if (allocated(error)) return
-         place = matmul(positions(system, state), system%motion)
+         way = matmul(positions(system, state), system%motion) - place
+         place = place + way
          if (holds_exactly(system, load, state)) return
+         ! A light load comes no farther than load/hold: the body goes on across the open gaps.
+         associate (far => norm2(state%gap) + barely*system%least_length*sqrt(real(size(load), dp)))
+            if (system%driven .and. norm2(way) > 0.0_dp) place = place + &
+               max(far/norm2(way) - 1.0_dp, 0.0_dp)*way
+         end associate
       end do
       ! The last trial says why: driven is set, or some pair is wrong without the hold.
       call system%solve_set(load, state, error)
@@ -190,8 +212,7 @@ contains
 
       gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(system%initial_gap)), &
          maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
-      force_tolerance = max(1.0e-12_dp*maxval(abs(state%force)), &
-         1.0e-13_dp*largest_term(system, load, state), system%least_force()) + tiny(1.0_dp)
+      force_tolerance = force_rounding(system, load, state)
       next(1, :) = state%status
       next(2, :) = state%direction
       do k = 1, size(state%status)
@@ -200,6 +221,16 @@ contains
             system%tangent(k) > 0, gap_tolerance, force_tolerance, excess(k))
       end do
    end subroutine judge
+
+   !> Contact force that is rounding.
+   pure real(dp) function force_rounding(system, load, state)
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: load(:)
+      type(contact_state_type), intent(in) :: state
+
+      force_rounding = max(1.0e-12_dp*maxval(abs(state%force)), &
+         1.0e-13_dp*largest_term(system, load, state), system%least_force()) + tiny(1.0_dp)
+   end function force_rounding
 
    !> Largest sum of the terms of which a contact force is made, S d - c, without their signs: what
    !> its rounding goes by where the terms cancel, as in a body that contact moves as a whole.

@@ -35,6 +35,9 @@ module contact_system
    public :: contact_system_type
 
    real(dp), parameter :: rounding = 1.0e-12_dp !! of the forces that a load is condensed of
+   !> Part of the rounding of coordinates: a load that moves a pair no farther is a remainder of
+   !> loads that were taken off.
+   real(dp), parameter :: unresolved = 1.0e-3_dp
 
    !> The reduced system, and the factors for the active set of its last solution.
    type :: contact_system_type
@@ -48,9 +51,11 @@ module contact_system
       real(dp), allocatable :: give(:) !! (m) of stuck pairs, not zero in rings [length/force]
       real(dp), allocatable :: alone(:) !! (m) normal stiffness of a pair alone [force/length]
       integer, allocatable :: link(:)             !! (links) places of the links' forces
-      real(dp), allocatable :: motion(:, :) !! (tail, q) unsupported rigid motions, orthonormal
+      real(dp), allocatable :: rigid(:, :)  !! (tail, q) unsupported rigid motions
+      real(dp), allocatable :: motion(:, :) !! (tail, q) the same, orthonormal
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
+      real(dp), allocatable :: least_drive(:) !! (tail) resultants that count as none [force]
       integer, allocatable :: free(:)             !! places on the tail that are sought
       integer, allocatable :: partner(:) !! (tail) place of d_n whose force enters the row, or 0
       real(dp), allocatable :: share(:)           !! (tail) factor of that force
@@ -61,7 +66,9 @@ module contact_system
       real(dp), allocatable :: scale(:) !! (free) factor of the rows, 1 in those with a border
       integer, allocatable :: factored(:)         !! (m) status*3 + direction of the factors
       real(dp), allocatable :: loose(:, :)        !! (free, l) motions that the set leaves free
-      logical :: driven = .false.                 !! whether the load drives one of them
+      real(dp), allocatable :: drive(:)           !! (l) forces along them that nothing takes up
+      logical :: driven = .false.                 !! whether these are more than rounding
+      logical, allocatable :: idle(:)   !! (m) closed pairs that carry nothing (idle_pairs)
       logical :: several = .false.                !! whether other states under the load are proven
    contains
       procedure :: solve_set
@@ -123,7 +130,8 @@ contains
       call self%solve_free(residual, unbalanced)
       d(self%free) = d(self%free) + residual(self%free, 1)
       if (size(self%loose, 2) > 0) then
-         call check_balance(self, load, d, unbalanced(:, 1), error)
+         self%drive = unbalanced(:, 1)
+         call check_balance(self, load, d, error)
          if (allocated(error)) return
          call move_least(self, state, d)
       end if
@@ -156,14 +164,17 @@ contains
 
    !> Whether the load drives the loose motions, by more than rounding.
    !> Error: it does.
-   subroutine check_balance(self, load, d, unbalanced, error)
+   subroutine check_balance(self, load, d, error)
       class(contact_system_type), intent(inout) :: self
       real(dp), intent(in) :: load(:), d(:)
-      real(dp), intent(in) :: unbalanced(:)
       type(error_type), allocatable, intent(out) :: error
+      real(dp) :: least(size(d)), terms(size(d))
+      integer :: i
 
-      self%driven = is_driven(unbalanced, load, self%schur, d) .and. &
-         maxval(abs(unbalanced)) > self%least_force()
+      terms = abs(load) + matmul(abs(self%schur), abs(d))
+      least = self%least_drive + [(unresolved*self%least_length*abs(self%schur(i, i)), &
+         i=1, size(d))]
+      self%driven = is_driven(self%loose, self%drive, terms(self%free), least(self%free))
       if (self%driven) call set_error(error, status_no_convergence, &
          'the bodies are not held by their supports and the pairs that are in contact')
    end subroutine check_balance

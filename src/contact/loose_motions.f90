@@ -1,16 +1,18 @@
 !> Rigid motions that an active set leaves free, on the tail of the contact system. What decides is
 !> which places the set holds, not a pivot: stiffness against bending may be as small as rounding.
 module loose_motions
-   use dense, only: null_space
+   use dense, only: least_squares, null_space
    use kinds, only: dp
    implicit none
    private
-   public :: free_motions, is_driven
+   public :: free_motions, is_driven, balanced_load, least_drive
 
    !> Spring of a row, as part of the pair's stiffness, that does not hold a body.
    real(dp), parameter :: slack = 1.0e-9_dp
-   !> Force along a motion that is rounding, as part of the load and of the terms of S d.
-   real(dp), parameter :: balanced = 1.0e-10_dp, rounding = 1.0e-13_dp
+   !> Force along a motion that is rounding, as part of the terms that it is the sum of.
+   real(dp), parameter :: rounding = 1.0e-13_dp
+   !> Part of the applied forces that cancel which coordinates and loads of a deck leave over.
+   real(dp), parameter :: cancelled = 1.0e-10_dp
 
 contains
 
@@ -37,15 +39,44 @@ contains
       end associate
    end function free_motions
 
-   !> Whether a load drives the motions, by more than rounding.
-   pure logical function is_driven(unbalanced, load, schur, d)
+   !> Whether forces drive the motions, by more than rounding. Each place is judged by the terms
+   !> that its own motion collects: those of another body may be far larger.
+   pure logical function is_driven(loose, unbalanced, terms, least)
+      real(dp), intent(in) :: loose(:, :)    !! (n, l) orthonormal motions of the free places
       real(dp), intent(in) :: unbalanced(:)  !! (l) forces along the motions [force]
-      real(dp), intent(in) :: load(:)        !! (tail) condensed load [force]
-      real(dp), intent(in) :: schur(:, :)    !! (tail, tail) S [force/length]
-      real(dp), intent(in) :: d(:)           !! (tail) relative displacements [length]
+      real(dp), intent(in) :: terms(:) !! (n) sums without signs of the forces' terms [force]
+      real(dp), intent(in) :: least(:)       !! (n) drive that counts as none [force]
 
-      is_driven = maxval(abs(unbalanced)) > balanced*maxval(abs(load)) + &
-         rounding*maxval(matmul(abs(schur), abs(d)))
+      is_driven = any(abs(matmul(loose, unbalanced)) > least + &
+         rounding*matmul(abs(matmul(loose, transpose(loose))), terms))
    end function is_driven
+
+   !> A condensed load with the exact resultants along the unsupported motions. Temperatures and
+   !> prescribed displacements have none; what the elimination makes of theirs is rounding.
+   function balanced_load(load, rigid, motion, resultant) result(balanced)
+      real(dp), intent(in) :: load(:)        !! (tail) c [force]
+      real(dp), intent(in) :: rigid(:, :)    !! (tail, q) unsupported motions
+      real(dp), intent(in) :: motion(:, :)   !! (tail, q) the same, orthonormal
+      real(dp), intent(in) :: resultant(:)   !! (q) of the applied forces along `rigid` [force]
+      real(dp) :: balanced(size(load))       !! (tail) [force]
+
+      balanced = load
+      if (size(motion, 2) == 0) return
+      balanced = load - matmul(motion, matmul(load, motion)) + &
+         least_squares(transpose(rigid), resultant)
+   end function balanced_load
+
+   !> Forces along the unsupported motions that count as none.
+   pure function least_drive(rigid, sums) result(least)
+      real(dp), intent(in) :: rigid(:, :) !! (tail, q) unsupported motions, each of one body
+      real(dp), intent(in) :: sums(:)     !! (q) resultants of the forces without signs [force]
+      real(dp) :: least(size(rigid, 1))   !! (tail) [force]
+      integer :: q
+
+      least = 0.0_dp
+      do q = 1, size(sums)
+         least = least + cancelled*sums(q)*abs(rigid(:, q))/max(sum(rigid(:, q)**2), tiny(1.0_dp))
+      end do
+   end function least_drive
 
 end module loose_motions

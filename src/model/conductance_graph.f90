@@ -42,6 +42,7 @@ module conductance_graph
    end type conductance_graph_type
 
    real(dp), parameter :: straight = 1.0e-3_dp   !! change of omega that a slope gives, relative
+   real(dp), parameter :: rounding = 1.0e-12_dp  !! relative change of omega that is none
    real(dp), parameter :: beyond = 1.0e-100_dp   !! gap that counts for none [length]
 
 contains
@@ -188,8 +189,9 @@ contains
 
       closed = conductance(self%law, .true., 0.0_dp, 0.0_dp)
       open = conductance(self%law, .false., 0.0_dp, 0.0_dp)
-      may_rest = self%width > 0.0_dp .and. omega >= min(closed, open) .and. &
-         omega <= max(closed, open)
+      ! The conductance of an end of the rest is one of the two values but for rounding.
+      may_rest = self%width > 0.0_dp .and. omega >= (1.0_dp - rounding)*min(closed, open) .and. &
+         omega <= (1.0_dp + rounding)*max(closed, open)
    end function may_rest
 
    !> Place of an opening that is not 0.
@@ -210,7 +212,6 @@ contains
       real(dp), intent(in) :: opening                    !! gap, or -p/modulus [length]
       real(dp) :: place                                  !! [length]
       real(dp) :: at(2), ends(2)
-      real(dp), parameter :: rounding = 1.0e-12_dp
 
       place = self%place_of_opening(opening)
       if (abs(self%omega(place) - omega) <= rounding*omega) return

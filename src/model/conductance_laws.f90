@@ -116,7 +116,7 @@ contains
    end function law_jump
 
    !> Whether the law jumps at gamma = p = 0 by more than rounding.
-   pure function law_jumps(law) result(jumps)
+   elemental function law_jumps(law) result(jumps)
       type(conductance_law_type), intent(in) :: law !! the law
       logical :: jumps                              !! both sides have values of their own there
       real(dp), parameter :: rounding = 1.0e-12_dp

@@ -39,20 +39,21 @@ contains
       type(pair_row_type), intent(in) :: pairs
       real(dp), intent(in) :: rigid(:, :)
       type(contact_system_type), intent(inout) :: contact
-      real(dp), allocatable :: forces(:, :), on_tail(:, :), relative(:, :)
+      real(dp), allocatable :: forces(:, :), relative(:, :)
       integer :: k, m, s
 
-      allocate (on_tail(size(contact%schur, 1), size(rigid, 2)), source=0.0_dp)
+      allocate (contact%rigid(size(contact%schur, 1), size(rigid, 2)), source=0.0_dp)
+      allocate (contact%least_drive(size(contact%schur, 1)), source=0.0_dp)
       do k = 1, size(pairs%slave)
          s = 2*pairs%slave(k)
          m = 2*pairs%master(k)
          relative = rigid(s - 1:s, :) - rigid(m - 1:m, :)
-         on_tail(contact%normal(k), :) = matmul(pairs%normal(:, k), relative)
+         contact%rigid(contact%normal(k), :) = matmul(pairs%normal(:, k), relative)
          if (contact%tangent(k) > 0) then
-            on_tail(contact%tangent(k), :) = matmul(pairs%tangent(:, k), relative)
+            contact%rigid(contact%tangent(k), :) = matmul(pairs%tangent(:, k), relative)
          end if
       end do
-      contact%motion = column_space(on_tail)
+      contact%motion = column_space(contact%rigid)
       if (size(contact%motion, 2) == 0) return
       associate (z => contact%motion)
          forces = matmul(contact%schur, z)

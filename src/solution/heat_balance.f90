@@ -9,12 +9,16 @@ module heat_balance
    use model, only: model_type
    use records, only: increment_record_type
    use solution_state, only: solution_state_type
+   use text, only: append, to_text
    implicit none
    private
-   public :: balance_heat
+   public :: balance_heat, warn_of_heat, sound_imbalance
 
    !> Part of K T below which a rate is no scale to measure by: only rounding is left of it.
    real(dp), parameter :: noise = 1.0e-6_dp
+
+   !> Largest imbalance at the end of an increment of which nothing is said.
+   real(dp), parameter :: sound_imbalance = 1.0e-2_dp
 
 contains
 
@@ -60,6 +64,24 @@ contains
             scale)
       end associate
    end subroutine balance_heat
+
+   !> Warns where the scheme leaves heat out of balance at the end of the increment, once for as
+   !> long as it stays so.
+   pure subroutine warn_of_heat(scheme, next, record)
+      type(thermal_scheme_type), intent(in) :: scheme         !! coefficients of (3.4)
+      type(solution_state_type), intent(inout) :: next        !! keeps whether it is
+      type(increment_record_type), intent(inout) :: record    !! receives the warning
+      logical :: was_out
+
+      was_out = next%is_out_of_balance
+      next%is_out_of_balance = record%heat_imbalance_pointwise > sound_imbalance
+      if (was_out .or. .not. next%is_out_of_balance) return
+      call append(record%warnings, 'increment '//to_text(record%increment)// &
+         ': at its end heat is out of balance by '// &
+         to_text(100.0_dp*record%heat_imbalance_pointwise)//' % of the largest rate '// &
+         '(heat_imbalance_pointwise), left by the scheme '//trim(scheme%name)// &
+         '; *THERMAL SCHEME, TYPE=IMPLICIT leaves none')
+   end subroutine warn_of_heat
 
    !> Net rates, one per load card and per card of prescribed temperatures, summed by their sign.
    pure subroutine sum_rates(loads, temperature, residual, record)

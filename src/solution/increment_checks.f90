@@ -7,7 +7,7 @@ module increment_checks
    use loads, only: loads_type
    use loose_bodies, only: bodies_heated_by_no_pair, bodies_held_by_no_pair
    use model, only: model_type
-   use records, only: increment_record_type
+   use records, only: increment_record_type, status_open
    use solution_state, only: solution_state_type
    use text, only: append, to_text
    use thermal_matrix, only: contact_diagonal
@@ -102,15 +102,17 @@ contains
       type(solution_state_type), intent(in) :: next             !! state at its end
       type(increment_record_type), intent(inout) :: record      !! receives the warning
       character(:), allocatable, intent(inout) :: undecided     !! what was last warned of
-      character(:), allocatable :: words
+      character(:), allocatable :: free, words
 
       words = ''
       if (operators%contact%several) words = &
          'with so much friction other contact states satisfy all conditions, too'
-      if (size(operators%contact%loose, 2) > 0) words = &
-         'the least motion is taken where nothing drives or holds one'// &
-         bodies_held_by_no_pair(model, operators%pairs, loads%displacement%active, &
-         next%contact%status)
+      if (size(operators%contact%loose, 2) > 0 .or. any(next%idle)) then
+         free = bodies_held_by_no_pair(model, operators%pairs, loads%displacement%active, &
+            merge(status_open, next%contact%status, next%idle .or. next%resting))
+         if (len(free) > 0) words = &
+            'the least motion is taken where nothing drives or holds one'//free
+      end if
       if (words /= undecided .and. len(words) > 0) call append(record%warnings, &
          'increment '//to_text(record%increment)//': '//words)
       undecided = words

@@ -10,7 +10,7 @@ module increment_records
    use due_output, only: needs_recovery
    use element_kinds, only: axisymmetric
    use element_points, only: points_of_elements
-   use heat_balance, only: balance_heat
+   use heat_balance, only: balance_heat, warn_of_heat
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -82,6 +82,7 @@ contains
          if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
             record%fields%heat_flux, record%heat_flux_error)
          call balance_heat(operators, model, loads, step%scheme, carrying, previous, next, record)
+         call warn_of_heat(step%scheme, next, record)
       else
          record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
          record%heat_out = record%heat_in
@@ -128,7 +129,7 @@ contains
                   contact%force(k), operators%contact%normal(k))* &
                   (contact%tangential(k) - before)
             end if
-            if (contact%status(k) == status_open) then
+            if (contact%status(k) == status_open .or. next%idle(k)) then
                next%closing(k) = contact%tangential(k)
             else if (previous%contact%status(k) == status_open) then
                next%closing(k) = contact%reference(k)
@@ -171,6 +172,8 @@ contains
       contact = kept_contact(next%contact, next%has_mechanics)
       associate (pairs => operators%interfaces(i))
          record%status = contact%status(first:last)
+         where (next%idle(first:last)) record%status = merge(status_slip, status_open, &
+            next%resting(first:last))
          record%gap = contact%gap(first:last)
          record%smallest_gap = next%smallest_gap(first:last)
          closed = in_contact(pairs, record%status /= status_open, record%gap)

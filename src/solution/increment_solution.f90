@@ -2,9 +2,11 @@
 module increment_solution
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
+   use conductance_laws, only: law_jumps
    use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
       law_conductance, temperature_jumps, thermal_forces
    use contact_states, only: contact_state_type
+   use controls, only: fixed_point_type, method_names, method_newton
    use errors, only: error_type, status_no_convergence
    use films, only: film_history
    use finite_values, only: check_finite
@@ -12,6 +14,7 @@ module increment_solution
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
+   use loose_motions, only: balanced_load, least_drive
    use model, only: model_type
    use pair_rows, only: held_approach
    use records, only: increment_record_type, iteration_record_type, status_open
@@ -74,12 +77,37 @@ contains
             call pass_once(operators, previous, data, next, record, error)
          else
             call solve_coupled(operators, step, previous, data, next, record, error)
+            if (allocated(error)) call suggest_newton(operators, step%fixed_point, error)
          end if
       else
          call solve_mechanics(operators, step, data, next, record, error)
       end if
+      if (.not. allocated(error)) call settle_idle_pairs(operators, next)
       next%has_mechanics = .true.
    end subroutine solve_pairs
+
+   !> Adds the method of choice to an error of another one. Bodies that are driven away no method
+   !> holds, and where laws jump the increment has been handed over already.
+   subroutine suggest_newton(operators, controls, error)
+      type(interface_operators_type), intent(in) :: operators
+      type(fixed_point_type), intent(in) :: controls
+      type(error_type), intent(inout) :: error
+
+      if (controls%method == method_newton .or. operators%contact%driven) return
+      if (any(law_jumps(operators%pairs%law))) return
+      error%message = error%message//'; *FIXED POINT, METHOD=NEWTON may solve it, where '// &
+         trim(method_names(controls%method))//' does not'
+   end subroutine suggest_newton
+
+   !> Idle pairs count as open without a gap; where their law jumps they rest. For the next
+   !> increment they are closed still: the body stays where it touches.
+   pure subroutine settle_idle_pairs(operators, next)
+      type(interface_operators_type), intent(in) :: operators
+      type(solution_state_type), intent(inout) :: next
+
+      next%idle = operators%contact%idle
+      next%resting = next%resting .or. (next%idle .and. law_jumps(operators%pairs%law))
+   end subroutine settle_idle_pairs
 
    !> Contact of an increment whose temperatures do not depend on it.
    subroutine solve_mechanics(operators, step, data, next, record, error)
@@ -217,9 +245,14 @@ contains
       operators%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       call operators%mechanical%set_load(next%force_load + thermal, loads%displacement%value)
       call operators%mechanical%condense_load()
-      data%welded_load = operators%mechanical%condensed
       operators%contact%initial_gap = operators%pairs%initial_gap - &
          held_approach(operators%pairs, loads%displacement%value)
+      associate (applied => next%force_load, rigid => operators%rigid)
+         operators%contact%least_drive = least_drive(operators%contact%rigid, &
+            matmul(abs(applied), abs(rigid)))
+         data%welded_load = balanced_load(operators%mechanical%condensed, &
+            operators%contact%rigid, operators%contact%motion, matmul(applied, rigid))
+      end associate
    end subroutine load_mechanics
 
    !> Fields of the whole bodies, from the solution on the pairs.

@@ -1,6 +1,7 @@
-!> The state before the first increment: nothing moved, pairs at their initial gaps.
+!> The state before the first increment: nothing moved, pairs at their initial gaps. Pairs without
+!> a gap conduct as closed ones that carry no pressure.
 module initial_state
-   use contact_operator, only: law_conductance
+   use contact_operator, only: kept_contact, law_conductance
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use model, only: model_type
@@ -26,8 +27,8 @@ contains
             contact%shear_force(m), state%closing(m), source=0.0_dp)
          contact%gap = operators%pairs%initial_gap
          state%smallest_gap = contact%gap
-         allocate (state%resting(m), source=.false.)
-         state%omega = law_conductance(operators, contact)
+         allocate (state%resting(m), state%idle(m), source=.false.)
+         state%omega = law_conductance(operators, kept_contact(contact, has_mechanics=.false.))
          state%omega_before = state%omega
          state%omega_start = state%omega
          allocate (state%displacement(2*n), state%heat_load(n), source=0.0_dp)

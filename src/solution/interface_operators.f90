@@ -11,6 +11,7 @@ module interface_operators
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
+   use loose_motions, only: balanced_load
    use mesh, only: extent_of
    use model, only: model_type
    use pair_rows, only: find_held_axes, pair_row_type, pair_surfaces, row_of
@@ -235,8 +236,10 @@ contains
    subroutine form_jump_load(self)
       class(interface_operators_type), intent(inout) :: self
       real(dp), allocatable :: temperature(:, :)
-      integer :: first, last, tail
+      real(dp) :: none(size(self%rigid, 2))
+      integer :: first, k, last, tail
 
+      none = 0.0_dp
       tail = self%thermal%map%tail
       allocate (self%jump_load(self%mechanical%map%tail, tail))
       do first = 1, tail, columns_at_once
@@ -245,6 +248,10 @@ contains
          call self%thermal%unit_responses(first, temperature)
          call condense_thermal_load(self, temperature, self%jump_load(:, first:last))
          deallocate (temperature)
+      end do
+      do k = 1, tail
+         self%jump_load(:, k) = balanced_load(self%jump_load(:, k), self%contact%rigid, &
+            self%contact%motion, none)
       end do
    end subroutine form_jump_load
 

@@ -60,7 +60,8 @@ contains
       end do
    end subroutine find_free_motions
 
-   !> Displacements of the nodes in the motions that the supports alone leave free.
+   !> Displacements of the nodes in the motions that the supports alone leave free, each motion of
+   !> one body.
    subroutine unsupported_motions(coordinates, node_body, on_axis, held, fields)
       real(dp), intent(in) :: coordinates(:, :)       !! (2, nodes) x and y [length]
       integer, intent(in) :: node_body(:)             !! (nodes) body, or 0
@@ -74,6 +75,7 @@ contains
 
       bodies = measure(coordinates, node_body, size(on_axis))
       basis = null_space(conditions(bodies, coordinates, node_body, on_axis, held, no_ties))
+      call bring_to_echelon(basis)
       allocate (fields(size(held), size(basis, 2)), source=0.0_dp)
       do node = 1, size(node_body)
          if (node_body(node) == 0) cycle

@@ -36,6 +36,7 @@ contains
       if (.not. next%keeps_imbalance .or. previous%keeps_imbalance) return
       imbalance = start_imbalance(operators, loads%temperature%active, data, previous)
       if (imbalance <= equilibrium) return
+      next%is_out_of_balance = .true.
       call append(record%warnings, 'increment '//to_text(record%increment)// &
          ': heat starts out of equilibrium, (K + G) T - Q is '//to_text(imbalance)// &
          ' of the largest rate; the scheme of (3.4), amplification '//to_text(factor)// &

@@ -16,6 +16,7 @@ module solution_state
       real(dp), allocatable :: closing(:)           !! (m) d_t at which a pair last closed [length]
       real(dp), allocatable :: omega(:)             !! (m) conductance
       logical, allocatable :: resting(:)            !! (m) pairs that rest, where a law jumps
+      logical, allocatable :: idle(:)               !! (m) closed pairs that carry no force
       real(dp), allocatable :: omega_start(:)       !! (m) omega_i that (3.4) took last
       real(dp), allocatable :: omega_before(:)      !! (m) conductance an increment earlier
       real(dp), allocatable :: jump(:)              !! (m) T_xi - T_eta [temperature]
@@ -35,6 +36,8 @@ module solution_state
       logical :: has_mechanics = .false.            !! whether mechanics was ever solved
       !> Whether the last increment solved heat by a scheme that keeps an imbalance for ever.
       logical :: keeps_imbalance = .false.
+      !> Whether heat was out of balance at the end of the last increment that solved heat.
+      logical :: is_out_of_balance = .false.
    end type solution_state_type
 
 contains

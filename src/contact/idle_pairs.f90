@@ -1,0 +1,82 @@
+!> Closed pairs whose force is rounding although a body rests on them alone. Such a pair supports
+!> nothing: opened, it leaves the body free, and no load drives the body.
+!>
+!> A force below rounding does not decide by itself, because a light load may leave no more than
+!> that beside the thermal forces. The load is judged instead: its resultants along the rigid
+!> motions are exact (loose_motions).
+module idle_pairs
+   use contact_states, only: contact_state_type
+   use contact_system, only: contact_system_type
+   use errors, only: error_type
+   use kinds, only: dp
+   use records, only: status_open
+   implicit none
+   private
+   public :: find_idle_pairs
+
+   real(dp), parameter :: nothing = 1.0e-6_dp   !! part of a motion that counts as none
+
+contains
+
+   !> Sets system%idle for a state that satisfies all conditions. No force is left of idle pairs,
+   !> and none of any closed pair is negative.
+   subroutine find_idle_pairs(system, load, rounding, state)
+      type(contact_system_type), intent(inout) :: system  !! the reduced system, as solved last
+      real(dp), intent(in) :: load(:)                     !! (tail) c [force]
+      real(dp), intent(in) :: rounding                    !! of the contact forces [force]
+      type(contact_state_type), intent(inout) :: state    !! solution
+      type(contact_system_type) :: opened
+
+      system%idle = state%status /= status_open .and. state%force <= rounding
+      if (any(system%idle)) then
+         opened = system
+         call keep_unloaded(opened, load, state, system%idle)
+      end if
+      where (state%force <= 0.0_dp .or. system%idle)
+         state%force = 0.0_dp
+         state%shear_force = 0.0_dp
+      end where
+   end subroutine find_idle_pairs
+
+   !> Of the pairs given, keeps those that hinder a motion which no load drives once they are open.
+   subroutine keep_unloaded(opened, load, state, idle)
+      type(contact_system_type), intent(inout) :: opened
+      real(dp), intent(in) :: load(:)
+      type(contact_state_type), intent(in) :: state
+      logical, intent(inout) :: idle(:)
+      type(contact_state_type) :: trial
+      type(error_type), allocatable :: error
+      integer :: loose
+
+      loose = size(opened%loose, 2)
+      do while (any(idle))
+         trial = state
+         where (idle)
+            trial%status = status_open
+            trial%direction = 0
+         end where
+         call opened%solve_set(load, trial, error)
+         if (opened%driven) then
+            idle = idle .and. .not. moved(opened, abs(matmul(opened%loose, opened%drive)))
+         else if (allocated(error) .or. size(opened%loose, 2) == loose) then
+            idle = .false.
+         else
+            idle = idle .and. moved(opened, norm2(opened%loose, dim=2))
+            exit
+         end if
+      end do
+   end subroutine keep_unloaded
+
+   !> Pairs that a motion of the free places moves.
+   pure function moved(system, motion)
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: motion(:)             !! (free) lengths of the motion
+      logical :: moved(size(system%normal))         !! (m)
+      logical :: moves(0:size(system%schur, 1))
+
+      moves = .false.
+      moves(system%free) = motion > nothing*maxval(motion)
+      moved = moves(system%normal) .or. moves(system%tangent)
+   end function moved
+
+end module idle_pairs
