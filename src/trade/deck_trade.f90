@@ -21,7 +21,7 @@ module deck_trade
    use trade_plan, only: add_level, add_singles, longest_factor, make_room, most_levels
    use trade_reference, only: find_reference, reference_type
    use trade_rows, only: trade_type
-   use trade_table, only: print_trade
+   use trade_table, only: print_imbalances, print_trade
    use variations, only: variation_type
    implicit none
    private
@@ -69,6 +69,7 @@ contains
          call print_trade(output_unit, path, trade)
          write (output_unit, '(/, 3a)') 'table: ', results, '.csv'
       end if
+      call print_imbalances(error_unit, path, trade)
       i = findloc(trade%rows(:trade%count)%is_default, .true., dim=1)
       status = trade%rows(i)%status
       if (status /= 0) write (error_unit, '(3a)') path, ': error: the deck as it is written '// &

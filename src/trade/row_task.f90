@@ -81,6 +81,9 @@ contains
                size(record%iterations)
             if (allocated(error)) return
             values%increments = values%increments + 1
+            if (record%heat_imbalance_pointwise > values%imbalance) then
+               values%imbalance = record%heat_imbalance_pointwise
+            end if
             instant = instant_at(self%instants, record%time)
             if (instant > 0) call values%sample(record, pairs, nodes, instant)
          end do

@@ -31,6 +31,7 @@ module trade_quantities
    type :: row_values_type
       integer :: increments = 0                        !! increments that were accepted
       integer :: passes = 0                            !! passes of the fixed point in all of them
+      real(dp) :: imbalance = 0.0_dp !! largest of heat at the end of an increment, relative
       !> (figure_count, contact pairs or 1 without, instants); absent where there is none
       real(dp), allocatable :: figures(:, :, :)
       real(dp), allocatable :: length(:, :)            !! (pairs, instants) closed length [length]
@@ -118,7 +119,7 @@ contains
          action='write', iostat=io)
       if (io /= 0) return
       write (unit, iostat=io) status, len(reason), reason, self%increments, self%passes, &
-         allocated(self%figures)
+         self%imbalance, allocated(self%figures)
       if (io == 0 .and. allocated(self%figures)) write (unit, iostat=io) shape(self%figures), &
          size(self%temperatures, 1), self%figures, self%length, self%temperatures
       if (io == 0) then
@@ -147,7 +148,8 @@ contains
             allocate (character(n(1)) :: reason)
             read (unit, iostat=io) reason
          end if
-         if (io == 0) read (unit, iostat=io) self%increments, self%passes, has_figures
+         if (io == 0) read (unit, iostat=io) self%increments, self%passes, &
+            self%imbalance, has_figures
          if (io == 0 .and. has_figures) then
             read (unit, iostat=io) n
             if (io == 0) call self%prepare(n(2), n(4), n(3))

@@ -1,12 +1,13 @@
 !> The table of a trade as a person reads it.
 module trade_table
+   use heat_balance, only: sound_imbalance
    use kinds, only: dp
    use text, only: to_text
    use trade_quantities, only: is_there, quantity_count, quantity_heads
    use trade_rows, only: trade_row_type, trade_type, wish_count, wishes
    implicit none
    private
-   public :: print_trade, elements_of, factor_text
+   public :: print_trade, print_imbalances, elements_of, factor_text
 
    real(dp), parameter :: megabyte = 1.0e6_dp    !! [byte]
 
@@ -45,6 +46,27 @@ contains
          call print_wish(unit, trade, i)
       end do
    end subroutine print_trade
+
+   !> Prints a warning that names the rows that leave heat out of balance.
+   subroutine print_imbalances(unit, name, trade)
+      integer, intent(in) :: unit               !! where to
+      character(*), intent(in) :: name          !! the deck
+      type(trade_type), intent(in) :: trade     !! the trade
+      character(:), allocatable :: rows
+      integer :: i
+
+      rows = ''
+      do i = 1, trade%count
+         associate (row => trade%rows(i))
+            if (row%status /= 0 .or. row%values%imbalance <= sound_imbalance) cycle
+            rows = rows//', row '//to_text(i)//' ('//percent(row%values%imbalance)//' %'// &
+               comma(row%varied)//')'
+         end associate
+      end do
+      if (len(rows) > 0) write (unit, '(5a)') name, ': warning: at the end of an increment ', &
+         'heat is out of balance by more than 1 % of the largest rate ', &
+         '(heat_imbalance_pointwise), left by the thermal scheme: ', rows(3:)
+   end subroutine print_imbalances
 
    subroutine print_row(unit, number, row)
       integer, intent(in) :: unit, number

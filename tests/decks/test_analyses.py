@@ -5,6 +5,8 @@ d, the meshed gap g0, c = 2 L/E and the free expansion e = e0 + e1 q of test_rod
 q = T1/(R0 + 1/omega). What is kept while the other field is solved is said in docs/deck.md.
 """
 
+import re
+
 import h5py
 import numpy as np
 import pytest
@@ -245,6 +247,37 @@ def test_faces_that_touch_before_any_mechanics_conduct_as_closed_ones(tmp_path):
     with h5py.File(result) as file:
         np.testing.assert_allclose(file["contact/FACE/heat_flux"], closed_flux(0.0), rtol=1e-10)
         assert np.all(file["contact/FACE/status"][()] == 1)
+
+
+@pytest.mark.parametrize("laws", ["", "*GAP LAW, TYPE=GAS\n1.E-3, 1.\n"])
+@pytest.mark.parametrize("overlap", [0.0, 1e-6])
+def test_faces_that_touch_start_a_coupled_step_as_closed_ones(tmp_path, laws, overlap):
+    """The explicit scheme shows the start: heat of the first increment is that of p = 0."""
+    law = f"{laws}*GAP LAW, TYPE=POWER\n{TOUCH!r}, {CLOSED_C}, 1."
+    deck = rods(tmp_path / "start.inp", [(COUPLED, HELD + HEATED + pushed(1e-5))], law,
+                gap=-overlap, more="*THERMAL SCHEME, TYPE=EXPLICIT")
+    with h5py.File(solve(deck)) as file:
+        np.testing.assert_allclose(file["contact/FACE/heat_flux"][0], closed_flux(0.0), rtol=1e-10)
+        assert np.all(file["contact/FACE/status"][0] == 1)
+
+
+def test_a_scheme_that_leaves_heat_out_of_balance_is_named(tmp_path):
+    """Once for as long as it stays so; a pair that closes puts it out of balance."""
+    steps = [(COUPLED, HELD + HEATED + pushed(PUSH)), (COUPLED, ""), (COUPLED, "")]
+    for scheme in "IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "EXPLICIT":
+        deck = rods(tmp_path / f"{scheme}.inp", steps, more=f"*THERMAL SCHEME, TYPE={scheme}")
+        process = run("run", "--quiet", deck, "--out", tmp_path)
+        assert process.returncode == 0, process.stderr
+        with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+            imbalance = file["history/heat_imbalance_pointwise"][()]
+        out = imbalance > 0.01
+        assert out.any() == (scheme != "IMPLICIT")
+        found = re.findall(r"out of balance by ([^ ]*) % .* left by the scheme ([-A-Z]*);",
+                           process.stderr)
+        starts = np.flatnonzero(np.diff([0, *out]) == 1)
+        np.testing.assert_allclose([float(percent) for percent, _ in found],
+                                   100 * imbalance[starts], rtol=1e-3)
+        assert all(name == scheme for _, name in found)
 
 
 def test_crank_nicolson_warns_when_it_starts_out_of_equilibrium(tmp_path):

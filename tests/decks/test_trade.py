@@ -231,11 +231,16 @@ def test_cheap_rows_are_repeated_and_their_figures_make_sense(r2):
     assert float(small["cpu_seconds"]) < float(large["cpu_seconds"])
 
 
-def test_only_the_table_is_left(tmp_path):
+def test_only_the_table_is_left_and_rows_out_of_balance_are_named(tmp_path):
+    """The gap of the rods changes in one increment, which only the implicit scheme takes whole."""
     out = tmp_path / "new" / "folder"
     _, process = trade(INPUT / "rods" / "r1.inp", out, "--quiet", "--limit", "0.01")
     assert [path.name for path in out.iterdir()] == ["r1.trade.csv"]
-    assert (process.stdout, process.stderr) == ("", "")
+    assert process.stdout == ""
+    (warning,) = process.stderr.splitlines()
+    assert "heat is out of balance by more than 1 %" in warning
+    named = [name for *_, name in re.findall(r"row (\d+) \(([> 0-9.]+) %, ([-A-Z]+)\)", warning)]
+    assert named == ["GALERKIN", "CRANK-NICOLSON", "EXPLICIT"]
 
 
 def test_a_deck_that_fails_as_written_has_a_table_and_its_status(tmp_path):
