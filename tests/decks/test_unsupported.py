@@ -100,7 +100,7 @@ def test_a_light_load_beside_thermal_forces_presses(tmp_path, load, units):
     share = cos(atan(0.1) / 2)
     deck = bulging(tmp_path / "light.inp", LAWS[0][0] + GAS, load, 0.0, length, force)
     text, normal = outcome(deck, "normal_force")
-    assert text == ""
+    assert FLOATS not in text
     assert share * normal == pytest.approx(load * force / length,
                                            rel=max(1e-9, 1e-13 * 100 / load))
 
@@ -116,7 +116,7 @@ def test_a_light_load_alone_presses(tmp_path, load, gap, friction):
                  solid("LOWER", 1e4, 0.0), interaction(friction), FACES,
                  step(floor, ["*DLOAD", f"3, P3, {load!r}", f"4, P3, {load!r}"]))
     text, normal = outcome(deck, "normal_force")
-    assert text == ""
+    assert FLOATS not in text
     assert normal == pytest.approx(load, rel=1e-4)
 
 
