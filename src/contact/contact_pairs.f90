@@ -7,7 +7,7 @@ module contact_pairs
    use errors, only: error_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use pair_checks, only: check_lines, check_opposite, check_sides, check_weights
+   use pair_checks, only: blame_corner, check_lines, check_opposite, check_sides, check_weights
    use surface_chains, only: chain_faces, precedes, surface_chain_type
    implicit none
    private
@@ -62,6 +62,7 @@ contains
          if (allocated(error)) return
          call align(mesh, slave, master, turned_slave, turned_master)
          call check_lines(mesh, definition, slave, master, error)
+         if (allocated(error)) call blame_corner(mesh, definition, slave, master, error)
          if (allocated(error)) return
          pairs%slave_node = slave%nodes
          pairs%master_node = master%nodes
@@ -73,8 +74,8 @@ contains
       if (slave%nodes(1) == master%nodes(1)) first = 2
       if (slave%nodes(last) == master%nodes(last)) last = last - 1
       call set_geometry(mesh, slave, master, [turned_slave, turned_master], pairs)
-      call check_sides(mesh, pairs%name, slave, master, [turned_slave, turned_master], first, &
-         last, error)
+      call check_sides(mesh, definition, slave, master, [turned_slave, turned_master], &
+         [first, last], error)
       if (allocated(error)) return
       pairs%side_nodes = slave%side_nodes
       pairs%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
@@ -83,6 +84,7 @@ contains
       if (allocated(error)) return
       call check_opposite(mesh, pairs%name, pairs%slave_node, pairs%master_node, &
          pairs%tangent, max(pairs%edge, abs(pairs%initial_gap)), error)
+      if (allocated(error)) call blame_corner(mesh, definition, slave, master, error)
       if (allocated(error)) return
       if (definition%has_clearance) pairs%initial_gap = definition%clearance
    end subroutine make_pairs

@@ -4,16 +4,23 @@ module pair_checks
    use contact_definitions, only: contact_definition_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
-   use mesh, only: mesh_type
+   use mesh, only: extent_of, mesh_type
    use surface_chains, only: surface_chain_type
    use text, only: to_text
    implicit none
    private
-   public :: check_lines, check_sides, check_weights, check_opposite
+   public :: check_lines, check_sides, check_weights, check_opposite, blame_corner
 
    !> Cosine between outward normals from which on faces look the same way: curved faces that part
    !> far from the contact may stand at right angles there.
    real(dp), parameter :: same_way = 0.1_dp
+
+   !> Part of the model's extent within which two nodes lie in one place.
+   real(dp), parameter :: same_place = 1.0e-9_dp
+
+   !> Cosine of a turn of a surface between two faces, 60 degrees, from which on the faces behind it
+   !> may have been named by mistake.
+   real(dp), parameter :: sharp_turn = 0.5_dp
 
    character(*), parameter :: way_out = '; mesh both surfaces with the same divisions, so that '// &
       'their nodes face each other'
@@ -114,33 +121,97 @@ contains
    end function shared_node
 
    !> Refuses faces that look the same way.
-   subroutine check_sides(mesh, name, slave, master, turned, first, last, error)
+   subroutine check_sides(mesh, definition, slave, master, turned, compared, error)
       type(mesh_type), intent(in) :: mesh                 !! the mesh
-      character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
+      type(contact_definition_type), intent(in) :: definition   !! the *CONTACT PAIR
       type(surface_chain_type), intent(in) :: slave       !! line of the slave
       type(surface_chain_type), intent(in) :: master      !! line of the master
       logical, intent(in) :: turned(2) !! whether slave and master run against their chains
-      integer, intent(in) :: first, last                  !! pairs that are looked at
+      integer, intent(in) :: compared(2)                  !! first and last pair looked at
       type(error_type), allocatable, intent(out) :: error !! the first such pair
-      real(dp) :: cosine
+      real(dp) :: cosine, outward(2)
       integer :: k
 
       associate (slave_tangent => chain_tangents(mesh%coordinates(:, slave%nodes), &
          slave%side_nodes, slave%closed), &
          master_tangent => chain_tangents(mesh%coordinates(:, master%nodes), &
          master%side_nodes, master%closed))
-         do k = first, last
+         do k = compared(1), compared(2)
             cosine = dot_product(slave_tangent(:, k), master_tangent(:, k))
             if (turned(1) .neqv. turned(2)) cosine = -cosine
             if (cosine <= same_way) cycle
-            call set_error(error, status_deck, 'contact pair '//name//': at slave node '// &
-               to_text(mesh%node_number(slave%nodes(k)))//' and master node '// &
-               to_text(mesh%node_number(master%nodes(k)))//' both surfaces face the same way; '// &
-               'name the faces that look at each other')
+            call set_error(error, status_deck, 'contact pair '//definition%name// &
+               ': at slave node '//to_text(mesh%node_number(slave%nodes(k)))// &
+               ' and master node '//to_text(mesh%node_number(master%nodes(k)))// &
+               ' both surfaces face the same way')
+            outward = [slave_tangent(2, k), -slave_tangent(1, k)]
+            if (turned(1)) outward = -outward
+            call blame_side(mesh, definition, dot_product(outward, &
+               mesh%coordinates(:, master%nodes(k)) - mesh%coordinates(:, slave%nodes(k))), error)
             return
          end do
       end associate
    end subroutine check_sides
+
+   !> Puts the blame on the surface that looks away from the other one, if one does.
+   subroutine blame_side(mesh, definition, ahead, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      real(dp), intent(in) :: ahead     ! how far the master lies in front of the slave [length]
+      type(error_type), intent(inout) :: error
+      integer :: surface
+
+      if (abs(ahead) <= same_place*extent_of(mesh%coordinates)) then
+         error%message = error%message//'; name the faces that look at each other'
+         return
+      end if
+      surface = merge(definition%master, definition%slave, ahead > 0.0_dp)
+      error%card = mesh%surfaces(surface)%card
+      error%message = error%message//': surface '//mesh%surfaces(surface)%name// &
+         ' looks away from the other one; name the faces that look at it'
+   end subroutine blame_side
+
+   !> Where surfaces do not fit, the fault may be a face round the corner: puts the blame on the
+   !> surface that turns sharply, if only one does.
+   subroutine blame_corner(mesh, definition, slave, master, error)
+      type(mesh_type), intent(in) :: mesh                     !! the mesh
+      type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: slave           !! line of the slave
+      type(surface_chain_type), intent(in) :: master          !! line of the master
+      type(error_type), intent(inout) :: error                !! how they do not fit
+      integer :: node, surface
+
+      if ((sharp_corner(mesh, slave) > 0) .eqv. (sharp_corner(mesh, master) > 0)) return
+      node = max(sharp_corner(mesh, slave), sharp_corner(mesh, master))
+      surface = merge(definition%slave, definition%master, sharp_corner(mesh, slave) > 0)
+      error%card = mesh%surfaces(surface)%card
+      if (index(error%message, way_out) > 0) error%message = &
+         error%message(:index(error%message, way_out) - 1)
+      error%message = error%message//'; surface '//mesh%surfaces(surface)%name// &
+         ' goes round a corner at node '//to_text(mesh%node_number(node))// &
+         ': leave out the faces behind it that are not in contact'
+   end subroutine blame_corner
+
+   !> The first node at which an open line turns sharply between two faces; 0 where there is none.
+   pure integer function sharp_corner(mesh, chain)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: chain
+      integer :: k, step
+
+      sharp_corner = 0
+      if (chain%closed) return
+      step = chain%side_nodes - 1
+      do k = 1 + step, size(chain%nodes) - step, step
+         associate (before => mesh%coordinates(:, chain%nodes(k)) - &
+            mesh%coordinates(:, chain%nodes(k - step)), &
+            behind => mesh%coordinates(:, chain%nodes(k + step)) - &
+            mesh%coordinates(:, chain%nodes(k)))
+            if (dot_product(before, behind) >= sharp_turn*norm2(before)*norm2(behind)) cycle
+         end associate
+         sharp_corner = chain%nodes(k)
+         return
+      end do
+   end function sharp_corner
 
    !> No node has a negative weight; 0 is that of a corner on the axis or at the tip of quarter
    !> points.

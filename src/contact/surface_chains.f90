@@ -4,6 +4,7 @@ module surface_chains
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use mesh, only: mesh_type, surface_type
+   use text, only: to_text
    implicit none
    private
    public :: surface_chain_type, chain_faces, precedes
@@ -34,14 +35,15 @@ contains
 
       count_sides = size(surface%faces, 2)
       if (count_sides == 0) then
-         call set_error(error, status_deck, 'surface '//surface%name//' has no faces')
+         call set_error(error, status_deck, 'surface '//surface%name//' has no faces', &
+            surface%card)
          return
       end if
       associate (counts => side_node_count(mesh%element_kind(surface%faces(1, :))))
          n = counts(1)
          if (any(counts /= n)) then
             call set_error(error, status_deck, 'surface '//surface%name// &
-               ' has sides with and without midside nodes; make a surface of each')
+               ' has sides with and without midside nodes; make a surface of each', surface%card)
             return
          end if
       end associate
@@ -63,8 +65,8 @@ contains
       end do
       if (i <= count_sides) then
          call set_error(error, status_deck, 'surface '//surface%name// &
-            ' is not one line of faces, each beginning where another one ends; '// &
-            'name the pieces as surfaces of their own')
+            ' is not one line of faces, each beginning where another one ends'// &
+            first_break(mesh, sides)//'; name the pieces as surfaces of their own', surface%card)
          return
       end if
       chain%closed = side == first
@@ -106,6 +108,31 @@ contains
          end do
       end associate
    end subroutine find_first
+
+   !> Tells where a line breaks: at a node at which more than two sides meet, or between two nodes;
+   !> empty where rings lie beside a line.
+   function first_break(mesh, sides) result(words)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: sides(:, :)            ! (nodes, sides)
+      character(:), allocatable :: words
+      integer, allocatable :: entered(:), left(:)
+      integer :: begin, finish, i, n
+
+      n = size(sides, 1)
+      allocate (entered(size(mesh%node_number)), left(size(mesh%node_number)), source=0)
+      do i = 1, size(sides, 2)
+         left(sides(1, i)) = left(sides(1, i)) + 1
+         entered(sides(n, i)) = entered(sides(n, i)) + 1
+      end do
+      words = ''
+      i = findloc(entered > 1 .or. left > 1, .true., dim=1)
+      if (i > 0) words = ': too many of them meet at node '//to_text(mesh%node_number(i))
+      if (i > 0 .or. count(entered(sides(1, :)) == 0) < 2) return
+      begin = findloc(entered(sides(1, :)) == 0, .true., dim=1, back=.true.)
+      finish = findloc(left(sides(n, :)) == 0, .true., dim=1)
+      words = ': it ends at node '//to_text(mesh%node_number(sides(n, finish)))// &
+         ' and begins again at node '//to_text(mesh%node_number(sides(1, begin)))
+   end function first_break
 
    !> Whether a point comes before another one: by the smaller x, then by the smaller y.
    pure logical function precedes(a, b, extent)

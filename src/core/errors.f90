@@ -19,19 +19,22 @@ module errors
    type :: error_type
       integer :: status = status_internal      !! one of the status_* constants
       character(:), allocatable :: message     !! one sentence in plain words
+      integer :: card = 0                      !! card image of the deck where it lies, if known
    end type error_type
 
 contains
 
    !> Raises an error.
-   subroutine set_error(error, status, message)
+   subroutine set_error(error, status, message, card)
       type(error_type), allocatable, intent(out) :: error !! the error that is raised
       integer, intent(in) :: status                       !! one of the status_* constants
       character(*), intent(in) :: message                 !! one sentence in plain words
+      integer, intent(in), optional :: card               !! card image of the deck where it lies
 
       allocate(error)
       error%status = status
       error%message = message
+      if (present(card)) error%card = card
    end subroutine set_error
 
 end module errors

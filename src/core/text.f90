@@ -7,12 +7,13 @@ module text
    public :: string_type
    public :: to_text, to_upper, without_blanks, read_integer, read_real, append
    public :: is_whole, integer_fault, real_fault
-   public :: nearest_name, nearest_known, edit_distance, likely_slip
+   public :: nearest_name, nearest_known, edit_distance, is_slip
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
    real(dp), parameter :: smallest_magnitude = 1.0e-100_dp, largest_magnitude = 1.0e100_dp
-   integer, parameter :: likely_slip = 2          !! letters that differ in a misspelt name
+   integer, parameter :: most_slips = 2           !! letters that differ in a misspelt name,
+   integer, parameter :: letters_per_slip = 3     !! and letters for each of them
 
    !> A string in a list.
    type :: string_type
@@ -259,6 +260,16 @@ contains
       nearest = nearest_name(name, names)
       if (nearest > 0) hint = '; the nearest known is '//names(nearest)%value
    end function nearest_known
+
+   !> Whether a name is likely a misspelling of another one, whatever their cases: in a short one
+   !> fewer letters may differ.
+   pure logical function is_slip(name, known)
+      character(*), intent(in) :: name     !! what was written
+      character(*), intent(in) :: known    !! what may be meant
+
+      is_slip = len(known) > 0 .and. edit_distance(to_upper(name), to_upper(known)) <= &
+         min(most_slips, max(len(name), len(known))/letters_per_slip)
+   end function is_slip
 
    !> Number of letters to insert, delete, replace or swap with their neighbour that make one word
    !> of another: the restricted Damerau-Levenshtein distance.

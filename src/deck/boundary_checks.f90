@@ -26,7 +26,7 @@ contains
       card = 0
       do i = 1, context%boundaries%count
          associate (request => context%boundaries%items(i))
-            call check_effect(request, model, report)
+            if (context%analyses_sound) call check_effect(request, model, report)
             if (request%card /= card) call check_nodes(request, model, used, report)
             card = request%card
          end associate

@@ -49,8 +49,8 @@ contains
       last_text = verify(line, blanks, back=.true.)
    end function last_text
 
-   !> Splits a line at its commas. Quotes stay in the fields; a comma inside quotes, but for those
-   !> of FORMAT=, and a quote without its end are errors.
+   !> Splits a line at its commas. Quotes stay in the fields, but for one that is not closed; a
+   !> comma inside quotes, but for those of FORMAT=, and a quote without its end are errors.
    subroutine split_fields(line, image, report, fields)
       character(*), intent(in) :: line                            !! card image
       integer, intent(in) :: image                                !! its running number
@@ -86,6 +86,10 @@ contains
       first = 1
       do i = 1, n + 1
          fields(i) = trimmed_field(line, first, commas(i) - 1, image)
+         if (opened >= first .and. opened < commas(i)) then
+            fields(i)%text = ''
+            fields(i)%undefined = .true.
+         end if
          first = commas(i) + 1
       end do
    end subroutine split_fields
@@ -130,7 +134,7 @@ contains
 
       n = size(fields)
       do while (n > 0)
-         if (len(fields(n)%text) > 0) exit
+         if (len(fields(n)%text) > 0 .or. fields(n)%undefined) exit
          n = n - 1
       end do
       if (n == size(fields)) return

@@ -8,16 +8,18 @@ module card_lines
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_types, only: element_type_fields
+   use field_separators, only: cut_at_blanks
    use fixed_cards, only: fixed_cards_type
    use keyword_cards, only: is_parameter, make_keyword_card
+   use keyword_slips, only: lacks_star, mend_commas
    use keywords, only: built, known_keywords
-   use text, only: read_integer, to_text
+   use text, only: read_integer, to_text, to_upper
    implicit none
    private
    public :: card_lines_type, default_width
 
    integer, parameter :: default_width = 80   !! columns of a card
-   integer, parameter :: most_fields = 9   !! an *ELEMENT data card of eight nodes is complete
+   integer, parameter :: most_fields = 9   !! of an *ELEMENT data card, that of eight nodes
 
    !> What is open while lines are read.
    type :: card_lines_type
@@ -47,39 +49,65 @@ contains
       type(cards_type), intent(inout) :: cards             !! receives the card that it completes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
-      logical :: continues
+      logical :: continues, title
 
       if (is_blank(line)) return
       if (is_comment(line)) return
-      if (is_keyword(line)) then
+      title = .false.
+      if (allocated(self%keyword)) title = self%keyword == 'HEADING'
+      if (is_keyword(line) .or. lacks_star(line, title, cards)) then
          call self%finish(cards, report)
          call split_fields(line, image, report, fields)
+         if (.not. is_keyword(line)) then
+            call report%error(fields(1)%place, 'a keyword without its asterisk; write *'// &
+               to_upper(fields(1)%text))
+            fields(1)%text = '*'//fields(1)%text
+         end if
          call take_fields(self, fields, .true., image, cards, report)
          return
       end if
       if (allocated(self%pending)) then
          call split_fields(line, image, report, fields)
-         continues = .not. self%pending_keyword
-         if (.not. continues) continues = is_parameter(self%pending(1)%text, fields(1)%text)
-         if (.not. continues) then
-            call self%finish(cards, report)
+         if (self%pending_keyword) then
+            continues = is_parameter(self%pending(1)%text, fields(1)%text)
          else
+            call cut_at_blanks(cards, report, fields)
+            continues = .not. is_element(self, fields)
+         end if
+         if (continues) then
             call append_fields(self%pending, fields)
             call move_alloc(self%pending, fields)
             call take_fields(self, fields, self%pending_keyword, image, cards, report)
             return
          end if
+         call end_pending(self, cards, report)
       end if
       call take_data_line(self, line, image, cards, report)
    end subroutine take_line
 
-   !> Ends a card that waits for its continuation, which a keyword card need not have.
+   !> Whether a line behind an element that goes on is the next element: the first lacks its last
+   !> nodes, and the comma at its end is a slip.
+   pure logical function is_element(self, fields)
+      type(card_lines_type), intent(in) :: self
+      type(field_type), intent(in) :: fields(:)
+
+      is_element = self%element_fields > 0 .and. filled(fields) == self%element_fields
+   end function is_element
+
+   !> Number of fields that are not empty.
+   pure integer function filled(fields)
+      type(field_type), intent(in) :: fields(:)
+      integer :: i
+
+      filled = count([(len(fields(i)%text) > 0, i=1, size(fields))])
+   end function filled
+
+   !> Ends the data of a keyword card.
    subroutine finish(self, cards, report)
       class(card_lines_type), intent(inout) :: self        !! what is open
       type(cards_type), intent(inout) :: cards             !! receives the card
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
-      type(place_type) :: place
 
       if (self%fixed%is_open()) then
          call self%fixed%release(fields)
@@ -88,18 +116,42 @@ contains
                cards, report)
          end if
       end if
+      call end_pending(self, cards, report)
+   end subroutine finish
+
+   !> Ends a card that waits for its continuation, which a keyword card need not have.
+   subroutine end_pending(self, cards, report)
+      type(card_lines_type), intent(inout) :: self
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      type(field_type), allocatable :: fields(:)
+      type(place_type) :: place
+
       if (.not. allocated(self%pending)) return
       call move_alloc(self%pending, fields)
-      place = fields(size(fields))%place
-      call drop_empty_end(fields)
       if (self%pending_keyword) then
+         call drop_empty_end(fields)
          call take_keyword(self, fields, cards, report)
       else
-         call report%error(place_type(place%image, place%column - 1), &
-            'the card ends in a comma, but nothing continues it')
+         place = fields(size(fields))%place
+         place%column = place%column - 1
+         call report%error(place, 'the card ends in a comma, but nothing continues it'// &
+            missing_nodes(self, size(fields) - 2))
+         fields(size(fields))%undefined = .true.
          call take_data(self, fields, place%image, cards, report)
       end if
-   end subroutine finish
+   end subroutine end_pending
+
+   !> The part of a message that tells how many nodes an element lacks.
+   pure function missing_nodes(self, nodes) result(words)
+      type(card_lines_type), intent(in) :: self
+      integer, intent(in) :: nodes
+      character(:), allocatable :: words
+
+      words = ''
+      if (self%element_fields > 0) words = ': the element has '//to_text(nodes)//' of its '// &
+         to_text(self%element_fields - 1)//' nodes'
+   end function missing_nodes
 
    !> Takes the fields of a card that may continue.
    subroutine take_fields(self, fields, keyword, image, cards, report)
@@ -112,7 +164,11 @@ contains
       logical :: continues
 
       continues = size(fields) > 1 .and. len(fields(size(fields))%text) == 0
-      if (.not. keyword) continues = continues .and. size(fields) <= most_fields
+      if (.not. keyword .and. self%element_fields > 0) then
+         continues = continues .and. size(fields) <= self%element_fields
+      else if (.not. keyword) then
+         continues = continues .and. size(fields) <= most_fields
+      end if
       if (continues) then
          self%pending_keyword = keyword
          call move_alloc(fields, self%pending)
@@ -134,6 +190,7 @@ contains
       integer :: i
       logical :: valid
 
+      call mend_commas(fields, report)
       do i = 2, size(fields)
          call self%parameters%substitute(fields(i), report)
       end do
@@ -162,7 +219,8 @@ contains
       type(deck_report_type), intent(inout) :: report
 
       if (size(card%parameters) == 0) then
-         call report%error(card%place, '*INCLUDE needs INPUT=')
+         if (.not. card%flawed) call report%error(card%place, '*INCLUDE needs INPUT=')
+         call report%lose_file()
          return
       end if
       self%include = card%parameters(1)%text
@@ -221,6 +279,7 @@ contains
          return
       end if
       call split_fields(line, image, report, fields)
+      if (self%keyword /= 'PARAMETER') call cut_at_blanks(cards, report, fields)
       if (self%keyword == 'ELEMENT') then
          if (completes_element(self, fields, cards)) then
             call extend_data(cards, fields)
@@ -258,7 +317,7 @@ contains
       type(card_lines_type), intent(in) :: self
       type(field_type), intent(in) :: fields(:)
       type(cards_type), intent(in) :: cards
-      integer :: before, i
+      integer :: before
 
       completes_element = .false.
       associate (card => cards%keywords(cards%keyword_count))
@@ -266,7 +325,7 @@ contains
          before = size(cards%data(card%last_data)%fields)
       end associate
       completes_element = before < self%element_fields .and. &
-         before + count([(len(fields(i)%text) > 0, i=1, size(fields))]) == self%element_fields
+         before + filled(fields) == self%element_fields
    end function completes_element
 
    !> A complete data card.
@@ -281,7 +340,9 @@ contains
       call drop_empty_end(fields)
       do i = 1, size(fields)
          call self%parameters%substitute(fields(i), report)
-         if (self%keyword == 'PARAMETER') then
+         if (self%keyword == 'PARAMETER' .and. fields(i)%undefined) then
+            call report%lose('parameter')
+         else if (self%keyword == 'PARAMETER') then
             call self%parameters%define(fields(i), cards%notes, report)
          else if (index(fields(i)%text, '"') > 0) then
             fields(i)%text = without_quotes(fields(i)%text)

@@ -9,7 +9,8 @@ module card_parameters
       string_type, to_upper, without_blanks
    implicit none
    private
-   public :: has_parameter, parameter_text, parameter_place, need_parameter, take_parameter, choose
+   public :: has_parameter, lacks_parameter, parameter_text, parameter_place
+   public :: need_parameter, take_parameter, choose
 
    !> Value of a parameter where the card has it; else it stays as it is.
    interface take_parameter
@@ -35,6 +36,14 @@ contains
 
       has_parameter = position(card, name) > 0
    end function has_parameter
+
+   !> Whether a card is without a parameter, and not because of an error that is reported already.
+   pure logical function lacks_parameter(card, name)
+      type(keyword_card_type), intent(in) :: card   !! keyword card
+      character(*), intent(in) :: name              !! name as in the table of keywords
+
+      lacks_parameter = .not. (has_parameter(card, name) .or. card%flawed)
+   end function lacks_parameter
 
    !> Value of a parameter as written; empty where the card does not have it.
    pure function parameter_text(card, name) result(value)
@@ -64,7 +73,7 @@ contains
       character(:), allocatable, intent(out) :: value   !! value in upper case; empty after an error
 
       value = to_upper(parameter_text(card, name))
-      if (.not. has_parameter(card, name)) then
+      if (lacks_parameter(card, name)) then
          call report%error(card%place, '*'//card%name//' needs '//name//'=')
       end if
    end subroutine need_parameter

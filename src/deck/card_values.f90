@@ -13,7 +13,7 @@ module card_values
    !> decimals; one above it is rather the temperature that the property was measured at.
    real(dp), parameter :: least_plausible = 273.0_dp
 
-   public :: has_field, field_text, field_place, need_field, take_field, check_extra
+   public :: has_field, is_undefined, field_text, field_place, need_field, take_field, check_extra
    public :: may_be_decimals, check_unneeded, check_unneeded_temperature
 
    !> Value of a field; an error where it is missing.
@@ -49,6 +49,15 @@ contains
       string = ''
       if (i <= size(data%fields)) string = data%fields(i)%text
    end function field_text
+
+   !> Whether the text of a field is not known, which is reported already.
+   pure logical function is_undefined(data, i)
+      type(data_card_type), intent(in) :: data   !! data card
+      integer, intent(in) :: i                   !! position, from 1
+
+      is_undefined = i <= size(data%fields)
+      if (is_undefined) is_undefined = data%fields(i)%undefined
+   end function is_undefined
 
    !> Place of a field; the end of the card where it does not have it.
    pure function field_place(data, i) result(place)
@@ -165,8 +174,9 @@ contains
       type(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: valid
 
-      call report%error(field_place(data, i), 'missing field: '//what)
       valid = .false.
+      if (.not. is_undefined(data, i)) call report%error(field_place(data, i), &
+         'missing field: '//what)
    end subroutine report_missing
 
    subroutine take_integer_field(data, i, what, report, value, valid)
@@ -179,6 +189,7 @@ contains
       integer :: number
       logical :: is_number
 
+      if (is_undefined(data, i)) valid = .false.
       if (.not. has_field(data, i)) return
       call read_integer(data%fields(i)%text, number, is_number)
       if (is_number) then
@@ -200,6 +211,7 @@ contains
       real(dp) :: number
       logical :: is_number
 
+      if (is_undefined(data, i)) valid = .false.
       if (.not. has_field(data, i)) return
       call read_real(data%fields(i)%text, number, is_number)
       if (is_number) then

@@ -11,6 +11,7 @@ module cards
    type :: field_type
       character(:), allocatable :: text   !! without blanks around it, quotes and <names>
       type(place_type) :: place           !! where it begins
+      logical :: undefined = .false.      !! whether its text is not known, which is reported
    end type field_type
 
    !> One parameter of a keyword card.
@@ -24,7 +25,7 @@ module cards
    !> One keyword card.
    type :: keyword_card_type
       character(:), allocatable :: name                    !! as in the table; empty when unknown
-      character(:), allocatable :: meant                   !! what an unknown one is close to
+      character(:), allocatable :: meant   !! what a misspelt or refused keyword is taken for
       integer :: known = 0                                 !! index into known_keywords, or 0
       character(:), allocatable :: refusal_of_data         !! the error if data cards follow
       type(place_type) :: place                            !! where it begins
@@ -32,6 +33,7 @@ module cards
       integer :: first_data = 1                            !! its data cards: index into cards%data
       integer :: last_data = 0                             !! the last of them
       logical :: data_lost = .false.   !! whether data cards were left out after an error in them
+      logical :: flawed = .false.      !! whether a parameter was left out after an error in it
    end type keyword_card_type
 
    !> One data card, continuations included.
@@ -148,6 +150,7 @@ contains
          other(i)%first_data = list(i)%first_data
          other(i)%last_data = list(i)%last_data
          other(i)%data_lost = list(i)%data_lost
+         other(i)%flawed = list(i)%flawed
       end do
       call move_alloc(other, list)
    end subroutine resize_keywords

@@ -66,12 +66,13 @@ contains
       call build_sets('element', cards, context, model%mesh, report, sets)
       call split_line_sets(size(model%mesh%element_number), sets, context%line_sets)
       call move_alloc(sets, model%mesh%element_sets)
-      context%sets_sound = report%error_count() == errors
+      context%sets_sound = report%error_count() == errors .and. .not. report%has_lost('element')
       call build_surfaces(cards, context, model%mesh, report)
       errors = report%error_count()
       call build_sets('node', cards, context, model%mesh, report, sets)
       call move_alloc(sets, model%mesh%node_sets)
-      context%sets_sound = context%sets_sound .and. report%error_count() == errors
+      context%sets_sound = context%sets_sound .and. report%error_count() == errors .and. &
+         .not. report%has_lost('node set')
       call build_materials(cards, context, model, report)
       call build_orientations(cards, model, report)
       call build_sections(cards, context, model, report)
@@ -81,7 +82,7 @@ contains
       call build_contacts(cards, context, model, report)
       call build_steps(cards, context, model, report)
       call build_verifications(cards, context, model, report)
-      call build_load_axis(context, model, report)
+      call build_load_axis(cards%last, context, model, report)
       call check_model(context, model, report)
       if (.not. report%has_errors()) then
          if (present(variation)) call apply_variation(variation, context%order, context%levels, &

@@ -63,8 +63,9 @@ contains
          if (contacts(i)%slave == slave .and. contacts(i)%master == master) exit
       end do
       if (i > size(contacts)) then
-         call report%error(card%place, 'no *CONTACT PAIR has the slave surface '// &
-            mesh%surfaces(slave)%name//' and the master surface '//mesh%surfaces(master)%name)
+         call report%missing(card%place, 'no *CONTACT PAIR has the slave surface '// &
+            mesh%surfaces(slave)%name//' and the master surface '//mesh%surfaces(master)%name, &
+            'surface')
       else if (contacts(i)%has_clearance) then
          call report%error(card%place, 'the clearance of contact pair '//contacts(i)%name// &
             ' is given twice')

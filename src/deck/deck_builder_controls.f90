@@ -1,6 +1,6 @@
 !> *FIXED POINT and *THERMAL SCHEME.
 module deck_builder_controls
-   use card_parameters, only: choose, has_parameter, parameter_place, take_parameter
+   use card_parameters, only: choose, lacks_parameter, parameter_place, take_parameter
    use card_values, only: check_extra, field_place, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use controls, only: crank_nicolson_scheme, explicit_scheme, fixed_point_type, galerkin_scheme, &
@@ -61,7 +61,7 @@ contains
       character(:), allocatable :: kind
 
       kind = ''
-      if (.not. has_parameter(card, 'TYPE')) then
+      if (lacks_parameter(card, 'TYPE')) then
          call report%error(card%place, '*THERMAL SCHEME needs TYPE=')
       end if
       call choose(card, 'TYPE', 'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/FREE', report, kind)

@@ -1,15 +1,17 @@
 !> *AMPLITUDE and *INITIAL CONDITIONS: what loads and temperatures start from and follow.
 module deck_builder_courses
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place
+   use card_parameters, only: choose, lacks_parameter, need_parameter, parameter_place
    use card_values, only: check_extra, field_place, need_field
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
+   use decimal_commas, only: decimal_comma, report_decimal_comma
    use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
    use kinds, only: dp
    use load_requests, only: request_type
    use model, only: model_type
+   use text, only: read_real
    implicit none
    private
    public :: build_amplitudes, build_temperatures, find_amplitude
@@ -67,6 +69,11 @@ contains
       allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
       n = 0
       do j = card%first_data, card%last_data
+         i = decimal_comma(cards%data(j))
+         if (i > 0 .and. .not. is_course(cards%data(j), amplitude%times(:n))) then
+            call report_decimal_comma(cards%data(j), i, report)
+            return
+         end if
          do i = 1, size(cards%data(j)%fields), 2
             n = n + 1
             valid = .true.
@@ -79,6 +86,24 @@ contains
          end do
       end do
    end subroutine build_amplitude
+
+   !> Whether a data card has pairs of time and value, and times that ascend behind those before.
+   pure logical function is_course(data, before)
+      type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: before(:)
+      real(dp) :: last, time
+      integer :: i
+
+      last = -huge(last)
+      if (size(before) > 0) last = before(size(before))
+      is_course = mod(size(data%fields), 2) == 0
+      do i = 1, size(data%fields), 2
+         if (.not. is_course) return
+         call read_real(data%fields(i)%text, time, is_course)
+         is_course = is_course .and. time > last
+         last = time
+      end do
+   end function is_course
 
    !> Takes all initial temperatures.
    subroutine build_temperatures(cards, context, model, report)
@@ -95,7 +120,7 @@ contains
          associate (card => cards%keywords(k))
             if (card%name /= 'INITIAL CONDITIONS') cycle
             kind = ''
-            if (.not. has_parameter(card, 'TYPE')) then
+            if (lacks_parameter(card, 'TYPE')) then
                call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE')
             end if
             call choose(card, 'TYPE', 'TEMPERATURE', report, kind)

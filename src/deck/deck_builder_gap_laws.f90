@@ -1,6 +1,6 @@
 !> *GAP LAW -> one side of the conductance of a surface interaction, and the rows of its tables.
 module deck_builder_gap_laws
-   use card_parameters, only: choose, has_parameter
+   use card_parameters, only: choose, lacks_parameter
    use card_values, only: check_extra, field_place, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power
@@ -29,7 +29,7 @@ contains
       character(:), allocatable :: kind
 
       kind = ''
-      if (.not. has_parameter(card, 'TYPE')) call report%error(card%place, '*GAP LAW needs TYPE=')
+      if (lacks_parameter(card, 'TYPE')) call report%error(card%place, '*GAP LAW needs TYPE=')
       call choose(card, 'TYPE', 'GAS/POWER/CLEARANCE', report, kind)
       if (kind == '') return
       if (kind == 'POWER' .and. law%closed_kind /= law_none) then

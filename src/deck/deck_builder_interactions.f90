@@ -3,13 +3,14 @@ module deck_builder_interactions
    use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, parameter_text
    use card_values, only: check_extra, check_unneeded, field_place, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use conductance_laws, only: conductance, conductance_law_type, law_jump, table_jump
+   use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, table_jump
    use contact_definitions, only: interaction_type
    use deck_builder_gap_conductance, only: build_gap_clearance, build_gap_conductance, &
       join_gap_conductance
    use deck_builder_gap_laws, only: build_gap_law
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use deck_structure, only: card_count
    use kinds, only: dp
    use model, only: model_type
@@ -30,6 +31,7 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(model_type), intent(inout) :: model             !! receives the interactions
       type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
+      type(place_type) :: law_place
       integer :: k, n, errors
 
       allocate(model%interactions(card_count(cards, 'SURFACE INTERACTION')))
@@ -46,12 +48,15 @@ contains
                   call report%error(parameter_place(card, 'NAME'), &
                      'surface interaction '//model%interactions(n)%name//' is defined twice')
                end if
-               call build_laws(cards, k, context, report, model%interactions(n))
-               if (report%error_count() > errors) cycle
-               call check_law(card, model%interactions(n), report)
+               law_place = card%place
+               call build_laws(cards, k, context, report, model%interactions(n), law_place)
+               if (report%error_count() > errors .or. card%flawed) cycle
+               call check_law(card, law_place, model%interactions(n), report)
             case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'SURFACE BEHAVIOR')
-               if (n == 0) call report%error(card%place, '*'//card%name// &
-                  ' has no *SURFACE INTERACTION before it')
+               if (n == 0 .and. len(card%meant) == 0) then
+                  call report%missing(card%place, '*'//card%name// &
+                     ' has no *SURFACE INTERACTION before it')
+               end if
             case default
                cycle
             end select
@@ -70,12 +75,13 @@ contains
    end function find_interaction
 
    !> Takes the laws behind one *SURFACE INTERACTION.
-   subroutine build_laws(cards, place, context, report, interaction)
+   subroutine build_laws(cards, place, context, report, interaction, law_place)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: place
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(interaction_type), intent(inout) :: interaction
+      type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
       type(conductance_law_type) :: table
       integer :: k
 
@@ -84,6 +90,9 @@ contains
             if (card%name == 'SURFACE INTERACTION') exit
             if (card%name == 'SURFACE BEHAVIOR') call check_behavior(card, context, report)
             if (card%last_data < card%first_data) cycle
+            if (card%name == 'GAP LAW' .or. card%name == 'GAP CONDUCTANCE') then
+               law_place = field_place(cards%data(card%first_data), 1)
+            end if
             select case (card%name)
             case ('FRICTION')
                call build_friction(cards%data(card%first_data), context, report, &
@@ -153,23 +162,36 @@ contains
    end subroutine build_friction
 
    !> Warns of a law that jumps, where the gap closes or where its table of clearances ends.
-   subroutine check_law(card, interaction, report)
+   subroutine check_law(card, law_place, interaction, report)
       type(keyword_card_type), intent(in) :: card
+      type(place_type), intent(in) :: law_place      ! where the last of its laws stands
       type(interaction_type), intent(in) :: interaction
       type(deck_report_type), intent(inout) :: report
-      real(dp) :: jump, larger
+      real(dp) :: open, closed
 
       if (table_jump(interaction%law) > 0.0_dp) call report%warning(card%place, &
          'the conductance of '//interaction%name//' falls from '// &
          to_text(table_jump(interaction%law))//' to 0 where the gap exceeds that of the last '// &
          'row, '//to_text(maxval(interaction%law%table_gap))//'; an increment in which a gap '// &
          'would stay there has no solution: end the table with a row of conductance 0')
-      jump = law_jump(interaction%law)
-      larger = max(conductance(interaction%law, .true., 0.0_dp, 0.0_dp), &
-         conductance(interaction%law, .false., 0.0_dp, 0.0_dp))
-      if (abs(jump) <= continuous*larger) return
-      call report%warning(card%place, 'the conductance of '//interaction%name//' jumps by '// &
-         to_text(jump)//' where the gap closes without pressure')
+      closed = conductance(interaction%law, .true., 0.0_dp, 0.0_dp)
+      open = conductance(interaction%law, .false., 0.0_dp, 0.0_dp)
+      if (abs(law_jump(interaction%law)) <= continuous*max(open, closed)) return
+      call report%warning(law_place, 'the conductance of '//interaction%name//' jumps by '// &
+         to_text(law_jump(interaction%law))//' where the gap closes without pressure: from '// &
+         to_text(open)//' open to '//to_text(closed)//' closed'//origin(interaction%law))
    end subroutine check_law
+
+   !> Tells which law is missing, or that the two should meet.
+   pure function origin(law) result(words)
+      type(conductance_law_type), intent(in) :: law
+      character(:), allocatable :: words
+
+      if (law%open_kind == law_none) then
+         words = ', for there is no open law'
+      else
+         words = '; at gap 0 and pressure 0 both laws should give the same'
+      end if
+   end function origin
 
 end module deck_builder_interactions

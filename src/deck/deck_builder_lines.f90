@@ -63,7 +63,7 @@ contains
                context%line_nodes(:line_node_count(name), n))
          end do
          if (element_card_count(cards, of_lines=.false.) > 0) cycle
-         call report%error(parameter_place(cards%keywords(k), 'TYPE'), &
+         call report%missing(parameter_place(cards%keywords(k), 'TYPE'), &
             'the deck has lines, but no elements')
          return
       end do
@@ -86,7 +86,8 @@ contains
          if (.not. valid) return
          nodes(q) = context%node_index%find(node)
          if (nodes(q) == 0 .and. .not. context%node_index%is_empty()) then
-            call report%error(field_place(data, q + 1), 'there is no node '//to_text(node))
+            call report%missing(field_place(data, q + 1), 'there is no node '//to_text(node), &
+               'node', to_text(node))
          end if
       end do
       call check_extra(data, size(nodes) + 1, 'line, '//to_text(size(nodes))//' nodes', report)

@@ -1,10 +1,11 @@
 !> LOAD= of *OPTIONS: the prescribed value that the load axis follows.
 module deck_builder_load_axis
-   use deck_context, only: deck_context_type, find_set, set_names
+   use deck_context, only: deck_context_type, find_set, report_unknown, set_names
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use model, only: model_type
    use steps, only: dof_temperature
-   use text, only: nearest_known, read_integer
+   use text, only: read_integer, to_text
    implicit none
    private
    public :: build_load_axis
@@ -12,13 +13,14 @@ module deck_builder_load_axis
 contains
 
    !> Takes LOAD=nset,dof of *OPTIONS: the prescribed value that the load axis follows.
-   subroutine build_load_axis(context, model, report)
+   subroutine build_load_axis(last, context, model, report)
+      type(place_type), intent(in) :: last                 !! where the deck ends
       type(deck_context_type), intent(inout) :: context    !! set, its place, and what is prescribed
       type(model_type), intent(inout) :: model   !! receives node, degree of freedom and label
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name
       integer, allocatable :: members(:)
-      integer :: comma, set, dof
+      integer :: comma, set, dof, i
       logical :: valid
 
       model%load_label = 'time'
@@ -37,8 +39,8 @@ contains
       end if
       set = find_set(model%mesh%node_sets, name)
       if (set == 0) then
-         call report%error(context%load_place, 'unknown node set '//name// &
-            nearest_known(name, set_names(model%mesh%node_sets)))
+         call report_unknown('node set', name, set_names(model%mesh%node_sets), &
+            context%load_place, report)
          return
       end if
       members = model%mesh%node_sets(set)%members
@@ -53,8 +55,17 @@ contains
       model%load_dof = dof
       model%load_label = dof_name(dof)//' of '//name
       if (.not. (context%boundaries_sound .and. context%sets_sound)) return
-      if (.not. is_prescribed(context, model)) call report%error(context%load_place, &
-         'LOAD= follows a value that no *BOUNDARY prescribes')
+      if (is_prescribed(context, model)) return
+      do i = 1, context%boundaries%count
+         if (context%boundaries%items(i)%component /= dof) cycle
+         call report%error(context%load_place, 'LOAD= follows a value that no *BOUNDARY '// &
+            'prescribes: '//dof_name(dof)//' of '//name)
+         return
+      end do
+      call report%error(last, 'no *BOUNDARY prescribes any '//dof_name(dof)// &
+         ' (degree of freedom '//to_text(dof)//'), which LOAD='//context%load_set// &
+         ' of *OPTIONS follows; give the values, as '//name//', '//to_text(dof)//', '// &
+         to_text(dof)//', value')
    end subroutine build_load_axis
 
    pure function dof_name(dof) result(name)

@@ -41,26 +41,17 @@ contains
                end if
             case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY')
                if (n == 0) then
-                  call report%error(card%place, '*'//card%name//' has no *MATERIAL before it')
+                  if (len(card%meant) == 0) call report%missing(card%place, '*'//card%name// &
+                     ' has no *MATERIAL before it')
                else if (card%last_data >= card%first_data) then
                   call build_property(cards, card, context, report, model%materials(n))
                end if
             case default
-               if (n > 0) call presume_property(card%meant, model%materials(n))
+               cycle
             end select
          end associate
       end do
    end subroutine build_materials
-
-   !> A slip of the pen in the keyword of a property is reported already, and stands for it.
-   pure subroutine presume_property(meant, material)
-      character(*), intent(in) :: meant
-      type(material_type), intent(inout) :: material
-
-      if (meant == 'ELASTIC') material%has_elasticity = .true.
-      if (meant == 'CONDUCTIVITY') material%has_conductivity = .true.
-      if (meant == 'DENSITY') material%has_density = .true.
-   end subroutine presume_property
 
    !> Index of a material by its name; 0 for an unknown one.
    pure integer function find_material(materials, name)

@@ -1,12 +1,13 @@
 !> *NODE and *ELEMENT -> nodes and elements of the mesh.
 module deck_builder_mesh
    use card_parameters, only: need_parameter, parameter_place
-   use card_values, only: check_extra, check_unneeded, field_place, has_field, may_be_decimals, &
-      need_field, take_field
+   use card_values, only: check_unneeded, field_place, has_field, is_undefined, may_be_decimals, &
+      check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type
    use deck_builder_lines, only: element_card_count, is_line_card
    use deck_context, only: deck_context_type, plane_by_element
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use element_kinds, only: element_corner_count, element_node_count, plane_strain, quad8
    use element_types, only: take_element_type
    use kinds, only: dp
@@ -42,48 +43,55 @@ contains
       type(mesh_type), intent(inout) :: mesh               !! receives the nodes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp), allocatable :: heights(:)
-      integer, allocatable :: card(:)
+      integer, allocatable :: card(:), places(:)
       integer :: k, j, n
 
       n = data_card_count(cards, 'NODE')
       allocate(mesh%node_number(n), mesh%coordinates(2, n), card(n), heights(n))
+      allocate(context%node_place(n), context%node_valid(n))
       n = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= 'NODE') cycle
          do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
             n = n + 1
             card(n) = j
+            context%node_place(n) = field_place(cards%data(j), 1)
             call build_node(cards%data(j), context, report, mesh%node_number(n), &
-               mesh%coordinates(:, n), heights(n))
+               mesh%coordinates(:, n), heights(n), context%node_valid(n))
          end do
       end do
       call check_heights(cards, card, heights, mesh%coordinates, report)
       call check_normals(cards, card, report)
-      call check_repeated('node', cards, card, mesh%node_number, report)
+      call check_repeated('node', cards, card, mesh%node_number, report, places)
+      do j = 1, size(places)
+         context%node_valid = context%node_valid .and. mesh%node_number /= &
+            mesh%node_number(places(j))
+      end do
       call context%node_index%build(mesh%node_number)
    end subroutine build_nodes
 
    !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what stands behind z
    !> is the direction of a normal in Abaqus.
-   subroutine build_node(data, context, report, number, coordinates, z)
+   subroutine build_node(data, context, report, number, coordinates, z, valid)
       type(data_card_type), intent(in) :: data
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: number
       real(dp), intent(out) :: coordinates(2)
       real(dp), intent(out) :: z
+      logical, intent(out) :: valid                 ! whether the coordinates are known
       character(*), parameter :: names = 'xy'
       integer :: i
-      logical :: valid
 
       valid = .true.
       coordinates = 0.0_dp
       z = 0.0_dp
-      call read_number(data, 'node number', report, number)
+      call read_number(data, 'node', report, number)
       do i = 1, 2
          call take_field(data, i + 1, names(i:i), report, coordinates(i), valid)
-         if (.not. has_field(data, i + 1)) call report%warning(field_place(data, i + 1), &
-            'node '//to_text(number)//' has no '//names(i:i)//': 0 is taken')
+         if (has_field(data, i + 1) .or. is_undefined(data, i + 1) .or. number == 0) cycle
+         call report%warning(field_place(data, i + 1), 'node '//to_text(number)// &
+            ' has no '//names(i:i)//': 0 is taken')
       end do
       call take_field(data, 4, 'z', report, z, valid)
       if (has_field(data, 4)) then
@@ -128,34 +136,39 @@ contains
    end subroutine check_normals
 
    !> The number of a node or element, from 1; 0 after an error.
-   subroutine read_number(data, what, report, number)
+   subroutine read_number(data, noun, report, number)
       type(data_card_type), intent(in) :: data
-      character(*), intent(in) :: what
+      character(*), intent(in) :: noun
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: number
       logical :: valid
 
       number = 0
       valid = .true.
-      call need_field(data, 1, what, report, number, valid)
-      if (.not. valid) return
-      if (number < 1) call report%error(field_place(data, 1), 'numbers begin with 1')
+      call need_field(data, 1, noun//' number', report, number, valid)
+      if (valid .and. number < 1) then
+         call report%error(field_place(data, 1), 'numbers begin with 1')
+         number = 0
+      end if
+      if (number == 0) call report%lose(noun)
    end subroutine read_number
 
-   subroutine check_repeated(noun, cards, card, numbers, report)
+   !> Reports numbers that are given twice: one of the two may stand for a number that is missing.
+   subroutine check_repeated(noun, cards, card, numbers, report, places)
       character(*), intent(in) :: noun
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: card(:), numbers(:)
       type(deck_report_type), intent(inout) :: report
-      integer, allocatable :: places(:)
+      integer, allocatable, intent(out) :: places(:)   ! indexes into numbers
       integer :: i
 
       places = repeated(numbers)
+      places = pack(places, numbers(places) > 0)
       do i = 1, size(places)
-         if (numbers(places(i)) < 1) cycle
          call report%error(field_place(cards%data(card(places(i))), 1), &
             noun//' '//to_text(numbers(places(i)))//' is defined twice')
       end do
+      if (size(places) > 0) call report%lose(noun)
    end subroutine check_repeated
 
    !> Takes the elements, in the order of the deck; one of a type that cannot be used keeps its
@@ -190,12 +203,13 @@ contains
             n = n + 1
             card(n) = j
             context%element_place(n) = field_place(cards%data(j), 1)
-            call read_number(cards%data(j), 'element number', report, mesh%element_number(n))
+            call read_number(cards%data(j), 'element', report, mesh%element_number(n))
             if (len(name) == 0 .or. len(message) > 0) cycle
             mesh%element_kind(n) = kind
             mesh%element_plane(n) = plane
             call read_element_nodes(cards%data(j), kind, context, report, &
                mesh%element_nodes(:element_node_count(kind), n), context%element_valid(n))
+            call check_layout(cards%data(j), kind, cards%keywords(k)%place, report)
          end do
       end do
       call context%element_index%build(mesh%element_number)
@@ -210,6 +224,7 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
       integer :: line_cards(size(context%line_number)), k, j, n
+      integer, allocatable :: places(:)
 
       n = 0
       do k = 1, size(cards%keywords)
@@ -220,7 +235,7 @@ contains
          end do
       end do
       call check_repeated('element', cards, [card, line_cards], &
-         [mesh%element_number, context%line_number], report)
+         [mesh%element_number, context%line_number], report, places)
       call context%member_index%build([mesh%element_number, context%line_number])
    end subroutine check_element_numbers
 
@@ -235,21 +250,20 @@ contains
       logical :: is_number
 
       valid = .true.
-      do q = 1, size(nodes)
+      do q = 1, min(size(nodes), size(data%fields) - 1)
          is_number = .true.
          call need_field(data, q + 1, 'node '//to_text(q), report, number, is_number)
          valid = valid .and. is_number
-         if (.not. is_number) then
-            if (q + 1 > size(data%fields)) exit
-            cycle
-         end if
+         if (.not. is_number) cycle
          nodes(q) = context%node_index%find(number)
          valid = valid .and. nodes(q) > 0
+         if (nodes(q) > 0) valid = valid .and. context%node_valid(nodes(q))
          if (nodes(q) == 0 .and. .not. context%node_index%is_empty()) then
-            call report%error(field_place(data, q + 1), 'there is no node '//to_text(number))
+            call report%missing(field_place(data, q + 1), 'there is no node '//to_text(number), &
+               'node', to_text(number))
          end if
       end do
-      call check_extra(data, size(nodes) + 1, layout_of(kind), report)
+      if (size(data%fields) /= size(nodes) + 1) valid = .false.
       if (.not. valid) return
       do q = 2, size(nodes)
          if (all(nodes(:q - 1) /= nodes(q))) cycle
@@ -257,6 +271,25 @@ contains
          valid = .false.
       end do
    end subroutine read_element_nodes
+
+   !> Reports the first of the elements of a keyword card that have too many fields or too few: its
+   !> TYPE= may be wrong.
+   subroutine check_layout(data, kind, keyword, report)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: kind
+      type(place_type), intent(in) :: keyword          ! where the *ELEMENT card stands
+      type(deck_report_type), intent(inout) :: report
+
+      associate (fields => size(data%fields), due => element_node_count(kind) + 1)
+         if (fields > due) then
+            call report%error(field_place(data, due + 1), 'extra field; the card is '// &
+               layout_of(kind), 'extra fields of '//to_text(keyword%image))
+         else if (fields < due .and. .not. is_undefined(data, fields)) then
+            call report%error(field_place(data, fields + 1), 'missing field: node '// &
+               to_text(fields), 'missing fields of '//to_text(keyword%image))
+         end if
+      end associate
+   end subroutine check_layout
 
    !> What the data card of an element holds.
    pure function layout_of(kind) result(layout)

@@ -1,7 +1,7 @@
 !> *HEADING, *OPTIONS, *SOLVER and *REFINE.
 module deck_builder_options
-   use card_parameters, only: choose, has_parameter, parameter_place, parameter_text, &
-      take_parameter
+   use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &
+      parameter_text, take_parameter
    use cards, only: cards_type, keyword_card_type
    use controls, only: solver_mumps, solver_skyline
    use deck_context, only: deck_context_type
@@ -122,7 +122,7 @@ contains
       character(:), allocatable :: kind
 
       kind = ''
-      if (.not. has_parameter(card, 'TYPE')) call report%error(card%place, '*SOLVER needs TYPE=')
+      if (lacks_parameter(card, 'TYPE')) call report%error(card%place, '*SOLVER needs TYPE=')
       call choose(card, 'TYPE', 'SKYLINE/MUMPS', report, kind)
       if (kind == 'SKYLINE') model%solver = solver_skyline
       if (kind == 'MUMPS') model%solver = solver_mumps
@@ -138,7 +138,7 @@ contains
          return
       end if
       context%levels_place = parameter_place(card, 'LEVELS')
-      if (.not. has_parameter(card, 'LEVELS')) call report%error(card%place, &
+      if (lacks_parameter(card, 'LEVELS')) call report%error(card%place, &
          '*REFINE needs LEVELS=')
       call take_parameter(card, 'LEVELS', report, context%levels)
       if (context%levels >= 0 .and. context%levels <= most_levels) return

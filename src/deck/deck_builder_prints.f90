@@ -3,7 +3,8 @@ module deck_builder_prints
    use card_parameters, only: choose, need_parameter, parameter_place, take_parameter
    use card_values, only: field_place, field_text, has_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_context, only: deck_context_type, find_set, report_lines, set_names
+   use deck_context, only: deck_context_type, find_set, report_lines, report_unknown, &
+      set_names
    use deck_report, only: deck_report_type
    use mesh, only: mesh_type, set_type
    use print_requests, only: append_request, print_displacement, print_force, print_heat, &
@@ -84,8 +85,8 @@ contains
          return
       end if
       if (len(name) == 0 .or. .not. context%sets_sound) return
-      call report%error(parameter_place(card, parameter), 'unknown '//noun//' set '//name// &
-         nearest_known(name, set_names(sets)))
+      call report_unknown(noun//' set', name, set_names(sets), parameter_place(card, parameter), &
+         report)
    end subroutine take_set
 
    !> Warns of a node set of which ORDER=1 leaves no node: there is nothing to print.

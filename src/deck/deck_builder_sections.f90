@@ -1,6 +1,7 @@
 !> *SOLID SECTION -> material and thickness of elements.
 module deck_builder_sections
-   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
+   use card_parameters, only: has_parameter, lacks_parameter, need_parameter, parameter_place, &
+      parameter_text
    use card_values, only: check_extra, field_place, take_field
    use cards, only: cards_type, keyword_card_type
    use deck_builder_materials, only: find_material
@@ -8,12 +9,12 @@ module deck_builder_sections
    use deck_context, only: deck_context_type, find_set, report_lines, report_unknown, &
       set_names
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count, is_misspelt
+   use deck_structure, only: card_count, has_stand_in
    use kinds, only: dp
    use materials, only: section_type
-   use mesh, only: mesh_type
+   use mesh, only: mesh_type, set_type
    use model, only: model_type
-   use text, only: nearest_known, string_type, to_text, to_upper
+   use text, only: string_type, to_text, to_upper
    implicit none
    private
    public :: build_sections
@@ -26,18 +27,18 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives notes, whether all is sound
       type(model_type), intent(inout) :: model             !! receives the sections
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer :: k, n, errors
+      integer :: k, n
 
       allocate(model%sections(card_count(cards, 'SOLID SECTION')))
-      context%sections_sound = .not. is_misspelt(cards, 'SOLID SECTION')
+      context%sections_sound = .not. (has_stand_in(cards, 'SOLID SECTION') .or. &
+         report%has_lost('element set'))
       n = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= 'SOLID SECTION') cycle
          n = n + 1
          call build_section(cards, cards%keywords(k), context, model, report, model%sections(n))
-         errors = report%error_count()
-         call give_section(cards%keywords(k), n, context, model%mesh, report)
-         if (report%error_count() > errors) context%sections_sound = .false.
+         call give_section(cards%keywords(k), n, context%line_sets, model%mesh, report, &
+            context%sections_sound)
       end do
    end subroutine build_sections
 
@@ -98,32 +99,35 @@ contains
          report)
    end subroutine take_orientation
 
-   subroutine give_section(card, section, context, mesh, report)
+   !> Gives the elements of its set a section; sound becomes false where that set is not known.
+   subroutine give_section(card, section, line_sets, mesh, report, sound)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: section
-      type(deck_context_type), intent(in) :: context
+      type(set_type), intent(in) :: line_sets(:)
       type(mesh_type), intent(inout) :: mesh
       type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: sound
       character(:), allocatable :: name
       integer :: set
-      logical :: valid
 
       if (.not. has_parameter(card, 'ELSET')) then
-         call report%error(card%place, '*SOLID SECTION needs ELSET=')
+         if (lacks_parameter(card, 'ELSET')) call report%error(card%place, &
+            '*SOLID SECTION needs ELSET=')
+         sound = .false.
          return
       end if
       name = to_upper(parameter_text(card, 'ELSET'))
       set = find_set(mesh%element_sets, name)
       if (set == 0) then
-         call report%error(parameter_place(card, 'ELSET'), 'unknown element set '//name// &
-            nearest_known(name, set_names(mesh%element_sets)))
+         call report_unknown('element set', name, set_names(mesh%element_sets), &
+            parameter_place(card, 'ELSET'), report)
+         sound = .false.
          return
       end if
-      valid = .true.
       if (mesh%element_sets(set)%of_lines) call report_lines(name, &
-         parameter_place(card, 'ELSET'), report, valid)
-      if (.not. valid) return
-      if (find_set(context%line_sets, name) > 0) call report%warning( &
+         parameter_place(card, 'ELSET'), report, sound)
+      if (mesh%element_sets(set)%of_lines) return
+      if (find_set(line_sets, name) > 0) call report%warning( &
          parameter_place(card, 'ELSET'), 'element set '//name// &
          ' holds lines, too, which are passed over: bars are not modelled')
       associate (members => mesh%element_sets(set)%members)

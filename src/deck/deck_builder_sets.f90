@@ -185,9 +185,9 @@ contains
          end if
       end do
       if (missing > (last - first)/step) then
-         call report%error(field_place(data, 1), 'there is no '//noun//' from '//to_text(first)// &
-            ' to '//to_text(last))
-      else if (missing > 0) then
+         call report%missing(field_place(data, 1), 'there is no '//noun//' from '// &
+            to_text(first)//' to '//to_text(last), noun)
+      else if (missing > 0 .and. .not. report%has_lost(noun)) then
          call report%warning(field_place(data, 1), 'numbers passed over, for there is no such '// &
             noun//': '//to_text(missing))
       end if

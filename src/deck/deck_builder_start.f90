@@ -1,13 +1,14 @@
 !> *START: where the fixed point of an increment starts.
 module deck_builder_start
-   use card_parameters, only: choose, has_parameter
+   use card_parameters, only: choose, lacks_parameter
    use card_values, only: check_extra, field_place, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use controls, only: start_both, start_closed, start_given, start_open, start_previous, start_type
+   use deck_context, only: report_unknown
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use model, only: model_type
-   use text, only: nearest_known, string_type, to_upper
+   use text, only: string_type, to_upper
    implicit none
    private
    public :: build_start
@@ -24,7 +25,7 @@ contains
       character(:), allocatable :: from
 
       from = ''
-      if (.not. has_parameter(card, 'FROM')) call report%error(card%place, '*START needs FROM=')
+      if (lacks_parameter(card, 'FROM')) call report%error(card%place, '*START needs FROM=')
       call choose(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', report, from)
       if (from == 'GIVEN') then
          call build_given(cards, card, model, report, start)
@@ -105,8 +106,7 @@ contains
          if (to_upper(names(i)%value) == to_upper(name)) contact = i
       end do
       if (contact > 0) return
-      call report%error(field_place(data, 1), 'unknown contact pair '//name// &
-         nearest_known(name, names))
+      call report_unknown('contact pair', name, names, field_place(data, 1), report)
       valid = .false.
    end subroutine find_contact
 

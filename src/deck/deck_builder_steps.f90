@@ -1,28 +1,27 @@
 !> *STEP to *END STEP -> steps; loads become requests.
 module deck_builder_steps
-   use card_parameters, only: choose, has_parameter, parameter_place, parameter_text, &
-      take_parameter
-   use card_values, only: check_extra, field_place, has_field, take_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &
+      parameter_text, take_parameter
+   use cards, only: cards_type, keyword_card_type
    use controls, only: fixed_point_type, implicit_scheme, start_type, thermal_scheme_type
    use deck_builder_controls, only: build_fixed_point, build_thermal_scheme
    use deck_builder_start, only: build_start
+   use deck_builder_increments, only: build_increments
    use deck_builder_loads, only: build_load_card
    use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count, is_misspelt
+   use deck_structure, only: card_count
    use keywords, only: refusal
    use kinds, only: dp
    use model, only: model_type
-   use steps, only: analysis_coupled, analysis_heat, analysis_static, least_increment, &
-      solves_heat, step_type
+   use steps, only: analysis_coupled, analysis_heat, analysis_static, solves_heat, &
+      step_type
    use text, only: to_text, to_upper
    implicit none
    private
    public :: build_steps, increment_rounding
 
-   real(dp), parameter :: smallest_part = 1.0e-5_dp        !! of a period: smallest increment
    real(dp), parameter :: increment_rounding = 1.0e-6_dp   !! a shorter rest is none, relative
 
 contains
@@ -39,6 +38,7 @@ contains
       type(step_type) :: before
       integer :: k, n, analyses, files, node_prints, element_prints
 
+      context%analyses_sound = .not. report%has_lost()
       n = card_count(cards, 'STEP')
       allocate(model%steps(n), context%step_place(n))
       n = 0
@@ -47,7 +47,7 @@ contains
       files = 0
       node_prints = 0
       element_prints = 0
-      context%boundaries_sound = .not. is_misspelt(cards, 'BOUNDARY')
+      context%boundaries_sound = .not. report%has_lost()
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             select case (card%name)
@@ -68,7 +68,9 @@ contains
                if (analyses > 1) call report%error(card%place, 'a second analysis in one step')
                if (n > 0) call build_analysis(cards, card, context, report, model%steps(n))
             case ('END STEP')
-               if (analyses == 0) call report%error(card%place, &
+               if (analyses > 0) cycle
+               context%analyses_sound = .false.
+               call report%missing(card%place, &
                   'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
             case ('FIXED POINT')
                call build_fixed_point(card, report, fixed_point)
@@ -95,8 +97,10 @@ contains
             case ('CONTACT PRINT')
                if (n > 0) call read_frequency(card, report, model%steps(n)%contact_print_frequency)
             case default
-               ! A slip of the pen or an analysis that is refused is reported already.
-               if (card%meant == 'STATIC') analyses = analyses + 1
+               if (card%meant /= 'STATIC') cycle
+               ! An analysis that is refused is reported already.
+               analyses = analyses + 1
+               context%analyses_sound = .false.
             end select
          end associate
       end do
@@ -138,7 +142,9 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
       character(:), allocatable :: direct
+      integer :: errors
 
+      errors = report%error_count()
       select case (card%name)
       case ('STATIC')
          step%analysis = analysis_static
@@ -147,7 +153,7 @@ contains
       case default
          step%analysis = analysis_coupled
       end select
-      if (solves_heat(step%analysis) .and. .not. has_parameter(card, 'STEADY STATE')) then
+      if (solves_heat(step%analysis) .and. lacks_parameter(card, 'STEADY STATE')) then
          call report%error(card%place, '*'//card%name// &
             ' needs STEADY STATE: heat capacity is not modelled')
       end if
@@ -162,7 +168,11 @@ contains
       else
          call context%note('*'//card%name//' without data: one increment, period 1')
       end if
-      call fit_increments(card, report, step)
+      if (card%flawed .or. report%error_count() > errors) then
+         context%analyses_sound = .false.
+      else
+         call fit_increments(card, report, step)
+      end if
    end subroutine build_analysis
 
    !> INC= holds for increments that are all as long as the first; CalculiX lengthens those behind
@@ -188,73 +198,6 @@ contains
             to_text(needed)//', as CalculiX lengthens those behind it')
       end if
    end subroutine fit_increments
-
-   !> First increment, period, smallest and largest increment.
-   subroutine build_increments(data, context, report, step)
-      type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      type(step_type), intent(inout) :: step
-      real(dp) :: times(4)
-      integer :: i
-      logical :: valid
-
-      valid = .true.
-      call take_field(data, 1, 'first increment', report, step%first_increment, valid)
-      call take_field(data, 2, 'period', report, step%period, valid)
-      step%smallest_increment = min(smallest_part*step%period, step%first_increment)
-      step%largest_increment = step%first_increment
-      call take_field(data, 3, 'smallest increment', report, step%smallest_increment, valid)
-      call take_field(data, 4, 'largest increment', report, step%largest_increment, valid)
-      call check_extra(data, 4, 'first increment, period, smallest, largest increment', report)
-      call note_increments(data, step, context)
-      times = [step%first_increment, step%period, step%smallest_increment, step%largest_increment]
-      if (valid) then
-         do i = 1, 4
-            if (times(i) > 0.0_dp .or. .not. has_field(data, i)) cycle
-            call report%error(field_place(data, i), 'increments and periods must be positive')
-            valid = .false.
-         end do
-      end if
-      if (.not. valid) then
-         step%first_increment = 1.0_dp
-         step%period = 1.0_dp
-      else if (step%first_increment > step%period) then
-         call report%error(field_place(data, 1), 'the first increment is longer than the '// &
-            'period; give a shorter one')
-      else if (step%smallest_increment > step%first_increment) then
-         call report%error(field_place(data, 3), 'the smallest increment is longer than the '// &
-            'first; give a shorter one')
-      else if (step%largest_increment < step%first_increment) then
-         step%first_increment = step%largest_increment
-         step%smallest_increment = min(step%smallest_increment, step%first_increment)
-         call report%warning(field_place(data, 4), 'the first increment is longer than the '// &
-            'largest, and is taken as long as that')
-      else if (step%smallest_increment < least_increment*step%period) then
-         step%smallest_increment = least_increment*step%period
-         call context%note('smallest increment raised to '//to_text(step%smallest_increment)// &
-            ': a smaller part of the period is lost in rounding')
-      end if
-   end subroutine build_increments
-
-   !> Notes the defaults of the card, and what of it does not act.
-   subroutine note_increments(data, step, context)
-      type(data_card_type), intent(in) :: data
-      type(step_type), intent(in) :: step
-      type(deck_context_type), intent(inout) :: context
-
-      if (.not. has_field(data, 1)) call context%note('first increment not given: 1')
-      if (.not. has_field(data, 2)) call context%note('period not given: 1')
-      if (step%direct) then
-         if (has_field(data, 3) .or. has_field(data, 4)) call context%note( &
-            'smallest and largest increment not needed: with DIRECT increments are fixed')
-         return
-      end if
-      if (.not. has_field(data, 3)) call context%note('smallest increment not given: '// &
-         to_text(step%smallest_increment))
-      if (has_field(data, 4)) call context%note( &
-         'largest increment not needed: no increment is longer than the first')
-   end subroutine note_increments
 
    !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0
    !> leaves its last increment.

@@ -3,13 +3,14 @@ module deck_builder_surfaces
    use card_parameters, only: choose, need_parameter, parameter_place
    use card_values, only: check_extra, field_place, field_text, has_field, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_context, only: deck_context_type, find_set, read_target
+   use deck_context, only: deck_context_type, find_set, place_list_type, read_target
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use deck_structure, only: card_count
    use element_kinds, only: element_corner_count
    use line_faces, only: find_line_faces
    use mesh, only: mesh_type, surface_type
-   use sorting, only: unique_sorted
+   use sorting, only: sort_order
    use text, only: to_text, to_upper
    implicit none
    private
@@ -26,13 +27,13 @@ contains
       integer :: k, n
 
       n = card_count(cards, 'SURFACE')
-      allocate(mesh%surfaces(n), context%surface_place(n))
+      allocate(mesh%surfaces(n), context%face_places(n))
       n = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= 'SURFACE') cycle
          n = n + 1
-         context%surface_place(n) = cards%keywords(k)%place
-         call build_surface(cards, cards%keywords(k), context, mesh, report, mesh%surfaces(n))
+         call build_surface(cards, cards%keywords(k), context, mesh, report, mesh%surfaces(n), &
+            context%face_places(n))
          if (.not. is_new(mesh%surfaces(:n))) call report%error( &
             parameter_place(cards%keywords(k), 'NAME'), 'surface '//mesh%surfaces(n)%name// &
             ' is defined twice')
@@ -51,19 +52,22 @@ contains
    end function is_new
 
    !> Takes one surface; a face that is named twice counts once, in the order of elements.
-   subroutine build_surface(cards, card, context, mesh, report, surface)
+   subroutine build_surface(cards, card, context, mesh, report, surface, places)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
       type(surface_type), intent(out) :: surface
+      type(place_list_type), intent(inout) :: places   ! receives where each face is named
       character(:), allocatable :: kind
-      integer, allocatable :: keys(:)
+      type(place_type), allocatable :: named(:)
+      integer, allocatable :: keys(:), order(:)
       integer :: element, set, face, j, i
       logical :: valid
 
       kind = 'ELEMENT'
+      surface%card = card%place%image
       call need_parameter(card, 'NAME', report, surface%name)
       call choose(card, 'TYPE', 'ELEMENT/NODE', report, kind)
       if (kind == 'NODE') then
@@ -72,10 +76,11 @@ contains
          allocate(surface%faces(2, 0))
          return
       end if
-      allocate(keys(0))
+      allocate(keys(0), named(0))
       do j = card%first_data, card%last_data
          if (names_lines(cards%data(j), context)) then
             call add_line_faces(cards%data(j), context, mesh, report, keys)
+            named = [named, spread(field_place(cards%data(j), 1), 1, size(keys) - size(named))]
             cycle
          end if
          valid = .true.
@@ -91,8 +96,14 @@ contains
          else
             keys = [keys, 4*element + face - 1]
          end if
+         named = [named, spread(field_place(cards%data(j), 1), 1, size(keys) - size(named))]
       end do
-      keys = unique_sorted(keys)
+      ! Of equal keys the first comes first.
+      order = sort_order(keys)
+      order = pack(order, [(i == 1 .or. keys(order(i)) /= keys(order(max(i - 1, 1))), &
+         i=1, size(order))])
+      keys = keys(order)
+      places%items = named(order)
       allocate(surface%faces(2, size(keys)))
       do i = 1, size(keys)
          surface%faces(:, i) = [keys(i)/4, mod(keys(i), 4) + 1]

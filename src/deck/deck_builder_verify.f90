@@ -1,17 +1,17 @@
 !> *VERIFY -> checks of the results.
 module deck_builder_verify
-   use card_parameters, only: choose, has_parameter, parameter_text
+   use card_parameters, only: choose, lacks_parameter, parameter_text
    use card_values, only: check_extra, field_place, field_text, has_field, need_field
    use cards, only: cards_type, data_card_type
    use deck_builder_mesh, only: data_card_count
    use deck_builder_steps, only: increment_rounding
-   use deck_context, only: deck_context_type, read_target
+   use deck_context, only: deck_context_type, read_target, report_unknown
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp
    use model, only: model_type, verify_type
    use steps, only: analysis_static
-   use text, only: nearest_known, read_real, string_type, to_text, to_upper
+   use text, only: read_real, string_type, to_text, to_upper
    use verify_quantities, only: find_quantity, of_history, of_interface, of_nodes, of_pairs, &
       quantities, read_quantity
    implicit none
@@ -35,7 +35,7 @@ contains
          associate (card => cards%keywords(k))
             if (card%name /= 'VERIFY') cycle
             kind = ''
-            if (.not. has_parameter(card, 'KIND')) call report%error(card%place, &
+            if (lacks_parameter(card, 'KIND')) call report%error(card%place, &
                '*VERIFY needs KIND=')
             call choose(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', report, &
                kind)
@@ -47,7 +47,7 @@ contains
             end do
          end associate
       end do
-      call check_heat_quantities(model, report)
+      if (context%analyses_sound) call check_heat_quantities(model, report)
    end subroutine build_verifications
 
    !> Reports quantities of heat in a deck none of whose steps solves heat.
@@ -87,7 +87,7 @@ contains
          check%quantity = trim(quantities(quantity)%name)
          call check_where(data, quantities(quantity)%kind, context, model, report, check)
       end if
-      call read_when(data, model, report, check)
+      if (context%analyses_sound) call read_when(data, model, report, check)
       call need_field(data, 4, 'value', report, check%value, valid)
       call need_field(data, 5, 'tolerance', report, check%tolerance, valid)
       call check_extra(data, 6, 'quantity, where, when, value, tolerance, REL or ABS', report)
@@ -129,7 +129,7 @@ contains
          return
       end if
       if ((kind == of_interface .or. kind == of_pairs) .and. size(model%contacts) == 0) then
-         call report%error(field_place(data, 1), 'the deck has no *CONTACT PAIR: there is no '// &
+         call report%missing(field_place(data, 1), 'the deck has no *CONTACT PAIR: there is no '// &
             check%quantity)
          return
       end if
@@ -163,9 +163,11 @@ contains
       nodes = [node]
       if (set > 0) nodes = model%mesh%node_sets(set)%members
       nodes = pack(nodes, used(nodes))
-      if (size(nodes) == 0) then
-         call report%error(field_place(data, 2), &
-            'no element has a node of '//field_text(data, 2)//': it has no values')
+      if (size(nodes) == 0 .and. .not. all(context%element_valid)) then
+         return
+      else if (size(nodes) == 0) then
+         call report%missing(field_place(data, 2), &
+            'no element has a node of '//field_text(data, 2)//': it has no values', 'element')
       else if (all(context%dropped(nodes))) then
          call report%error(field_place(data, 2), 'ORDER=1 leaves no node of '// &
             field_text(data, 2)//', for none is a corner: it has no values')
@@ -203,8 +205,8 @@ contains
          names(i)%value = model%contacts(i)%name
          known = known .or. to_upper(names(i)%value) == to_upper(name)
       end do
-      if (.not. known) call report%error(field_place(data, 2), 'unknown contact pair '//name// &
-         nearest_known(name, names))
+      if (.not. known) call report_unknown('contact pair', name, names, field_place(data, 2), &
+         report)
    end subroutine check_interface
 
    !> A total time that an increment meets, or LAST.

@@ -5,10 +5,11 @@ module deck_checks
    use deck_report, only: deck_report_type
    use elasticity, only: equivalent_poisson
    use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
+   use jacobian_checks, only: check_jacobians
    use kinds, only: dp, long
    use load_checks, only: check_loads
    use mesh, only: mesh_type
-   use mesh_checks, only: check_jacobians, check_planes, check_sides
+   use mesh_checks, only: check_planes, check_sides
    use model, only: model_type
    use slender_elements, only: check_slenderness
    use steps, only: solves_heat, solves_mechanics
@@ -32,15 +33,16 @@ contains
       type(model_type), intent(in) :: model                !! the model
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: uses(4, size(model%mesh%element_number))
+      logical :: turned(size(model%mesh%element_number))
 
       call check_size(context, model%mesh, report)
       call check_sections(context, model, report)
       call check_materials(context, model, report)
       call check_planes(context, model%mesh, report)
       call check_orientations(context, model, report)
-      call check_jacobians(context, model%mesh, report)
+      call check_jacobians(context, model%mesh, turned, report)
       call check_slenderness(context, model%mesh, report)
-      call check_sides(context, model%mesh, uses, report)
+      call check_sides(context, model%mesh, turned, uses, report)
       call check_loads(context, model, uses, report)
    end subroutine check_model
 
@@ -90,14 +92,15 @@ contains
       logical :: mechanics, heat
       integer :: m
 
+      if (.not. context%analyses_sound) return
       mechanics = any(solves_mechanics(model%steps%analysis))
       heat = any(solves_heat(model%steps%analysis))
       do m = 1, size(model%materials)
          if (.not. any(model%sections%material == m)) cycle
          associate (material => model%materials(m))
-            if (mechanics .and. .not. material%has_elasticity) call report%error( &
+            if (mechanics .and. .not. material%has_elasticity) call report%missing( &
                context%material_place(m), 'material '//material%name//' has no *ELASTIC')
-            if (heat .and. .not. material%has_conductivity) call report%error( &
+            if (heat .and. .not. material%has_conductivity) call report%missing( &
                context%material_place(m), 'material '//material%name// &
                ' has no *CONDUCTIVITY, which a step with heat needs')
             if (mechanics .and. material%has_elasticity) call check_locking(context, model, m, &

@@ -9,15 +9,20 @@ module deck_context
    use load_requests, only: request_list_type
    use mesh, only: set_type
    use sorting, only: number_index_type
-   use text, only: edit_distance, likely_slip, nearest_known, read_integer, string_type, to_upper
+   use text, only: is_slip, nearest_known, read_integer, string_type, to_upper
    implicit none
    private
-   public :: deck_context_type, find_set, set_names, read_target, report_unknown
+   public :: deck_context_type, place_list_type, find_set, set_names, read_target, report_unknown
    public :: report_lines, plane_by_element
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
 
    integer, parameter :: known_count = size(known_keywords)
+
+   !> Places in a row.
+   type :: place_list_type
+      type(place_type), allocatable :: items(:)   !! the places
+   end type place_list_type
 
    !> State of the builder.
    type :: deck_context_type
@@ -30,7 +35,9 @@ module deck_context
       type(set_type), allocatable :: line_sets(:)         !! the lines of the element sets
       type(place_type), allocatable :: element_place(:)   !! (elements) where the element stands
       logical, allocatable :: element_valid(:)            !! (elements) whether its nodes are known
-      type(place_type), allocatable :: surface_place(:)   !! (surfaces) where the surface stands
+      type(place_type), allocatable :: node_place(:)      !! (nodes) where the node stands
+      logical, allocatable :: node_valid(:)               !! (nodes) whether its place is known
+      type(place_list_type), allocatable :: face_places(:)   !! (surfaces) where each face is named
       type(place_type), allocatable :: material_place(:)  !! (materials) where the material stands
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step stands
       !> PLANE=, a plane of element_kinds
@@ -50,6 +57,7 @@ module deck_context
       logical :: sets_sound = .true.         !! whether all *NSET and *ELSET could be taken
       logical :: sections_sound = .true.     !! whether all elements of *SOLID SECTION are known
       logical :: boundaries_sound = .true.   !! whether all *BOUNDARY could be taken
+      logical :: analyses_sound = .true.     !! whether it is known what all steps solve, and when
       type(string_type), allocatable :: notes(:)          !! lines for the listing
    contains
       procedure :: note
@@ -101,11 +109,11 @@ contains
       slip = .false.
       do i = 1, size(names)
          nameless = nameless .or. len(names(i)%value) == 0
-         slip = slip .or. (len(names(i)%value) > 0 .and. &
-            edit_distance(name, names(i)%value) <= likely_slip)
+         slip = slip .or. is_slip(name, names(i)%value)
       end do
       if (nameless .and. .not. slip) return
-      call report%error(place, 'unknown '//noun//' '//name//nearest_known(name, names))
+      call report%missing(place, 'unknown '//noun//' '//name//nearest_known(name, names), noun, &
+         name)
    end subroutine report_unknown
 
    !> Reports an element set that has lines only where elements or their faces are due.
@@ -152,11 +160,11 @@ contains
       if (item > 0 .or. set > 0) return
       valid = .false.
       if (.not. (is_number .or. verify(name, '0123456789') == 0)) then
-         call report%error(field_place(data, position), 'unknown '//noun//' set '// &
-            to_upper(name)// &
-            nearest_known(name, set_names(sets)))
+         call report_unknown(noun//' set', to_upper(name), set_names(sets), &
+            field_place(data, position), report)
       else if (.not. numbers%is_empty()) then
-         call report%error(field_place(data, position), 'there is no '//noun//' '//name)
+         call report%missing(field_place(data, position), 'there is no '//noun//' '//name, noun, &
+            name)
       end if
    end subroutine read_target
 

@@ -80,13 +80,13 @@ contains
       call append(self%values, value)
    end subroutine define
 
-   !> Replaces each <name> in a field by its value.
+   !> Replaces each <name> in a field by its value; one that is not known leaves no text.
    subroutine substitute(self, field, report)
       class(deck_parameters_type), intent(in) :: self      !! the parameters
       type(field_type), intent(inout) :: field             !! the field
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: done, rest, name
-      integer :: left, right, known
+      integer :: left, right, known, column
 
       left = index(field%text, '<')
       if (left == 0) return
@@ -95,23 +95,34 @@ contains
       do
          left = index(rest, '<')
          if (left == 0) exit
+         column = field%place%column + len(field%text) - len(rest) + left - 1
          right = index(rest, '>')
          if (right < left) then
-            call report%error(field%place, 'this < has no >')
-            exit
+            call report%error(place_type(field%place%image, column), 'this < has no >')
+            call make_undefined(field)
+            return
          end if
          name = to_upper(trim(adjustl(rest(left + 1:right - 1))))
          known = position(self%names, name)
          if (known == 0) then
-            call report%error(field%place, 'no *PARAMETER before this card defines '//name// &
-               nearest_known(name, self%names))
-            exit
+            call report%missing(place_type(field%place%image, column), &
+               'no *PARAMETER before this card defines '//name// &
+               nearest_known(name, self%names), 'parameter', name)
+            call make_undefined(field)
+            return
          end if
          done = done//rest(:left - 1)//self%values(known)%value
          rest = rest(right + 1:)
       end do
       field%text = done//rest
    end subroutine substitute
+
+   pure subroutine make_undefined(field)
+      type(field_type), intent(inout) :: field
+
+      field%text = ''
+      field%undefined = .true.
+   end subroutine make_undefined
 
    !> Reports settings that no *PARAMETER of the deck takes.
    subroutine check_settings(self, report)
@@ -122,9 +133,9 @@ contains
       do i = 1, size(self%setting_names)
          associate (name => self%setting_names(i)%value)
             if (position(self%names, name) > 0) cycle
-            call report%error(place_type(), '--set '// &
+            call report%missing(place_type(), '--set '// &
                name//': no *PARAMETER of the deck has this name'// &
-               nearest_known(name, self%names))
+               nearest_known(name, self%names), 'parameter', name)
          end associate
       end do
    end subroutine check_settings

@@ -84,12 +84,14 @@ contains
          else if (size(open_files) == deepest_include) then
             call report%error(place, 'more than '//to_text(deepest_include)// &
                ' files include each other')
+            call report%lose_file()
             cycle
          end if
          call read_file(included, beside(found, included), open_files, open_lines, cards, report, &
             include_fault)
-         if (len(include_fault) > 0) call report%error(place, included//' cannot be read: '// &
-            include_fault)
+         if (len(include_fault) == 0) cycle
+         call report%error(place, included//' cannot be read: '//include_fault)
+         call report%lose_file()
       end do
    end subroutine read_file
 

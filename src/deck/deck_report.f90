@@ -2,7 +2,7 @@
 module deck_report
    use deck_source, only: deck_source_type, place_type
    use sorting, only: sort_order
-   use text, only: string_type, to_text
+   use text, only: append, string_type, to_text, to_upper
    implicit none
    private
    public :: deck_report_type, severity_error, severity_warning
@@ -16,6 +16,8 @@ module deck_report
       integer :: severity = severity_error   !! severity_error or severity_warning
       type(place_type) :: place              !! where
       character(:), allocatable :: message   !! what, in plain words
+      character(:), allocatable :: group     !! what it has in common with others; empty for none
+      integer :: places = 1                  !! places of its group, of which the first is told
    end type diagnostic_type
 
    !> The errors and warnings of one deck, and the card images to which they point.
@@ -25,9 +27,17 @@ module deck_report
       integer, private :: count = 0                                 !! number of diagnostics
       integer, private :: errors = 0                                !! number of errors among them
       type(diagnostic_type), allocatable, private :: diagnostics(:) !! (capacity)
+      !> Kinds of things, such as node set, and names in upper case that may be defined where an
+      !> error is reported already
+      type(string_type), allocatable, private :: lost(:)
+      logical, private :: lost_file = .false.      !! whether a file of the deck could not be read
    contains
       procedure :: error
+      procedure :: missing
       procedure :: warning
+      procedure :: lose
+      procedure :: lose_file
+      procedure :: has_lost
       procedure :: has_errors
       procedure :: error_count
       procedure :: warnings
@@ -36,15 +46,73 @@ module deck_report
 
 contains
 
-   !> Reports an error.
-   subroutine error(self, place, message)
+   !> Reports an error. Errors of one group are told once, with their number.
+   subroutine error(self, place, message, group)
       class(deck_report_type), intent(inout) :: self  !! the report
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
+      character(*), intent(in), optional :: group     !! the group, such as node 6
+      integer :: i
 
+      if (present(group)) then
+         do i = 1, min(self%count, most_errors)
+            if (self%diagnostics(i)%group /= group) cycle
+            self%diagnostics(i)%places = self%diagnostics(i)%places + 1
+            return
+         end do
+      end if
       call add(self, severity_error, place, message)
+      if (present(group)) self%diagnostics(self%count)%group = group
       self%errors = self%errors + 1
    end subroutine error
+
+   !> Reports that something is not there, unless an error that is reported already explains it;
+   !> one name is told once.
+   subroutine missing(self, place, message, noun, name)
+      class(deck_report_type), intent(inout) :: self  !! the report
+      type(place_type), intent(in) :: place           !! where
+      character(*), intent(in) :: message             !! what, in plain words
+      character(*), intent(in), optional :: noun      !! kind of what is not there, such as node set
+      character(*), intent(in), optional :: name      !! its name
+
+      if (self%has_lost(noun, name)) return
+      if (present(noun) .and. present(name)) then
+         call self%error(place, message, noun//' '//to_upper(name))
+      else
+         call self%error(place, message)
+      end if
+   end subroutine missing
+
+   !> Remembers that a reported error may hide the definition of things of a kind, or of a name.
+   subroutine lose(self, word)
+      class(deck_report_type), intent(inout) :: self  !! the report
+      character(*), intent(in) :: word                !! the kind in lower case, the name in upper
+
+      call append(self%lost, word)
+   end subroutine lose
+
+   !> Remembers that a file of the deck could not be read, which may define anything.
+   subroutine lose_file(self)
+      class(deck_report_type), intent(inout) :: self  !! the report
+
+      self%lost_file = .true.
+   end subroutine lose_file
+
+   !> Whether a reported error may hide the definition of things of a kind or of a name; without
+   !> both: of anything at all.
+   pure logical function has_lost(self, noun, name)
+      class(deck_report_type), intent(in) :: self     !! the report
+      character(*), intent(in), optional :: noun      !! the kind, such as node set
+      character(*), intent(in), optional :: name      !! the name, in any case
+      integer :: i
+
+      has_lost = self%lost_file
+      if (has_lost .or. .not. allocated(self%lost)) return
+      do i = 1, size(self%lost)
+         if (present(noun)) has_lost = has_lost .or. self%lost(i)%value == noun
+         if (present(name)) has_lost = has_lost .or. self%lost(i)%value == to_upper(name)
+      end do
+   end function has_lost
 
    !> Reports a warning.
    subroutine warning(self, place, message)
@@ -139,6 +207,7 @@ contains
                ': '//severity//diagnostic%message
          end if
       end associate
+      if (diagnostic%places > 1) line = line//' ('//to_text(diagnostic%places)//' such places)'
    end function first_line
 
    !> A caret under a byte of a line: tabs stay tabs, and a character of several bytes (UTF-8) is
@@ -193,7 +262,9 @@ contains
          do i = 1, self%count
             more(i)%severity = self%diagnostics(i)%severity
             more(i)%place = self%diagnostics(i)%place
+            more(i)%places = self%diagnostics(i)%places
             call move_alloc(self%diagnostics(i)%message, more(i)%message)
+            call move_alloc(self%diagnostics(i)%group, more(i)%group)
          end do
          call move_alloc(more, self%diagnostics)
       end if
@@ -201,6 +272,7 @@ contains
       self%diagnostics(self%count)%severity = severity
       self%diagnostics(self%count)%place = place
       self%diagnostics(self%count)%message = message
+      self%diagnostics(self%count)%group = ''
    end subroutine add
 
 end module deck_report

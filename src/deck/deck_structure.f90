@@ -9,7 +9,7 @@ module deck_structure
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: check_structure, card_count, is_misspelt
+   public :: check_structure, card_count, has_stand_in
 
 contains
 
@@ -25,17 +25,17 @@ contains
       end do
    end function card_count
 
-   !> Whether a keyword that is likely a slip of the pen stands for a name.
-   pure logical function is_misspelt(cards, name)
+   !> Whether a misspelt or refused keyword stands for another one.
+   pure logical function has_stand_in(cards, name)
       type(cards_type), intent(in) :: cards   !! the cards
       character(*), intent(in) :: name        !! name as in the table of keywords
       integer :: k
 
-      is_misspelt = .false.
+      has_stand_in = .false.
       do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%meant == name) is_misspelt = .true.
+         if (cards%keywords(k)%meant == name) has_stand_in = .true.
       end do
-   end function is_misspelt
+   end function has_stand_in
 
    !> Checks the order of the cards, the number of data cards, and what must not be missing.
    subroutine check_structure(cards, report)
@@ -44,6 +44,10 @@ contains
       logical :: step_open, after_step
       integer :: k
 
+      do k = 1, size(cards%keywords)
+         call lose_definitions(cards%keywords(k), report)
+      end do
+      if (report%has_lost()) return
       step_open = .false.
       after_step = .false.
       do k = 1, size(cards%keywords)
@@ -63,19 +67,46 @@ contains
       call need_card(cards, 'STEP', report)
    end subroutine check_structure
 
-   !> Follows *STEP and *END STEP; a slip of the pen in one of them is reported already, and stands
-   !> for it.
+   !> What a card with an error in it defines may be missing elsewhere.
+   subroutine lose_definitions(card, report)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+
+      if (.not. (card%flawed .or. card%data_lost)) return
+      select case (card%name)
+      case ('NODE', 'NSET')
+         if (card%data_lost) call report%lose('node')
+         call report%lose('node set')
+      case ('ELEMENT', 'ELSET')
+         if (card%data_lost) call report%lose('element')
+         call report%lose('element set')
+      case ('SURFACE')
+         call report%lose('surface')
+      case ('MATERIAL')
+         call report%lose('material')
+      case ('ORIENTATION')
+         call report%lose('orientation')
+      case ('AMPLITUDE')
+         call report%lose('amplitude')
+      case ('SURFACE INTERACTION')
+         call report%lose('surface interaction')
+      case ('CONTACT PAIR')
+         call report%lose('contact pair')
+      case default
+         return
+      end select
+   end subroutine lose_definitions
+
+   !> Follows *STEP and *END STEP.
    subroutine check_step_card(card, report, step_open)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: step_open
-      character(:), allocatable :: name
 
-      name = card%name//card%meant
-      if (name == 'STEP') then
+      if (card%name == 'STEP') then
          if (step_open) call report%error(card%place, 'the step before has no *END STEP')
          step_open = .true.
-      else if (name == 'END STEP') then
+      else if (card%name == 'END STEP') then
          if (.not. step_open) call report%error(card%place, 'this *END STEP has no *STEP')
          step_open = .false.
       end if
@@ -86,6 +117,7 @@ contains
       logical, intent(in) :: step_open, after_step
       type(deck_report_type), intent(inout) :: report
 
+      if (len(card%meant) > 0) return
       select case (known_keywords(card%known)%section)
       case (in_model)
          if (after_step) call report%error(card%place, '*'//card%name// &
@@ -135,13 +167,13 @@ contains
       if (most > 0) words = 'at most '//to_text(most)
    end function most_cards
 
-   !> Reports a card that no deck can do without, unless a misspelt one stands for it.
+   !> Reports a card that no deck can do without, unless a refused one stands in its place.
    subroutine need_card(cards, name, report)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name
       type(deck_report_type), intent(inout) :: report
 
-      if (card_count(cards, name) > 0 .or. is_misspelt(cards, name)) return
+      if (card_count(cards, name) > 0 .or. has_stand_in(cards, name)) return
       if (size(cards%keywords) > 0) call report%error(cards%last, 'the deck has no *'//name)
    end subroutine need_card
 

@@ -1,10 +1,10 @@
 !> Keywords of CalculiX and Abaqus that are no keywords of this program: which are passed over, and
 !> which are refused and why. Decks that were written elsewhere use them.
 module foreign_keywords
-   use text, only: to_upper, without_blanks
+   use text, only: is_slip, to_upper, without_blanks
    implicit none
    private
-   public :: foreign_keyword_type, find_foreign
+   public :: foreign_keyword_type, find_foreign, misspelt_foreign
    public :: passed_over, not_printed, refused_with_data, refused_always
 
    integer, parameter :: passed_over = 1        !! means nothing to this program
@@ -140,5 +140,17 @@ contains
          return
       end do
    end function find_foreign
+
+   !> The foreign keyword of which another one is likely a misspelling; empty where there is none.
+   pure function misspelt_foreign(name) result(found)
+      character(*), intent(in) :: name      !! without the star
+      character(:), allocatable :: found
+      integer :: i
+
+      found = ''
+      do i = 1, size(all_foreign)
+         if (is_slip(name, trim(all_foreign(i)%name))) found = trim(all_foreign(i)%name)
+      end do
+   end function misspelt_foreign
 
 end module foreign_keywords

@@ -3,19 +3,20 @@ module keyword_cards
    use card_fields, only: first_text, without_quotes
    use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
    use deck_report, only: deck_report_type
-   use deck_source, only: place_type
-   use foreign_keywords, only: find_foreign, foreign_keyword_type, not_printed, passed_over, &
-      refused_always, refused_with_data
-   use keywords, only: find_keyword, find_parameter, keyword_names, known_keywords, &
-      known_parameter_type, not_needed, parameter_names, refusal, refused
-   use text, only: edit_distance, likely_slip, nearest_known, nearest_name, string_type, to_upper
+   use foreign_keywords, only: find_foreign, foreign_keyword_type, not_printed, &
+      passed_over, refused_always, refused_with_data
+   use keywords, only: built, find_keyword, find_parameter, known_keywords, known_parameter_type, &
+      not_needed, parameter_names, refusal, refused
+   use text, only: string_type, to_upper
+   use unknown_keywords, only: report_unknown_keyword, report_unknown_parameter
    implicit none
    private
    public :: make_keyword_card, is_parameter
 
 contains
 
-   !> Makes a keyword card of its fields, and reports what is unknown or refused.
+   !> Makes a keyword card of its fields, and reports what is unknown or refused. A misspelt keyword
+   !> is taken as the one that it likely is.
    subroutine make_keyword_card(fields, report, cards, card)
       type(field_type), intent(in) :: fields(:)         !! fields, the first with the star
       type(deck_report_type), intent(inout) :: report   !! receives errors
@@ -29,8 +30,10 @@ contains
       card%place = fields(1)%place
       card%known = find_keyword(name)
       allocate(card%parameters(0))
+      if (card%known == 0) call take_foreign_keyword(name, index(fields(1)%text, '* ') == 1, &
+         report, cards, card)
       if (card%known == 0) then
-         call take_foreign_keyword(name, report, cards, card)
+         call lose_names(fields(2:), report)
          return
       end if
       card%name = trim(known_keywords(card%known)%name)
@@ -42,25 +45,42 @@ contains
       end select
    end subroutine make_keyword_card
 
+   !> What a card that is not taken names may be missing elsewhere.
+   subroutine lose_names(fields, report)
+      type(field_type), intent(in) :: fields(:)
+      type(deck_report_type), intent(inout) :: report
+      integer :: i
+
+      do i = 1, size(fields)
+         associate (string => fields(i)%text)
+            if (index(string, '=') > 0) call report%lose(to_upper(without_quotes( &
+               trim(adjustl(string(index(string, '=') + 1:))))))
+         end associate
+      end do
+   end subroutine lose_names
+
    !> Whether the first field of a line behind a keyword card that ends in a comma is a parameter of
    !> it; else the line is data, as in CalculiX.
    pure logical function is_parameter(keyword, field)
       character(*), intent(in) :: keyword   !! the keyword with its star
       character(*), intent(in) :: field     !! the first field of the line
       type(known_parameter_type) :: parameter
+      type(string_type), allocatable :: names(:)
       integer :: known
 
       known = find_keyword(keyword(2:))
       is_parameter = index(field, '=') > 0
       if (known == 0) return
       parameter = find_parameter(known, field)
-      is_parameter = size(parameter_names(known)) > 0 .and. &
-         (is_parameter .or. len(parameter%name) > 0)
+      ! gfortran loses the strings of a function result that is an argument of size.
+      names = parameter_names(known)
+      is_parameter = size(names) > 0 .and. (is_parameter .or. len(parameter%name) > 0)
    end function is_parameter
 
    !> A keyword of CalculiX or Abaqus that is passed over or refused, or one that nobody knows.
-   subroutine take_foreign_keyword(name, report, cards, card)
+   subroutine take_foreign_keyword(name, is_text, report, cards, card)
       character(*), intent(in) :: name
+      logical, intent(in) :: is_text   ! whether a blank follows the star
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: cards
       type(keyword_card_type), intent(inout) :: card
@@ -81,7 +101,7 @@ contains
          card%refusal_of_data = refused_foreign(foreign)
          call add_note(cards%notes, '*'//trim(foreign%name)//' without data is not needed')
       case default
-         call report_unknown_keyword(name, report, card)
+         call report_unknown_keyword(name, is_text, report, card)
       end select
    end subroutine take_foreign_keyword
 
@@ -91,20 +111,6 @@ contains
 
       message = '*'//trim(foreign%name)//' is refused: '//trim(foreign%reason)
    end function refused_foreign
-
-   subroutine report_unknown_keyword(name, report, card)
-      character(*), intent(in) :: name
-      type(deck_report_type), intent(inout) :: report
-      type(keyword_card_type), intent(inout) :: card
-      type(string_type), allocatable :: names(:)
-      integer :: i
-
-      names = keyword_names()
-      i = nearest_name(name, names)
-      if (edit_distance(to_upper(name), names(i)%value) <= likely_slip) card%meant = names(i)%value
-      call report%error(card%place, 'unknown keyword *'//to_upper(name)// &
-         '; the nearest known is *'//names(i)%value)
-   end subroutine report_unknown_keyword
 
    !> Blanks inside a keyword count once.
    pure function without_star(string) result(name)
@@ -128,13 +134,14 @@ contains
       type(keyword_card_type), intent(inout) :: card
       type(parameter_type), allocatable :: found(:)
       type(parameter_type) :: parameter
-      integer :: i, n
+      integer :: i, n, errors
       logical :: valid
 
       allocate(found(size(fields)))
       n = 0
       i = 1
       do while (i <= size(fields))
+         errors = report%error_count()
          call take_parameter(fields(i), report, cards, card, parameter, valid)
          if (card%name == 'OPTIONS' .and. parameter%name == 'LOAD' .and. i < size(fields)) then
             i = i + 1
@@ -143,7 +150,8 @@ contains
          i = i + 1
          if (.not. valid) cycle
          if (is_repeated(found(:n), parameter%name)) then
-            call report%error(parameter%place, parameter%name//' stands twice on this card')
+            if (report%error_count() == errors) call report%error(parameter%place, &
+               parameter%name//' stands twice on this card')
             cycle
          end if
          n = n + 1
@@ -167,29 +175,32 @@ contains
       end do
    end function is_repeated
 
-   !> Takes one parameter and checks it against the table.
+   !> Takes one parameter and checks it against the table. A misspelt one is taken as the one that
+   !> it likely is.
    subroutine take_parameter(field, report, cards, card, parameter, valid)
       type(field_type), intent(in) :: field
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: cards
-      type(keyword_card_type), intent(in) :: card
+      type(keyword_card_type), intent(inout) :: card
       type(parameter_type), intent(out) :: parameter
       logical, intent(out) :: valid
       type(known_parameter_type) :: known
-      integer :: equals
+      integer :: equals, errors
 
+      errors = report%error_count()
       equals = index(field%text, '=')
       if (equals == 0) equals = len(field%text) + 1
       known = find_parameter(card%known, field%text(:equals - 1))
+      if (len(known%name) == 0 .and. len(field%text) > 0) call report_unknown_parameter( &
+         field%text(:equals - 1), field%place, report, card, known)
       parameter%name = known%name
       parameter%place = field%place
       parameter%value_place = field%place
       call take_value(field%text(min(equals + 1, len(field%text) + 1):), equals, parameter)
-      valid = .false.
-      if (len(field%text) == 0) then
+      if (len(field%text) == 0 .and. .not. field%undefined) then
          call report%error(field%place, 'an empty parameter')
-      else if (known%name == '') then
-         call report_unknown(field%text(:equals - 1), field%place, report, card)
+      else if (len(known%name) == 0) then
+         continue
       else if (known%status == refused) then
          call report%error(field%place, known%name//' is refused on *'//card%name//': '// &
             refusal(card%name, known%name))
@@ -197,11 +208,15 @@ contains
          call report%error(field%place, known%name//' needs a value')
       else if (.not. known%takes_value .and. equals <= len(field%text)) then
          call report%error(field%place, known%name//' takes no value')
-      else
-         valid = known%status /= not_needed
-         if (.not. valid) call add_note(cards%notes, '*'//card%name//': '//known%name// &
-            ' is read and not needed')
       end if
+      valid = len(known%name) > 0 .and. known%status == built
+      if (valid) valid = len(parameter%text) > 0 .or. .not. known%needs_value
+      if (valid .and. .not. known%takes_value) valid = equals > len(field%text)
+      card%flawed = card%flawed .or. field%undefined .or. &
+         (report%error_count() > errors .and. .not. valid)
+      if (len(known%name) > 0 .and. known%status == not_needed .and. &
+         report%error_count() == errors) call add_note(cards%notes, '*'//card%name//': '// &
+         known%name//' is read and not needed')
    end subroutine take_parameter
 
    !> The value behind the equals sign.
@@ -214,22 +229,5 @@ contains
       if (len(string) == 0) return
       parameter%value_place%column = parameter%place%column + equals + first_text(string) - 1
    end subroutine take_value
-
-   subroutine report_unknown(name, place, report, card)
-      character(*), intent(in) :: name
-      type(place_type), intent(in) :: place
-      type(deck_report_type), intent(inout) :: report
-      type(keyword_card_type), intent(in) :: card
-      type(string_type), allocatable :: names(:)
-
-      names = parameter_names(card%known)
-      if (size(names) == 0) then
-         call report%error(place, 'unknown parameter '//to_upper(trim(name))//'; *'// &
-            card%name//' has none')
-      else
-         call report%error(place, 'unknown parameter '//to_upper(trim(name))//' of *'// &
-            card%name//nearest_known(name, names))
-      end if
-   end subroutine report_unknown
 
 end module keyword_cards

@@ -26,7 +26,8 @@ contains
       logical :: used(0:size(model%mesh%node_number))
       integer :: i, card
 
-      used = .false.
+      ! Where an element is not known, no node is known to be without one.
+      used = report%has_lost('element') .or. .not. all(context%element_valid)
       used([model%mesh%element_nodes]) = .true.
       card = 0
       do i = 1, context%loads%count
@@ -43,7 +44,8 @@ contains
                call check_density(request, model, 'CENTRIF', report)
                call check_axis(request, model, report)
             case (load_temperature)
-               if (model%steps(request%step)%analysis /= analysis_static) call report%error( &
+               if (context%analyses_sound .and. model%steps(request%step)%analysis /= &
+                  analysis_static) call report%error( &
                   request%place, 'the step solves for temperatures; *BOUNDARY with degree of '// &
                   'freedom 11 prescribes them')
             case (load_pressure, load_face_heat, load_film_coefficient)
@@ -51,7 +53,7 @@ contains
             case default
                continue
             end select
-            call check_effect(request, model, report)
+            if (context%analyses_sound) call check_effect(request, model, report)
          end associate
       end do
       call check_boundaries(context, model, used, report)
@@ -119,7 +121,7 @@ contains
          m = model%sections(section)%material
          if (m == 0) cycle
          if (model%materials(m)%has_density) cycle
-         call report%error(request%place, 'material '//model%materials(m)%name// &
+         call report%missing(request%place, 'material '//model%materials(m)%name// &
             ' has no *DENSITY, which '//label//' needs')
          return
       end do

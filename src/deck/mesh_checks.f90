@@ -1,20 +1,17 @@
-!> What only shows once all elements are read: whether their planes agree, whether none is turned
-!> over, whether they meet along whole sides.
+!> What only shows once all elements are read: whether their planes agree, whether they meet along
+!> whole sides.
 module mesh_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use deck_source, only: place_type
    use element_kinds, only: axisymmetric, element_corner_count, element_node_count, &
       side_node_count, side_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
-   use quadrature, only: integration_rule, most_points, point_count
-   use shape_functions, only: element_gradients
    use sorting, only: sort_order
    use text, only: to_text
    implicit none
    private
-   public :: check_planes, check_jacobians, check_corners, check_sides
+   public :: check_planes, check_sides
 
    !> One side of one element.
    type :: side_type
@@ -59,67 +56,12 @@ contains
       end do
    end subroutine check_planes
 
-   !> The Jacobian is positive at the Gauss points of every element.
-   subroutine check_jacobians(context, mesh, report)
-      type(deck_context_type), intent(in) :: context       !! places for messages
-      type(mesh_type), intent(in) :: mesh                  !! the mesh
-      type(deck_report_type), intent(inout) :: report      !! receives errors
-      character(:), allocatable :: advice
-      integer :: e
-
-      do e = 1, size(mesh%element_number)
-         if (.not. context%element_valid(e)) cycle
-         associate (kind => mesh%element_kind(e))
-            if (is_sound(kind, &
-               mesh%coordinates(:, mesh%element_nodes(:element_node_count(kind), e)))) cycle
-            advice = ': its corners must go round anticlockwise'
-            if (side_node_count(kind) == 3) advice = advice// &
-               ', its midside nodes lie near the middle'
-         end associate
-         call report%error(context%element_place(e), 'the Jacobian of element '// &
-            to_text(mesh%element_number(e))//' is not positive'//advice)
-      end do
-   end subroutine check_jacobians
-
-   !> The same of elements that lost their midside nodes; the first that is not sound is named.
-   subroutine check_corners(place, mesh, report)
-      type(place_type), intent(in) :: place                !! where the order of elements stands
-      type(mesh_type), intent(in) :: mesh                  !! the mesh, of linear elements
-      type(deck_report_type), intent(inout) :: report      !! receives an error
-      integer :: e
-
-      do e = 1, size(mesh%element_number)
-         associate (kind => mesh%element_kind(e))
-            if (is_sound(kind, &
-               mesh%coordinates(:, mesh%element_nodes(:element_node_count(kind), e)))) cycle
-         end associate
-         call report%error(place, 'the Jacobian of element '//to_text(mesh%element_number(e))// &
-            ' is not positive without midside nodes: its sides are too curved for ORDER=1')
-         return
-      end do
-   end subroutine check_corners
-
-   pure logical function is_sound(kind, coordinates)
-      integer, intent(in) :: kind
-      real(dp), intent(in) :: coordinates(:, :)
-      real(dp) :: points(2, most_points), weights(most_points)
-      real(dp) :: gradients(2, size(coordinates, 2)), jacobian
-      integer :: g
-
-      is_sound = .false.
-      call integration_rule(kind, points, weights)
-      do g = 1, point_count(kind)
-         call element_gradients(kind, coordinates, points(:, g), gradients, jacobian)
-         if (.not. jacobian > 0.0_dp) return
-      end do
-      is_sound = .true.
-   end function is_sound
-
    !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is
    !> free.
-   subroutine check_sides(context, mesh, uses, report)
+   subroutine check_sides(context, mesh, turned, uses, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
       type(mesh_type), intent(in) :: mesh                  !! the mesh
+      logical, intent(in) :: turned(:)                     !! (elements) whether it goes clockwise
       integer, intent(out) :: uses(:, :)  !! (4, elements) elements that meet at each side
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(side_type) :: sides(4*size(mesh%element_number))
@@ -142,7 +84,7 @@ contains
          first = last + 1
       end do
       call check_middles(context, mesh, sides(:n), report)
-      call check_faces(context, mesh, uses, report)
+      call check_faces(context, mesh, turned, uses, report)
    end subroutine check_sides
 
    !> The sides of all elements whose nodes are known, in the order of the elements.
@@ -227,30 +169,42 @@ contains
       end do
    end subroutine check_middles
 
-   !> Faces of surfaces exist and are free.
-   subroutine check_faces(context, mesh, uses, report)
+   !> Faces of surfaces are free: reported once a surface, where the first is named. Those of
+   !> elements whose nodes go clockwise are others than meant.
+   subroutine check_faces(context, mesh, turned, uses, report)
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
+      logical, intent(in) :: turned(:)    !! (elements)
       integer, intent(in) :: uses(:, :)   !! (4, elements) elements that meet at each side
       type(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: face
-      integer :: e, f, i, s
+      logical, allocatable :: inside(:)
+      integer :: i, s
 
       do s = 1, size(mesh%surfaces)
-         do i = 1, size(mesh%surfaces(s)%faces, 2)
-            e = mesh%surfaces(s)%faces(1, i)
-            f = mesh%surfaces(s)%faces(2, i)
-            if (.not. context%element_valid(e)) cycle
-            face = 'face S'//to_text(f)//' of element '//to_text(mesh%element_number(e))// &
-               ' in surface '//mesh%surfaces(s)%name
-            if (f > element_corner_count(mesh%element_kind(e))) then
-               call report%error(context%surface_place(s), face// &
-                  ' does not exist: the element is a triangle')
-            else if (uses(f, e) > 1) then
-               call report%error(context%surface_place(s), face//' lies inside a body')
-            end if
-         end do
+         associate (faces => mesh%surfaces(s)%faces)
+            allocate(inside(size(faces, 2)))
+            do i = 1, size(inside)
+               inside(i) = context%element_valid(faces(1, i)) .and. .not. turned(faces(1, i)) &
+                  .and. uses(faces(2, i), faces(1, i)) > 1
+            end do
+            i = findloc(inside, .true., dim=1)
+            if (i > 0) call report%error(context%face_places(s)%items(i), 'face S'// &
+               to_text(faces(2, i))//' of element '//to_text(mesh%element_number(faces(1, i)))// &
+               ' in surface '//mesh%surfaces(s)%name//' lies inside a body'// &
+               others(count(inside), '; faces of the surface that do: '))
+            deallocate(inside)
+         end associate
       end do
    end subroutine check_faces
+
+   !> Tells a number that is more than the one that is named.
+   pure function others(n, words) result(ending)
+      integer, intent(in) :: n
+      character(*), intent(in) :: words
+      character(:), allocatable :: ending
+
+      ending = ''
+      if (n > 1) ending = words//to_text(n)
+   end function others
 
 end module mesh_checks

@@ -25,15 +25,15 @@ contains
       type(contact_pairs_type), allocatable, intent(out) :: interfaces(:)
       type(deck_report_type), intent(inout) :: report        !! receives errors and warnings
       type(error_type), allocatable :: error
-      integer, allocatable :: slave(:), master(:)
+      integer, allocatable :: slave(:), master(:), blamed(:)
       real(dp), allocatable :: normal(:, :)
       integer :: i, known, pair
 
-      allocate (slave(0), master(0), normal(2, 0), interfaces(size(model%contacts)))
+      allocate (slave(0), master(0), normal(2, 0), interfaces(size(model%contacts)), blamed(0))
       do i = 1, size(model%contacts)
          call pair_surfaces(model, i, interfaces(i), error)
          if (allocated(error)) then
-            call report%error(place_type(image=model%contacts(i)%card), error%message)
+            call report_once(merge(error%card, model%contacts(i)%card, error%card > 0))
             cycle
          end if
          call warn_of_pairs(model, i, interfaces(i), report)
@@ -53,6 +53,15 @@ contains
          master = master(:known)
          normal = normal(:, :known)
       end do
+   contains
+      !> What is wrong with a surface is reported for the first of its contact pairs.
+      subroutine report_once(card)
+         integer, intent(in) :: card
+
+         if (any(blamed == card)) return
+         blamed = [blamed, card]
+         call report%error(place_type(image=card), error%message)
+      end subroutine report_once
    end subroutine pair_all
 
    subroutine warn_of_pairs(model, i, pairs, report)

@@ -26,6 +26,7 @@ module mesh
    type :: surface_type
       character(:), allocatable :: name     !! name in upper case
       integer, allocatable :: faces(:, :)   !! (2, face count): element index, face 1..4
+      integer :: card = 0                   !! card image of the *SURFACE
    end type surface_type
 
    !> Nodes and elements, with what is grouped over them.

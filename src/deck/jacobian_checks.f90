@@ -1,0 +1,175 @@
+!> Whether the Jacobian of every element is positive, and why where it is not: a node that is out of
+!> place, or nodes that are not in order.
+module jacobian_checks
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use element_kinds, only: element_corner_count, element_node_count, side_node_count
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use misplaced_nodes, only: corner_areas, element_jacobians, find_misplaced
+   use text, only: to_text
+   implicit none
+   private
+   public :: check_jacobians, check_corners
+
+   integer, parameter :: most_searched = 50   !! elements for which a misplaced node is looked for
+
+contains
+
+   !> The Jacobian is positive at the Gauss points of every element. A node that is out of place is
+   !> reported where it stands, once for all elements that it inverts; elements that go round
+   !> clockwise are reported once.
+   subroutine check_jacobians(context, mesh, turned, report)
+      type(deck_context_type), intent(in) :: context       !! places for messages
+      type(mesh_type), intent(in) :: mesh                  !! the mesh
+      logical, intent(out) :: turned(:)                    !! (elements) whether it goes clockwise
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      logical :: inverted(size(mesh%element_number))
+      integer, allocatable :: nodes(:)
+      integer :: e, searched
+
+      inverted = .false.
+      turned = .false.
+      do e = 1, size(inverted)
+         if (.not. context%element_valid(e)) cycle
+         associate (kind => mesh%element_kind(e))
+            inverted(e) = .not. is_sound(kind, &
+               mesh%coordinates(:, mesh%element_nodes(:element_node_count(kind), e)))
+            if (inverted(e)) turned(e) = all(corner_areas(mesh%coordinates(:, &
+               mesh%element_nodes(:element_corner_count(kind), e))) < 0.0_dp)
+         end associate
+      end do
+      e = findloc(turned, .true., dim=1)
+      if (e > 0) call report%error(context%element_place(e), inverted_element(mesh, e)// &
+         advice(mesh%element_kind(e))//others(count(turned), '; elements that do not: '))
+      inverted = inverted .and. .not. turned
+      searched = 0
+      do e = 1, size(inverted)
+         if (.not. inverted(e)) cycle
+         nodes = [integer ::]
+         searched = searched + 1
+         if (searched <= most_searched .and. .not. is_crossed(mesh, e)) then
+            call find_misplaced(mesh, context%element_valid, inverted, e, nodes)
+         end if
+         select case (size(nodes))
+         case (1)
+            call report_misplaced(context, mesh, nodes(1), inverted, report)
+         case (2:3)
+            call report%error(context%element_place(e), inverted_element(mesh, e)//': '// &
+               listed('node', mesh%node_number(nodes), ' or ')//' is out of place')
+         case default
+            call report%error(context%element_place(e), inverted_element(mesh, e)// &
+               advice(mesh%element_kind(e)))
+         end select
+      end do
+   end subroutine check_jacobians
+
+   !> Reports a node that is out of place; the elements that it inverts are explained then.
+   subroutine report_misplaced(context, mesh, node, inverted, report)
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: node
+      logical, intent(inout) :: inverted(:)
+      type(deck_report_type), intent(inout) :: report
+      logical :: by_node(size(inverted))
+
+      by_node = inverted .and. any(mesh%element_nodes == node, dim=1)
+      call report%error(context%node_place(node), 'node '//to_text(mesh%node_number(node))// &
+         ' at '//to_text(mesh%coordinates(1, node))//', '//to_text(mesh%coordinates(2, node))// &
+         ' is out of place: it inverts '//listed('element', &
+         pack(mesh%element_number, by_node), ' and ')//'; correct its coordinates')
+      inverted = inverted .and. .not. by_node
+   end subroutine report_misplaced
+
+   pure function inverted_element(mesh, e) result(subject)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e
+      character(:), allocatable :: subject
+
+      subject = 'the Jacobian of element '//to_text(mesh%element_number(e))//' is not positive'
+   end function inverted_element
+
+   pure function advice(kind) result(words)
+      integer, intent(in) :: kind
+      character(:), allocatable :: words
+
+      words = ': its corners must go round anticlockwise'
+      if (side_node_count(kind) == 3) words = words//', its midside nodes lie near the middle'
+   end function advice
+
+   !> Tells a number that is more than the one that is named.
+   pure function others(n, words) result(ending)
+      integer, intent(in) :: n
+      character(*), intent(in) :: words
+      character(:), allocatable :: ending
+
+      ending = ''
+      if (n > 1) ending = words//to_text(n)
+   end function others
+
+   !> Numbers in a row: elements 1, 2 and 3.
+   pure function listed(noun, numbers, conjunction) result(words)
+      character(*), intent(in) :: noun
+      integer, intent(in) :: numbers(:)
+      character(*), intent(in) :: conjunction   ! before the last
+      character(:), allocatable :: words
+      integer :: i
+
+      words = noun//' '//to_text(numbers(1))
+      if (size(numbers) > 1 .and. conjunction == ' and ') words = noun//'s '//to_text(numbers(1))
+      do i = 2, size(numbers) - 1
+         words = words//', '//to_text(numbers(i))
+      end do
+      if (size(numbers) > 1) words = words//conjunction//to_text(numbers(size(numbers)))
+   end function listed
+
+   !> Whether two opposite corners of an element are neighbours in another one: its nodes are not in
+   !> order.
+   pure logical function is_crossed(mesh, e)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e
+      integer :: d, first(2), k, n, other
+
+      is_crossed = .false.
+      if (element_corner_count(mesh%element_kind(e)) < 4) return
+      do other = 1, size(mesh%element_number)
+         if (other == e) cycle
+         n = element_corner_count(mesh%element_kind(other))
+         do d = 1, 2
+            do k = 1, 2
+               first(k) = findloc(mesh%element_nodes(:n, other), &
+                  mesh%element_nodes(d + 2*k - 2, e), dim=1)
+            end do
+            if (any(first == 0)) cycle
+            is_crossed = is_crossed .or. any(modulo(first(1) - first(2), n) == [1, n - 1])
+         end do
+      end do
+   end function is_crossed
+
+   !> The same of elements that lost their midside nodes; the first that is not sound is named.
+   subroutine check_corners(place, mesh, report)
+      type(place_type), intent(in) :: place                !! where the order of elements stands
+      type(mesh_type), intent(in) :: mesh                  !! the mesh, of linear elements
+      type(deck_report_type), intent(inout) :: report      !! receives an error
+      integer :: e
+
+      do e = 1, size(mesh%element_number)
+         associate (kind => mesh%element_kind(e))
+            if (is_sound(kind, &
+               mesh%coordinates(:, mesh%element_nodes(:element_node_count(kind), e)))) cycle
+         end associate
+         call report%error(place, 'the Jacobian of element '//to_text(mesh%element_number(e))// &
+            ' is not positive without midside nodes: its sides are too curved for ORDER=1')
+         return
+      end do
+   end subroutine check_corners
+
+   pure logical function is_sound(kind, coordinates)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: coordinates(:, :)
+
+      is_sound = all(element_jacobians(kind, coordinates) > 0.0_dp)
+   end function is_sound
+
+end module jacobian_checks
