@@ -207,7 +207,7 @@ contains
             if (len(name) == 0 .or. len(message) > 0) cycle
             mesh%element_kind(n) = kind
             mesh%element_plane(n) = plane
-            call read_element_nodes(cards%data(j), kind, context, report, &
+            call read_element_nodes(cards%data(j), context, report, &
                mesh%element_nodes(:element_node_count(kind), n), context%element_valid(n))
             call check_layout(cards%data(j), kind, cards%keywords(k)%place, report)
          end do
@@ -239,9 +239,8 @@ contains
       call context%member_index%build([mesh%element_number, context%line_number])
    end subroutine check_element_numbers
 
-   subroutine read_element_nodes(data, kind, context, report, nodes, valid)
+   subroutine read_element_nodes(data, context, report, nodes, valid)
       type(data_card_type), intent(in) :: data
-      integer, intent(in) :: kind
       type(deck_context_type), intent(in) :: context
       type(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: nodes(:)
