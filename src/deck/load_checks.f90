@@ -132,16 +132,16 @@ contains
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: planes(:)
 
-      associate (planes => model%mesh%element_plane(elements_of(request, model)))
-         if (request%component == centrifugal_round) then
-            if (any(planes /= axisymmetric)) call report%error(request%place, &
-               'plane elements turn round an axis along z: point x, y, 0, direction 0, 0, 1')
-         else if (any(planes == axisymmetric)) then
-            call report%error(request%place, 'axisymmetric elements turn round the y axis: '// &
-               'point 0, 0, 0, direction 0, 1, 0')
-         end if
-      end associate
+      planes = model%mesh%element_plane(elements_of(request, model))
+      if (request%component == centrifugal_round) then
+         if (any(planes /= axisymmetric)) call report%error(request%place, &
+            'plane elements turn round an axis along z: point x, y, 0, direction 0, 0, 1')
+      else if (any(planes == axisymmetric)) then
+         call report%error(request%place, 'axisymmetric elements turn round the y axis: '// &
+            'point 0, 0, 0, direction 0, 1, 0')
+      end if
    end subroutine check_axis
 
    pure function elements_of(request, model) result(elements)

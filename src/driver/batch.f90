@@ -32,7 +32,7 @@ module batch
       integer :: process = 0                 !! its process
       real(dp) :: since = 0.0_dp             !! when it began [s]
       logical :: is_killed = .false.         !! whether the batch was told twice to end
-      type(message_file_type) :: messages    !! what it printed
+      type(message_file_type) :: messages = message_file_type()   !! what it printed
    end type slot_type
 
    !> All that a batch knows.

@@ -155,14 +155,16 @@ module records
       type(attempt_record_type), allocatable :: failed(:)       !! these; unallocated for none
       !> Passes of all attempts in their order; unallocated without coupling.
       type(iteration_record_type), allocatable :: iterations(:)
-      type(field_record_type) :: fields                         !! fields
+      type(field_record_type) :: fields = field_record_type()   !! fields
       !> (interfaces) at the end of a step; else unallocated
       type(interface_errors_type), allocatable :: errors(:)
-      type(error_record_type) :: stress_error     !! unallocated where the stress is
-      type(error_record_type) :: heat_flux_error  !! unallocated where the heat flux is
+      !> Unallocated where the stress is.
+      type(error_record_type) :: stress_error = error_record_type()
+      !> Unallocated where the heat flux is.
+      type(error_record_type) :: heat_flux_error = error_record_type()
       !> One an *EL PRINT of the step, empty where its table is not due; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
-      type(work_record_type) :: work                            !! re-factorisation
+      type(work_record_type) :: work = work_record_type()       !! re-factorisation
       type(string_type), allocatable :: notes(:)                !! unallocated for none
       type(string_type), allocatable :: warnings(:)             !! unallocated for none
    end type increment_record_type

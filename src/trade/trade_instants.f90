@@ -21,8 +21,9 @@ contains
       type(model_type), intent(in) :: model      !! the model as the deck is written
       real(dp), intent(in) :: longest            !! largest factor on the increments
       real(dp), allocatable :: times(:)          !! total times, ascending [time]
+      real(dp), allocatable :: corners(:)
       real(dp) :: start, increment
-      integer :: s, i, count, most
+      integer :: s, i, k, count, most
 
       allocate (times(0))
       start = 0.0_dp
@@ -32,16 +33,19 @@ contains
             increment = varied_increment(step%first_increment, step%period, longest)
             count = floor(step%period/increment + same)
             do i = merge(2, 1, count >= few), count, 1 + (count - 1)/most
-               call add(i*increment)
+               call add(i*increment, times)
             end do
             if (.not. step%direct) then
                do i = 1, size(model%verifications)
-                  if (.not. model%verifications(i)%at_last) call add(model%verifications(i)%when &
-                     - start)
+                  if (model%verifications(i)%at_last) cycle
+                  call add(model%verifications(i)%when - start, times)
                end do
                do i = 1, size(model%amplitudes)
-                  call add_corners(model%amplitudes(i)%times - merge(start, 0.0_dp, &
-                     model%amplitudes(i)%total_time))
+                  corners = model%amplitudes(i)%times - merge(start, 0.0_dp, &
+                     model%amplitudes(i)%total_time)
+                  do k = 1, size(corners)
+                     call add(corners(k), times)
+                  end do
                end do
             end if
             start = start + step%period
@@ -50,23 +54,15 @@ contains
       end do
       call sort(times)
    contains
-      pure subroutine add(step_time)
+      pure subroutine add(step_time, instants)
          real(dp), intent(in) :: step_time
+         real(dp), allocatable, intent(inout) :: instants(:)
 
          if (step_time < same*increment) return
          if (step_time > model%steps(s)%period - same*increment) return
-         if (any(abs(times - (start + step_time)) < same*increment)) return
-         times = [times, start + step_time]
+         if (any(abs(instants - (start + step_time)) < same*increment)) return
+         instants = [instants, start + step_time]
       end subroutine add
-
-      pure subroutine add_corners(corners)
-         real(dp), intent(in) :: corners(:)
-         integer :: k
-
-         do k = 1, size(corners)
-            call add(corners(k))
-         end do
-      end subroutine add_corners
    end function common_instants
 
    pure subroutine sort(times)

@@ -66,10 +66,12 @@ contains
    pure subroutine add_singles(model, trade)
       type(model_type), intent(in) :: model        !! the model on the deck's mesh
       type(trade_type), intent(inout) :: trade     !! receives the rows
-      integer :: i
+      integer :: i, coupled, heated
 
-      associate (fixed_point => model%steps(first_coupled(model))%fixed_point, &
-         scheme => model%steps(first_heat(model))%scheme)
+      coupled = first_coupled(model)
+      heated = first_heat(model)
+      associate (fixed_point => model%steps(coupled)%fixed_point, &
+         scheme => model%steps(heated)%scheme)
          do i = 1, size(tolerances)
             if (.not. is_coupled(model)) exit
             if (abs(tolerances(i)/fixed_point%tolerance - 1.0_dp) < 0.5_dp) cycle

@@ -100,11 +100,11 @@ contains
       type(sequences_type), intent(in) :: rows
       integer, intent(in) :: q, i, t
       real(dp), allocatable :: values(:)
+      integer, allocatable :: list(:)
       integer :: k
 
-      associate (list => all_rows(rows))
-         values = [(trade%rows(list(k))%values%figures(q, i, t), k=1, size(list))]
-      end associate
+      list = all_rows(rows)
+      values = [(trade%rows(list(k))%values%figures(q, i, t), k=1, size(list))]
    end function figures_of
 
    pure function temperatures_of(trade, rows, node, t) result(values)
@@ -112,11 +112,11 @@ contains
       type(sequences_type), intent(in) :: rows
       integer, intent(in) :: node, t
       real(dp), allocatable :: values(:)
+      integer, allocatable :: list(:)
       integer :: k
 
-      associate (list => all_rows(rows))
-         values = [(trade%rows(list(k))%values%temperatures(node, t), k=1, size(list))]
-      end associate
+      list = all_rows(rows)
+      values = [(trade%rows(list(k))%values%temperatures(node, t), k=1, size(list))]
    end function temperatures_of
 
    !> Rows whose values make a limit; in place of one that is missing stands one that adds nothing.
@@ -135,6 +135,7 @@ contains
    pure subroutine find_sequences(trade, rows)
       type(trade_type), intent(in) :: trade
       type(sequences_type), intent(out) :: rows
+      integer, allocatable :: found(:)
       integer :: order, finest, f, level, i
 
       allocate (rows%meshes(0), rows%increments(0))
@@ -160,9 +161,8 @@ contains
          rows%meshes = [i, rows%meshes]
       end do
       do level = finest, 0, -1
-         associate (found => increments_on(trade, order, level))
-            if (size(found) > size(rows%increments)) rows%increments = found
-         end associate
+         found = increments_on(trade, order, level)
+         if (size(found) > size(rows%increments)) rows%increments = found
          if (size(rows%increments) >= 3) exit
       end do
       do i = 1, size(rows%increments)

@@ -13,7 +13,7 @@ module trade_rows
 
    !> One row: a variation of the deck, measured.
    type :: trade_row_type
-      type(variation_type) :: variation                 !! what is other than in the deck
+      type(variation_type) :: variation = variation_type()   !! what differs from the deck
       integer :: order = 2                              !! order of its elements, 1 or 2
       integer :: level = 0                              !! refinements of the deck's mesh
       logical :: is_grid = .true.                       !! of the grid; else one thing is varied
@@ -24,7 +24,7 @@ module trade_rows
       real(dp), allocatable :: cpu(:)                   !! (runs) CPU seconds [s]
       real(dp) :: cpu_seconds = 0.0_dp                  !! their median [s]
       real(dp) :: peak_bytes = 0.0_dp                   !! largest resident memory [byte]
-      type(row_values_type) :: values                   !! what it found
+      type(row_values_type) :: values = row_values_type()    !! what it found
       real(dp) :: errors(quantity_count) = absent       !! stated errors [-]
       real(dp) :: worst = absent                        !! largest of them
       logical :: is_optimal = .false.                   !! no row is both cheaper and better
