@@ -1,0 +1,57 @@
+"""The Fortran sources: their order of compilation, and what they do that some compilers refuse."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+FUNCTION = re.compile(r"^(?!\s*end\b)[\w\s(),=*%:]*\bfunction\s+(\w+)\s*\(", re.I)
+ASSOCIATE = re.compile(r"\s*(?:\w+\s*:)?\s*associate\s*\(", re.I)
+
+
+def program_sources():
+    """The files of the program; CMake fills in the last one."""
+    return [*sorted((ROOT / "src").rglob("*.f90")), ROOT / "src/core/version.f90.in"]
+
+
+def in_order(files):
+    """Order files so that each stands behind the modules that it uses."""
+    text = {file: file.read_text().lower() for file in files}
+    home = {name: file for file in files
+            for name in re.findall(r"^module (\w+)\s*$", text[file], re.M)}
+    ordered = []
+
+    def add(file):
+        if file in ordered:
+            return
+        for name in re.findall(r"^\s*use\s*(?:,\s*\w+\s*::)?\s*(\w+)", text[file], re.M):
+            if home.get(name, file) is not file:
+                add(home[name])
+        ordered.append(file)
+
+    for file in files:
+        add(file)
+    return ordered
+
+
+def statements(text):
+    """Yield line numbers, from 1, and statements: without comments, continued lines in one."""
+    start, statement = 0, ""
+    for number, line in enumerate(text.splitlines(), 1):
+        line = line.split("!")[0].rstrip()
+        start = start or number
+        statement += line.lstrip("& ") if statement else line
+        if statement.endswith("&"):
+            statement = statement[:-1]
+        else:
+            yield start, statement
+            start, statement = 0, ""
+
+
+def late_selectors(text):
+    """Find ASSOCIATE statements that call a function defined further down: (line, function)."""
+    listed = list(statements(text))
+    defined = {match[1].lower(): number for number, statement in listed
+               if (match := FUNCTION.match(statement))}
+    return [(number, name) for number, statement in listed if ASSOCIATE.match(statement)
+            for name in re.findall(r"(?<![%\w])(\w+)\s*\(", statement.lower())
+            if defined.get(name, 0) > number]
