@@ -24,8 +24,8 @@ def run(script, module, failed):
         main = import_module(f"thercon_post.{module}").main
     except ModuleNotFoundError as missing:
         print(
-            f"{script.name}: error: the Python package '{missing.name}' is missing; "
-            "`./setup.sh build` prepares build/venv with all that is needed",
+            f"{script.name}: error: the Python package '{missing.name}' is missing; install the "
+            f"packages of {script.parent / 'requirements.txt'} (`./setup.sh build` does)",
             file=sys.stderr,
         )
         return failed

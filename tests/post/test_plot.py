@@ -581,7 +581,7 @@ def test_launcher_takes_the_python_of_the_build_and_names_missing_packages(tmp_p
     bare = [sys.executable, "-S", "-E", str(post / "plot"), "--help"]
     told = subprocess.run(bare, capture_output=True, text=True, check=False)
     assert told.returncode == 1
-    assert "is missing; `./setup.sh build` prepares" in told.stderr
+    assert f"is missing; install the packages of {post / 'requirements.txt'}" in told.stderr
     python = tmp_path / "build" / "venv" / "bin" / "python"
     python.parent.mkdir(parents=True)
     python.write_text('#!/bin/sh\necho "build: $*"\n')

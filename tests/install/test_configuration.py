@@ -1,0 +1,35 @@
+"""CMake takes what it is told, and the shared libraries of HDF5."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def configure(folder, *arguments):
+    """Configure in a new folder; return the commands of the build."""
+    command = ["cmake", "-G", "Ninja", "-S", ROOT, "-B", folder, "-DBUILD_TESTING=OFF", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return (folder / "build.ninja").read_text()
+
+
+@pytest.fixture(scope="module")
+def default(tmp_path_factory):
+    return configure(tmp_path_factory.mktemp("default"))
+
+
+def test_flags_of_the_release_are_those_named(default, tmp_path):
+    assert "FLAGS = -O3 -g1 -ffp-contract=off" in default
+    named = configure(tmp_path, "-DCMAKE_Fortran_FLAGS_RELEASE=-O1 -g")
+    assert "FLAGS = -O1 -g " in named
+    assert "-O3" not in named
+    assert "-ffp-contract" not in named
+
+
+def test_shared_libraries_of_hdf5_are_preferred(default):
+    assert "/libhdf5_fortran.so" in default
+    assert "/libhdf5.so" in default
+    assert "hdf5.a" not in default
