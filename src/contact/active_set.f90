@@ -31,7 +31,8 @@ module active_set
 contains
 
    !> Contact state under a condensed load, the references of friction being given, and its idle
-   !> pairs.
+   !> pairs. Motions that nothing drives or holds are least from the positions of the guess,
+   !> whatever sets are tried.
    !> Errors: no active set satisfies all conditions; the bodies are not held, and then driven is
    !> set, and the status is the one in which they are driven away.
    subroutine solve_contact(system, load, state, error)
@@ -55,6 +56,7 @@ contains
       type(contact_state_type) :: guess
 
       guess = state
+      system%anchor = positions(system, state)
       system%several = .false.
       call search(system, load, state, error)
       if (.not. allocated(error)) then

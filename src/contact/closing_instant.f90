@@ -40,7 +40,8 @@ module closing_instant
 contains
 
    !> Contact state at the end of an increment, with the references of the pairs that close in it.
-   !> The system has no laws of an earlier increment (drop_laws).
+   !> The system has no laws of an earlier increment (drop_laws). Only the statuses of the guess
+   !> count: where bodies are loose, the motion is the least one from the start of the increment.
    !> Error: as solve_contact, or closing laws that do not settle.
    subroutine solve_increment(system, previous, load, state, error)
       type(contact_system_type), intent(inout) :: system  !! the reduced system
@@ -54,6 +55,8 @@ contains
 
       holds = .false.
       do pass = 1, most_passes
+         state%gap = previous%gap
+         state%tangential = previous%tangential
          call solve_contact(system, load, state, error)
          if (allocated(error)) return
          holds = state%status /= status_open .or. (holds .and. pass > free_passes)

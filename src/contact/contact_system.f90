@@ -53,6 +53,8 @@ module contact_system
       integer, allocatable :: link(:)             !! (links) places of the links' forces
       real(dp), allocatable :: rigid(:, :)  !! (tail, q) unsupported rigid motions
       real(dp), allocatable :: motion(:, :) !! (tail, q) the same, orthonormal
+      !> (tail) relative displacements that loose motions are least from; set by solve_contact
+      real(dp), allocatable :: anchor(:)
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
       real(dp), allocatable :: least_drive(:) !! (tail) resultants that count as none [force]
@@ -179,7 +181,7 @@ contains
          'the bodies are not held by their supports and the pairs that are in contact')
    end subroutine check_balance
 
-   !> Moves loose bodies so that pairs slip least, and open ones stay where they were.
+   !> Moves loose bodies so that pairs slip least, and open ones stay at the anchor.
    pure subroutine move_least(self, state, d)
       class(contact_system_type), intent(in) :: self
       type(contact_state_type), intent(in) :: state
@@ -190,9 +192,9 @@ contains
       way = 0.0_dp
       do k = 1, size(state%status)
          if (state%status(k) == status_open) way(self%normal(k)) = d(self%normal(k)) - &
-            (self%initial_gap(k) - state%gap(k))
+            self%anchor(self%normal(k))
          if (self%tangent(k) == 0) cycle
-         way(self%tangent(k)) = d(self%tangent(k)) - state%tangential(k)
+         way(self%tangent(k)) = d(self%tangent(k)) - self%anchor(self%tangent(k))
          if (state%status(k) == status_slip) way(self%tangent(k)) = d(self%tangent(k)) - &
             merge(self%closing(k)%start, state%reference(k), self%closing(k)%acts)
       end do

@@ -16,7 +16,7 @@
 !> the pair: with 1/body the resistance of the bodies it goes like 1/(1/body + 1/omega).
 module conductance_graph
    use conductance_laws, only: conductance, conductance_inverse, conductance_law_type, &
-      conductance_slope
+      conductance_slope, law_clearance, law_pressure
    use kinds, only: dp
    implicit none
    private
@@ -39,6 +39,7 @@ module conductance_graph
       procedure :: place_of_opening
       procedure :: place_of_omega
       procedure :: may_rest
+      procedure :: kinks
    end type conductance_graph_type
 
    real(dp), parameter :: straight = 1.0e-3_dp   !! change of omega that a slope gives, relative
@@ -229,5 +230,16 @@ contains
          place = at(2)
       end if
    end function place_of_omega
+
+   !> Places at which the conductance may have a kink: the rows of tables, and the ends of a rest.
+   pure function kinks(self) result(place)
+      class(conductance_graph_type), intent(in) :: self  !! the pair
+      real(dp), allocatable :: place(:)                  !! ascending [length]
+
+      place = [-self%width, 0.0_dp]
+      if (self%law%closed_kind == law_pressure) place = [-self%width - self%law%table_pressure( &
+         size(self%law%table_pressure):1:-1)/self%modulus, place]
+      if (self%law%open_kind == law_clearance) place = [place, self%law%table_gap]
+   end function kinks
 
 end module conductance_graph

@@ -30,7 +30,8 @@ contains
          allocate (anderson_type :: accelerator)
          allocate (accelerator%g(size(graph)), source=controls%g)
       case default
-         allocate (accelerator, source=newton_type(graph=graph))
+         allocate (accelerator, source=newton_type(graph=graph, &
+            most_steps=controls%max_iterations/2))
          allocate (accelerator%g(size(graph)), source=1.0_dp)
       end select
    end subroutine make_accelerator

@@ -27,6 +27,7 @@ module contact_operator
       real(dp), allocatable :: diagonal(:) !! (thermal tail) diagonal of the present tail factors
       real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
       real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]
+      real(dp) :: expansion = 0.0_dp !! largest coefficient of expansion [1/temperature]
    end type increment_data_type
 
 contains

@@ -24,6 +24,7 @@ module fixed_point
    type, abstract :: accelerator_type
       real(dp), allocatable :: g(:)   !! (m) part of the way that each pair goes
       integer :: kept = 0 !! pairs whose g was kept in the last pass, eq. (4.2) giving none
+      logical :: follows_path = .false.   !! on a continuous path of conductances (homotopy)
    contains
       procedure :: asks_slope
       procedure(next_interface), deferred :: next

@@ -13,9 +13,10 @@ module increment_checks
    use thermal_matrix, only: contact_diagonal
    implicit none
    private
-   public :: check_heat, check_values, check_violation, warn_of_choices
+   public :: check_balance, check_heat, check_values, check_violation, warn_of_choices
 
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
+   real(dp), parameter :: sound_imbalance = 1.0e-4_dp !! of the heat of discrete equations
 
 contains
 
@@ -30,6 +31,18 @@ contains
          'the recovered displacements violate the contact conditions by '// &
          to_text(record%contact_violation)//' of the largest displacement or force')
    end subroutine check_violation
+
+   !> The heat rates of the discrete equations balance.
+   !> Error: they do not, the temperatures being so large that they have no digits left for them.
+   subroutine check_balance(record, error)
+      type(increment_record_type), intent(in) :: record     !! the increment
+      type(error_type), allocatable, intent(out) :: error   !! see above
+
+      if (record%heat_imbalance <= sound_imbalance) return
+      call set_error(error, status_no_convergence, 'heat in and heat out differ by '// &
+         to_text(record%heat_imbalance)//' of the largest rate: the temperatures are so large '// &
+         'that their rounding outweighs the heat')
+   end subroutine check_balance
 
    !> The fields and the contact state of an increment are numbers.
    !> Error: status_no_convergence, something overflowed.

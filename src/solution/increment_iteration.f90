@@ -19,6 +19,10 @@ module increment_iteration
    public :: iterate
 
    integer, parameter :: most_turns = 4   !! openings and closings of a pair whose law jumps
+   integer, parameter :: path_share = 9   !! passes on a path, over those of the method itself
+   real(dp), parameter :: largest_floor = 1.0e-2_dp !! of the residual; above it omega has no digits
+   real(dp), parameter :: no_strain = 1.0_dp  !! thermal strain that is none of the small ones
+   integer, parameter :: most_away = 5    !! passes with larger ones from which no method returns
 
 contains
 
@@ -50,8 +54,11 @@ contains
          pass%omega = data%omega_old
          call use_method(operators, controls, graph, scales, data, next, record, pass, error)
       end if
-      if (.not. (allocated(error) .and. any(graph%width > 0.0_dp))) return
-      if (controls%method == method_newton) return
+      if (.not. allocated(error)) return
+      if (controls%method == method_newton .or. .not. any(graph%width > 0.0_dp)) then
+         call name_runaway(operators, data, next%jump, record, error)
+         return
+      end if
       deallocate (error)
       call append(record%notes, 'a pair whose conductance jumps comes to no state by the '// &
          'method of the deck; the increment is handed to NEWTON')
@@ -60,7 +67,37 @@ contains
       next%contact = guess
       pass%omega = start
       call use_method(operators, fallback, graph, scales, data, next, record, pass, error)
+      if (allocated(error)) call name_runaway(operators, data, next%jump, record, error)
    end subroutine iterate
+
+   !> Whether the temperature jumps of a pass strain a body beyond all small strains, if they are
+   !> numbers at all.
+   pure logical function runs_away(data, jump)
+      type(increment_data_type), intent(in) :: data
+      real(dp), intent(in) :: jump(:)
+
+      runs_away = data%expansion > 0.0_dp .and. .not. all(abs(jump)*data%expansion <= no_strain)
+   end function runs_away
+
+   !> Names the interface with the largest jump, in place of an error, where the heat runs away.
+   subroutine name_runaway(operators, data, jump, record, error)
+      type(interface_operators_type), intent(in) :: operators
+      type(increment_data_type), intent(in) :: data
+      real(dp), intent(in) :: jump(:)
+      type(increment_record_type), intent(inout) :: record
+      type(error_type), intent(inout) :: error
+      integer :: i, k
+
+      if (.not. runs_away(data, jump)) return
+      k = findloc(abs(jump) <= huge(1.0_dp), .false., dim=1)
+      if (k == 0) k = maxloc(abs(jump), dim=1)
+      i = count(operators%pairs%interface_start <= k)
+      record%runaway = 'thermal runaway in contact pair '//operators%interfaces(i)%name// &
+         ': the heat that crosses its gap widens it, and the wider gap needs hotter bodies, '// &
+         'without limit (thermal strains above 1); a steady state needs less heat, a smaller '// &
+         'gap or better conduction'
+      error%message = record%runaway
+   end subroutine name_runaway
 
    !> The iteration by one method.
    subroutine use_method(operators, controls, graph, scales, data, next, record, pass, error)
@@ -74,18 +111,22 @@ contains
       type(pass_type), intent(inout) :: pass
       type(error_type), allocatable, intent(out) :: error
       class(accelerator_type), allocatable :: accelerator
-      type(iteration_record_type) :: passes(controls%max_iterations)
+      type(iteration_record_type) :: passes((1 + path_share)*controls%max_iterations)
       type(contact_state_type) :: good
       type(closing_law_type), allocatable :: good_closing(:)
-      integer :: turns(size(graph)), i, before
+      integer :: turns(size(graph)), away, before, i
+      real(dp) :: wanted
       logical :: possible
 
       before = size(record%iterations)
       turns = 0
+      away = 0
+      wanted = controls%tolerance
       pass%image = pass%omega
       call operators%contact%drop_laws()
       call make_accelerator(controls, graph, accelerator)
       do i = 1, size(passes)
+         if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
          good = next%contact
          good_closing = operators%contact%closing
          pass%iteration = i
@@ -108,8 +149,11 @@ contains
          call find_residual(graph, operators%pairs%weight, pass, scales, passes(i)%residual, &
             next%resting)
          record%residual_floor = residual_floor(operators, data, next%contact, pass%image)
+         wanted = max(controls%tolerance, min(record%residual_floor, largest_floor))
          next%omega = pass%omega
-         if (passes(i)%residual <= max(controls%tolerance, record%residual_floor)) exit
+         if (passes(i)%residual <= wanted) exit
+         away = merge(away + 1, 0, runs_away(data, next%jump))
+         if (away >= merge(1, most_away, accelerator%follows_path)) exit
          where ((next%contact%status == status_open) .neqv. (good%status == status_open)) &
             turns = turns + 1
          if (controls%method /= method_newton .and. any(turns > most_turns .and. &
@@ -118,20 +162,22 @@ contains
          call accelerator%next(pass, next%omega)
          pass%omega = next%omega
       end do
-      call close_passes(record, passes, i, max(controls%tolerance, record%residual_floor), error)
-      if (.not. allocated(error)) call settle(next%resting, next%contact)
+      call close_passes(record, passes, i, wanted, error)
+      if (allocated(error)) return
+      where (operators%pairs%weight <= 0.0_dp) next%omega = pass%image
+      call settle(next%resting, next%contact)
    end subroutine use_method
 
    !> Keeps the passes, and says so where the last one is not good enough.
    subroutine close_passes(record, passes, last, wanted, error)
       type(increment_record_type), intent(inout) :: record
       type(iteration_record_type), intent(in) :: passes(:)
-      integer, intent(in) :: last
+      integer, intent(in) :: last   !! the loop's, beyond the last pass where that was not enough
       real(dp), intent(in) :: wanted
       type(error_type), allocatable, intent(inout) :: error
       integer :: n
 
-      n = min(last, size(passes))
+      n = min(last, count(passes%iteration > 0))
       if (allocated(error)) n = last - 1
       record%iterations = [record%iterations, passes(:n)]
       if (allocated(error) .or. n == 0) return

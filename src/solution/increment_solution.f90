@@ -77,7 +77,8 @@ contains
             call pass_once(operators, previous, data, next, record, error)
          else
             call solve_coupled(operators, step, previous, data, next, record, error)
-            if (allocated(error)) call suggest_newton(operators, step%fixed_point, error)
+            if (allocated(error) .and. .not. allocated(record%runaway)) &
+               call suggest_newton(operators, step%fixed_point, error)
          end if
       else
          call solve_mechanics(operators, step, data, next, record, error)
@@ -245,6 +246,7 @@ contains
       operators%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       call operators%mechanical%set_load(next%force_load + thermal, loads%displacement%value)
       call operators%mechanical%condense_load()
+      data%expansion = largest_expansion(model)
       operators%contact%initial_gap = operators%pairs%initial_gap - &
          held_approach(operators%pairs, loads%displacement%value)
       associate (applied => next%force_load, rigid => operators%rigid)
@@ -254,6 +256,15 @@ contains
             operators%contact%rigid, operators%contact%motion, matmul(applied, rigid))
       end associate
    end subroutine load_mechanics
+
+   !> Largest coefficient of expansion of the bodies.
+   pure real(dp) function largest_expansion(model)
+      type(model_type), intent(in) :: model
+      integer :: i
+
+      largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
+         %expansion)), i=1, size(model%sections))])
+   end function largest_expansion
 
    !> Fields of the whole bodies, from the solution on the pairs.
    subroutine recover_fields(operators, loads, model, step, next)

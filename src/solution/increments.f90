@@ -4,7 +4,7 @@ module increments
    use discretisation_errors, only: recovery_type
    use errors, only: error_type, set_error, status_no_convergence
    use films, only: left_films
-   use increment_checks, only: check_heat, check_values, check_violation, warn_of_choices
+   use increment_checks, only: check_balance, check_heat, check_values, check_violation, warn_of_choices
    use increment_control, only: increment_control_type
    use increment_records, only: make_record
    use increment_solution, only: recover_fields, solve_pairs
@@ -146,6 +146,10 @@ contains
                before = record
                cycle
             end if
+            if (allocated(record%runaway)) then
+               if (record%runaway /= error%message) error%message = error%message// &
+                  '; larger increments end in '//record%runaway
+            end if
             error%message = error%message//'; '//self%control%why_not_again(model, increment_size)
          end if
          error%message = 'increment '//to_text(record%increment)//' (time '// &
@@ -238,6 +242,8 @@ contains
             record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_values(record, error)
+         if (allocated(error)) return
+         if (solves_heat(step%analysis)) call check_balance(record, error)
          if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call check_violation(record, error)
       end associate

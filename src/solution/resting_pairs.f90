@@ -49,7 +49,8 @@ contains
       if (scales%length <= 0.0_dp) scales%length = 1.0_dp
    end function contact_scales
 
-   !> Largest residual of a pass, and the pairs that rest in it: a conductance between the two
+   !> Largest residual of a pass over the pairs that carry heat, which those of weight 0 do not,
+   !> and the pairs that rest in it: a conductance between the two
    !> values of its law needs no more of a pair than that neither gap nor pressure is left.
    pure subroutine find_residual(graph, weight, pass, scales, residual, resting)
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
@@ -61,7 +62,8 @@ contains
       real(dp) :: by_law(size(graph)), by_rest(size(graph)), pressure(size(graph))
       real(dp) :: largest
 
-      by_law = pair_residual(pass%omega, pass%image)
+      by_law = 0.0_dp
+      where (weight > 0.0_dp) by_law = pair_residual(pass%omega, pass%image)
       resting = graph%may_rest(pass%omega)
       if (any(resting)) then
          pressure = graph%modulus*max(-pass%opening, 0.0_dp)

@@ -1,0 +1,295 @@
+!> A path to the solution of an increment from a state that is the only one of its problem:
+!>
+!>    F(z, t) = opening(z) - (1 - t) o - t H(L(omega(z))) = 0,
+!>
+!> z being the places of the points on the graphs of their laws (conductance_graph) and o constant
+!> openings. At t = 0 there is one solution, at t = 1 they are those of the increment. As H is
+!> bounded where the temperatures are, the path from t = 0 leads to t = 1, past all turning points,
+!> and to a solution with det(I - U') > 0 (Ortega & Rheinboldt 1970, chapters 6 and 7; Allgower &
+!> Georg 1990). It leaves every bound only where the temperatures do.
+!>
+!> Each pass gives one step: a Newton correction normal to the path and an advance along it, which
+!> is shortened where the correction is not small beside it. Laws and contact states have kinks, at
+!> which the path may turn back sharply: the sign of det [F_z F_t; tangent], constant all along,
+!> tells where it goes on. Lengths are measured along the graphs, in opening/length and in the share
+!> omega/(omega + body), in which steep laws and pairs at rest are as long as flat ones.
+module homotopy
+   use conductance_graph, only: conductance_graph_type
+   use dense, only: lu_type
+   use kinds, only: dp
+   implicit none
+   private
+   public :: homotopy_type
+
+   real(dp), parameter :: first_step = 0.1_dp     !! length of the first advance
+   real(dp), parameter :: longest_step = 0.5_dp   !! the same of any, for one point or t
+   real(dp), parameter :: shortest_step = 1.0e-8_dp   !! the same of the last one that is tried
+   real(dp), parameter :: too_large = 0.5_dp  !! correction over move that rejects a pass; after
+   !! steps as short as the corrections none may grow
+   real(dp), parameter :: small = 0.1_dp      !! the same below which the next step is longer
+   real(dp), parameter :: closer = 0.25_dp    !! by which corrections become smaller at sharp turns
+   real(dp), parameter :: nearest = 1.0e-11_dp !! smallest correction that is asked for
+   real(dp), parameter :: at_a_kink = 0.25_dp !! correction over `near` that never rejects a pass: the
+   !! sides of a kink may correct to each other, however short the step is
+   real(dp), parameter :: rounding = 1.0e-12_dp   !! correction that cannot become smaller
+   integer, parameter :: most_arrived = 6 !! passes at t = 1 after which corrections must shrink
+   real(dp), parameter :: least_unit = 1.0e-8_dp  !! of lengths along the graphs
+   real(dp), parameter :: touching = 1.0e-6_dp    !! opening over length that is none
+
+   !> Where the path is.
+   type :: homotopy_type
+      real(dp), private :: length = 1.0_dp        !! scale of openings, > 0 [length]
+      real(dp), allocatable, private :: first(:)  !! (m) o [length]
+      real(dp), allocatable, private :: base(:)   !! (m) z of the last pass taken [length]
+      real(dp), allocatable, private :: trial(:)  !! (m) z of the pass that runs [length]
+      real(dp), private :: base_t = 0.0_dp, trial_t = 0.0_dp   !! t of both
+      real(dp), allocatable, private :: correction(:) !! (m + 1) from the base to the path
+      real(dp), allocatable, private :: tangent(:)    !! (m + 1) of the path there, of length 1
+      real(dp), private :: unit = 0.0_dp          !! of lengths along the graphs
+      real(dp), private :: step = first_step      !! length of the present advance
+      real(dp), private :: near = 0.02_dp         !! correction after which the path goes on
+      integer, private :: arrived = 0             !! passes at t = 1, one after the other
+      logical, private :: has_turned = .false.    !! whether the path turned back at the base
+      real(dp), private :: way = huge(1.0_dp)     !! length of the move to the trial
+   contains
+      procedure :: begin
+      procedure :: next
+      procedure :: retreat
+   end type homotopy_type
+
+contains
+
+   !> Begins a path at openings, where no point rests.
+   subroutine begin(self, graph, opening, place)
+      class(homotopy_type), intent(out) :: self             !! a new path
+      type(conductance_graph_type), intent(in) :: graph(:)  !! (m) laws of the points
+      real(dp), intent(in) :: opening(:)                    !! (m) o [length]
+      real(dp), intent(out) :: place(:)                     !! (m) z of the first pass [length]
+
+      self%length = max(maxval(abs(opening)), tiny(1.0_dp))
+      call restart(self, graph, opening)
+      place = self%trial
+   end subroutine begin
+
+   !> Goes back to t = 0, to openings where no point rests.
+   subroutine restart(self, graph, opening)
+      class(homotopy_type), intent(inout) :: self
+      type(conductance_graph_type), intent(in) :: graph(:)
+      real(dp), intent(in) :: opening(:)
+      integer :: k
+
+      self%first = opening
+      where (abs(self%first) < touching*self%length) self%first = touching*self%length
+      self%base = graph%place_of_opening(self%first)
+      self%trial = self%base
+      self%base_t = 0.0_dp
+      self%trial_t = 0.0_dp
+      self%unit = 0.0_dp
+      self%step = first_step
+      self%way = huge(1.0_dp)
+      self%correction = [(0.0_dp, k=0, size(opening))]
+      self%tangent = self%correction
+      self%tangent(size(self%tangent)) = 1.0_dp
+   end subroutine restart
+
+   !> The places of the next pass.
+   subroutine next(self, graph, body, opening, slope, place)
+      class(homotopy_type), intent(inout) :: self           !! the path
+      type(conductance_graph_type), intent(in) :: graph(:)  !! (m) laws of the points
+      real(dp), intent(in) :: body(:)         !! (m) of the bodies about a point [as omega]
+      real(dp), intent(in) :: opening(:)                    !! (m) H(L(omega)) of the pass [length]
+      !> (m, m) its derivative by omega; not allocated where there is none
+      real(dp), allocatable, intent(in) :: slope(:, :)
+      real(dp), intent(out) :: place(:)                     !! (m) z [length]
+      real(dp) :: change(size(place) + 1), tangent(size(place) + 1)
+      logical :: sound, turns
+
+      if (self%unit <= 0.0_dp) self%length = max(self%length, maxval(abs(opening)))
+      if (self%step < shortest_step) then
+         self%near = max(closer*self%near, nearest)
+         call restart(self, graph, opening)
+         place = self%trial
+         return
+      end if
+      sound = allocated(slope)
+      if (sound .and. self%unit <= 0.0_dp) call set_unit(self, graph, body, opening, slope, sound)
+      if (sound) call find_step(self, graph, body, opening, slope, change, tangent, sound)
+      if (sound) then
+         turns = dot_product(tangent, self%tangent) < 0.0_dp
+         sound = norm2(change) <= merge(too_large, 1.0_dp, self%step > self%near)*self%way
+         self%arrived = merge(self%arrived + 1, 0, self%trial_t >= 1.0_dp)
+         sound = sound .or. (norm2(change) <= at_a_kink*self%near .and. self%arrived < most_arrived)
+         if (self%trial_t >= 1.0_dp) sound = (sound .or. norm2(change) <= rounding) .and. .not. turns
+      end if
+      if (.not. sound) then
+         self%step = 0.5_dp*self%step
+      else if (self%trial_t < 1.0_dp .and. norm2(change) <= self%near) then
+         ! A path that turns back at a kink was overshot by as much as a step. Where it seems to
+         ! turn again at once, both branches are nearer to each other than the points to them.
+         if (norm2(change) <= small*self%way .or. turns) self%step = 2*self%step
+         if (turns .and. self%has_turned) self%near = max(closer*self%near, nearest)
+         self%has_turned = turns
+         self%base = self%trial
+         self%base_t = self%trial_t
+         self%correction = change
+         self%tangent = tangent
+      else
+         call move(self, graph, body, self%trial, self%trial_t, change, tangent)
+         place = self%trial
+         return
+      end if
+      call advance(self, graph, body)
+      place = self%trial
+   end subroutine next
+
+   !> A shorter advance, where the contact zones of a pass were not found.
+   subroutine retreat(self, graph, body, place, possible)
+      class(homotopy_type), intent(inout) :: self           !! the path
+      type(conductance_graph_type), intent(in) :: graph(:)  !! (m) laws of the points
+      real(dp), intent(in) :: body(:)         !! (m) of the bodies about a point [as omega]
+      real(dp), intent(out) :: place(:)                     !! (m) z [length]
+      logical, intent(out) :: possible                      !! whether there is one
+
+      self%step = 0.5_dp*self%step
+      possible = self%step > shortest_step
+      if (possible) call advance(self, graph, body)
+      place = self%trial
+   end subroutine retreat
+
+   !> The unit of lengths: as far as the points go at the start while t goes to 1, where that is
+   !> little.
+   subroutine set_unit(self, graph, body, opening, slope, sound)
+      class(homotopy_type), intent(inout) :: self
+      type(conductance_graph_type), intent(in) :: graph(:)
+      real(dp), intent(in) :: body(:), opening(:), slope(:, :)
+      logical, intent(out) :: sound
+      real(dp) :: change(size(body) + 1), tangent(size(body) + 1)
+
+      self%unit = 1.0_dp
+      call find_step(self, graph, body, opening, slope, change, tangent, sound)
+      if (sound) self%unit = min(max(norm2(tangent(:size(body)))/tangent(size(tangent)), &
+         least_unit), 1.0_dp)
+   end subroutine set_unit
+
+   !> The trial from the base: to the path and along it, no point by more than a part of its opening
+   !> where that is large.
+   subroutine advance(self, graph, body)
+      class(homotopy_type), intent(inout) :: self
+      type(conductance_graph_type), intent(in) :: graph(:)
+      real(dp), intent(in) :: body(:)
+      real(dp) :: longest(size(self%tangent))
+
+      longest = longest_step*[max(1.0_dp, abs(graph%opening(self%base))/self%length)/self%unit, &
+         1.0_dp]
+      self%step = min(self%step, minval(longest/max(abs(self%tangent), tiny(1.0_dp))))
+      call move(self, graph, body, self%base, self%base_t, &
+         self%correction + self%step*self%tangent, self%tangent)
+   end subroutine advance
+
+   !> The trial: a change from places and t, back along the tangent to t = 1 where it would lead
+   !> beyond. There is no path below t = 0.
+   subroutine move(self, graph, body, from, from_t, change, tangent)
+      class(homotopy_type), intent(inout) :: self
+      type(conductance_graph_type), intent(in) :: graph(:)
+      real(dp), intent(in) :: body(:), from(:), from_t, change(:), tangent(:)
+      real(dp) :: way(size(change))
+      integer :: n
+
+      n = size(body)
+      way = change
+      if (from_t < 1.0_dp .and. from_t + way(n + 1) >= 1.0_dp) way = way - &
+         (from_t + way(n + 1) - 1.0_dp)/max(tangent(n + 1), least_unit)*tangent
+      self%way = norm2(way)
+      self%trial = moved_along(graph, from, self%unit*way(:n), body, self%length)
+      self%trial_t = min(max(from_t + way(n + 1), 0.0_dp), 1.0_dp)
+      if (from_t + change(n + 1) >= 1.0_dp) self%trial_t = 1.0_dp
+   end subroutine move
+
+   !> Newton's correction of the trial, at t = 1 with t held, elsewhere normal to the path, whose
+   !> tangent points the way that it goes on.
+   subroutine find_step(self, graph, body, opening, slope, change, tangent, sound)
+      class(homotopy_type), intent(in) :: self
+      type(conductance_graph_type), intent(in) :: graph(:)
+      real(dp), intent(in) :: body(:), opening(:), slope(:, :)
+      real(dp), intent(out) :: change(:), tangent(:)
+      logical, intent(out) :: sound
+      real(dp) :: matrix(size(change), size(change)), x(size(change), 2), rate
+      type(lu_type) :: lu
+      logical :: singular
+      integer :: k, n
+
+      n = size(opening)
+      do k = 1, n
+         rate = self%unit*place_rate(graph(k), self%trial(k), body(k), self%length)
+         matrix(:n, k) = -self%trial_t*rate*graph(k)%slope(self%trial(k))*slope(:, k)
+         matrix(k, k) = matrix(k, k) + rate*graph(k)%advance(self%trial(k))
+      end do
+      matrix(:n, n + 1) = self%first - opening
+      matrix(n + 1, :) = self%tangent
+      if (self%trial_t >= 1.0_dp) matrix(n + 1, :) = [(0.0_dp, k=1, n), 1.0_dp]
+      x = 0.0_dp
+      x(:n, 1) = -(graph%opening(self%trial) - (1.0_dp - self%trial_t)*self%first - &
+         self%trial_t*opening)
+      x(n + 1, 2) = 1.0_dp
+      call lu%factor(matrix, singular)
+      sound = .not. singular
+      if (.not. sound) return
+      call lu%solve(x)
+      tangent = x(:, 2)/norm2(x(:, 2))
+      if (lu%negative_determinant()) tangent = -tangent
+      change = x(:, 1)
+      if (self%trial_t < 1.0_dp) change = change - dot_product(change, tangent)*tangent
+   end subroutine find_step
+
+   !> Change of the place for the length along the graph.
+   pure function place_rate(graph, place, body, length) result(rate)
+      type(conductance_graph_type), intent(in) :: graph
+      real(dp), intent(in) :: place, body, length
+      real(dp) :: rate   !! [length]
+
+      rate = 1.0_dp/(graph%advance(place)/length + &
+         body*abs(graph%slope(place))/(graph%omega(place) + body)**2)
+   end function place_rate
+
+   !> Places at the ends of walks along the graphs, of given lengths.
+   elemental function moved_along(graph, from, walk, body, length) result(place)
+      type(conductance_graph_type), intent(in) :: graph
+      real(dp), intent(in) :: from     !! [length]
+      real(dp), intent(in) :: walk     !! towards open where it is positive [-]
+      real(dp), intent(in) :: body     !! [as omega]
+      real(dp), intent(in) :: length   !! [length]
+      real(dp) :: place                !! [length]
+      real(dp) :: near, far
+      integer :: i
+
+      near = from
+      far = from + walk*length + sign(graph%width, walk)
+      do i = 1, 200
+         place = 0.5_dp*(near + far)
+         if (abs(far - near) <= 2*epsilon(1.0_dp)*abs(place)) exit
+         if (distance(graph, min(from, place), max(from, place), body, length) > abs(walk)) then
+            far = place
+         else
+            near = place
+         end if
+      end do
+   end function moved_along
+
+   !> Length along the graph between two places: the opening's change and the variation of the
+   !> share, which may turn at the rows of tables and at the ends of a rest.
+   pure function distance(graph, low, high, body, length)
+      type(conductance_graph_type), intent(in) :: graph
+      real(dp), intent(in) :: low, high, body, length
+      real(dp) :: distance
+      real(dp), allocatable :: place(:), share(:)
+
+      associate (kinks => graph%kinks())
+         place = [low, pack(kinks, kinks > low .and. kinks < high), high]
+      end associate
+      share = graph%omega(place)
+      share = share/(share + body)
+      distance = (graph%opening(high) - graph%opening(low))/length + &
+         sum(abs(share(2:) - share(:size(share) - 1)))
+   end function distance
+
+end module homotopy
