@@ -21,20 +21,23 @@ module homotopy
    private
    public :: homotopy_type
 
-   real(dp), parameter :: first_step = 0.1_dp     !! length of the first advance
-   real(dp), parameter :: longest_step = 0.5_dp   !! the same of any, for one point or t
-   real(dp), parameter :: shortest_step = 1.0e-8_dp   !! the same of the last one that is tried
-   real(dp), parameter :: too_large = 0.5_dp  !! correction over move that rejects a pass; after
-   !! steps as short as the corrections none may grow
-   real(dp), parameter :: small = 0.1_dp      !! the same below which the next step is longer
-   real(dp), parameter :: closer = 0.25_dp    !! by which corrections become smaller at sharp turns
-   real(dp), parameter :: nearest = 1.0e-11_dp !! smallest correction that is asked for
-   real(dp), parameter :: at_a_kink = 0.25_dp !! correction over `near` that never rejects a pass: the
-   !! sides of a kink may correct to each other, however short the step is
-   real(dp), parameter :: rounding = 1.0e-12_dp   !! correction that cannot become smaller
-   integer, parameter :: most_arrived = 6 !! passes at t = 1 after which corrections must shrink
-   real(dp), parameter :: least_unit = 1.0e-8_dp  !! of lengths along the graphs
-   real(dp), parameter :: touching = 1.0e-6_dp    !! opening over length that is none
+   real(dp), parameter :: first_step = 0.1_dp       !! length of the first advance
+   real(dp), parameter :: longest_step = 0.5_dp     !! of any, for one point or t
+   real(dp), parameter :: shortest_step = 1.0e-8_dp !! below it another path is tried
+   !> Correction over the way to the trial that rejects a pass. After steps as short as the
+   !> corrections none may grow.
+   real(dp), parameter :: too_large = 0.5_dp
+   real(dp), parameter :: small = 0.1_dp            !! the same below which the next step is longer
+   real(dp), parameter :: first_near = 0.02_dp      !! correction after which the path goes on
+   real(dp), parameter :: nearest = 1.0e-11_dp      !! smallest one that is asked for
+   real(dp), parameter :: closer = 0.25_dp          !! by which it becomes smaller at sharp turns
+   !> Correction over `near` that rejects no pass: the sides of a kink may correct to each other,
+   !> however short the step is.
+   real(dp), parameter :: at_a_kink = 0.25_dp
+   integer, parameter :: most_arrived = 6           !! passes at t = 1 to which that applies
+   real(dp), parameter :: rounding = 1.0e-12_dp     !! correction that cannot become smaller
+   real(dp), parameter :: least_unit = 1.0e-8_dp    !! of lengths along the graphs
+   real(dp), parameter :: touching = 1.0e-6_dp      !! opening over length that is none
 
    !> Where the path is.
    type :: homotopy_type
@@ -47,7 +50,7 @@ module homotopy
       real(dp), allocatable, private :: tangent(:)    !! (m + 1) of the path there, of length 1
       real(dp), private :: unit = 0.0_dp          !! of lengths along the graphs
       real(dp), private :: step = first_step      !! length of the present advance
-      real(dp), private :: near = 0.02_dp         !! correction after which the path goes on
+      real(dp), private :: near = first_near      !! correction after which the path goes on
       integer, private :: arrived = 0             !! passes at t = 1, one after the other
       logical, private :: has_turned = .false.    !! whether the path turned back at the base
       real(dp), private :: way = huge(1.0_dp)     !! length of the move to the trial
@@ -102,7 +105,7 @@ contains
       real(dp), allocatable, intent(in) :: slope(:, :)
       real(dp), intent(out) :: place(:)                     !! (m) z [length]
       real(dp) :: change(size(place) + 1), tangent(size(place) + 1)
-      logical :: sound, turns
+      logical :: sound
 
       if (self%unit <= 0.0_dp) self%length = max(self%length, maxval(abs(opening)))
       if (self%step < shortest_step) then
@@ -114,33 +117,51 @@ contains
       sound = allocated(slope)
       if (sound .and. self%unit <= 0.0_dp) call set_unit(self, graph, body, opening, slope, sound)
       if (sound) call find_step(self, graph, body, opening, slope, change, tangent, sound)
-      if (sound) then
-         turns = dot_product(tangent, self%tangent) < 0.0_dp
-         sound = norm2(change) <= merge(too_large, 1.0_dp, self%step > self%near)*self%way
-         self%arrived = merge(self%arrived + 1, 0, self%trial_t >= 1.0_dp)
-         sound = sound .or. (norm2(change) <= at_a_kink*self%near .and. self%arrived < most_arrived)
-         if (self%trial_t >= 1.0_dp) sound = (sound .or. norm2(change) <= rounding) .and. .not. turns
-      end if
-      if (.not. sound) then
-         self%step = 0.5_dp*self%step
-      else if (self%trial_t < 1.0_dp .and. norm2(change) <= self%near) then
-         ! A path that turns back at a kink was overshot by as much as a step. Where it seems to
-         ! turn again at once, both branches are nearer to each other than the points to them.
-         if (norm2(change) <= small*self%way .or. turns) self%step = 2*self%step
-         if (turns .and. self%has_turned) self%near = max(closer*self%near, nearest)
-         self%has_turned = turns
-         self%base = self%trial
-         self%base_t = self%trial_t
-         self%correction = change
-         self%tangent = tangent
-      else
+      if (sound) call judge(self, norm2(change), dot_product(tangent, self%tangent), sound)
+      if (sound .and. (self%trial_t >= 1.0_dp .or. norm2(change) > self%near)) then
          call move(self, graph, body, self%trial, self%trial_t, change, tangent)
-         place = self%trial
-         return
+      else
+         if (sound) then
+            call take(self, change, tangent)
+         else
+            self%step = 0.5_dp*self%step
+         end if
+         call advance(self, graph, body)
       end if
-      call advance(self, graph, body)
       place = self%trial
    end subroutine next
+
+   !> Whether a pass is one on the way: its correction is small, and at t = 1 the path goes forward.
+   subroutine judge(self, correction, turn, sound)
+      class(homotopy_type), intent(inout) :: self
+      real(dp), intent(in) :: correction   !! its length
+      real(dp), intent(in) :: turn         !! cosine of the angle to the tangent at the base
+      logical, intent(out) :: sound
+
+      self%arrived = merge(self%arrived + 1, 0, self%trial_t >= 1.0_dp)
+      sound = correction <= merge(too_large, 1.0_dp, self%step > self%near)*self%way
+      sound = sound .or. (correction <= at_a_kink*self%near .and. self%arrived < most_arrived)
+      if (self%trial_t < 1.0_dp) return
+      sound = (sound .or. correction <= rounding) .and. turn >= 0.0_dp
+   end subroutine judge
+
+   !> Takes the trial as the base. A path that turns back at a kink was overshot by as much as a
+   !> step. Where it seems to turn again at once, its branches are nearer to each other than the
+   !> points to them.
+   subroutine take(self, change, tangent)
+      class(homotopy_type), intent(inout) :: self
+      real(dp), intent(in) :: change(:), tangent(:)
+      logical :: turns
+
+      turns = dot_product(tangent, self%tangent) < 0.0_dp
+      if (norm2(change) <= small*self%way .or. turns) self%step = 2*self%step
+      if (turns .and. self%has_turned) self%near = max(closer*self%near, nearest)
+      self%has_turned = turns
+      self%base = self%trial
+      self%base_t = self%trial_t
+      self%correction = change
+      self%tangent = tangent
+   end subroutine take
 
    !> A shorter advance, where the contact zones of a pass were not found.
    subroutine retreat(self, graph, body, place, possible)

@@ -77,8 +77,9 @@ contains
             call pass_once(operators, previous, data, next, record, error)
          else
             call solve_coupled(operators, step, previous, data, next, record, error)
-            if (allocated(error) .and. .not. allocated(record%runaway)) &
+            if (allocated(error) .and. .not. allocated(record%runaway)) then
                call suggest_newton(operators, step%fixed_point, error)
+            end if
          end if
       else
          call solve_mechanics(operators, step, data, next, record, error)

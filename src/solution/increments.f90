@@ -4,7 +4,8 @@ module increments
    use discretisation_errors, only: recovery_type
    use errors, only: error_type, set_error, status_no_convergence
    use films, only: left_films
-   use increment_checks, only: check_balance, check_heat, check_values, check_violation, warn_of_choices
+   use increment_checks, only: check_balance, check_heat, check_values, check_violation, &
+      warn_of_choices
    use increment_control, only: increment_control_type
    use increment_records, only: make_record
    use increment_solution, only: recover_fields, solve_pairs

@@ -190,8 +190,9 @@ contains
 
       if (allocated(record%iterations)) record%iterations%cut_backs = record%cut_backs
       if (allocated(before%failed)) record%failed = before%failed
-      if (allocated(before%runaway) .and. .not. allocated(record%runaway)) &
+      if (allocated(before%runaway) .and. .not. allocated(record%runaway)) then
          record%runaway = before%runaway
+      end if
       if (allocated(before%iterations)) then
          if (allocated(record%iterations)) then
             record%iterations = [before%iterations, record%iterations]
