@@ -23,6 +23,7 @@ is written by `python tests/accuracy/report.py` from runs of the program; the te
 DOCUMENT = Document("accuracy.md", HERE, ("estimate", "recovered", "trade", "cylinder", "needed", "calculix"),
                     PREFACE)
 check, check_parts, rows = DOCUMENT.check, DOCUMENT.check_parts, DOCUMENT.rows
+check_rows = DOCUMENT.check_rows
 
 if __name__ == "__main__":
     DOCUMENT.write(sys.argv[1:])

@@ -116,10 +116,10 @@ KNOWN = {name: lambda name=name: rod(name) for name in RODS}
 KNOWN |= {"hertz": hertz, "press_fit": press_fit, "cylinder": cylinder}
 
 
-def check_recommendations(deck, name, known, model_error, folder):
+def check_recommendations(deck, name, known, model_error, folder, limit="0.5"):
     """Assert that every row recommended has a true error within the wish, but for what its
     recommendation names; model_error is by how far the known answer is not that of the deck."""
-    rows, _ = trade(deck, folder, "--quiet", "--limit", "0.5")
+    rows, _ = trade(deck, folder, "--quiet", "--limit", limit)
     checked = set()
     for column, wish in WISHES.items():
         for row in rows:
@@ -142,7 +142,9 @@ def test_recommended_rows_have_the_accuracy_wished_for(case, tmp_path):
     for path in source.parent.iterdir():
         if path.suffix in (".inp", ".inc", ".step", ".mesh"):
             (folder / path.name).write_text(path.read_text())
-    checked = check_recommendations(folder / source.name, name, known, model_error, tmp_path)
+    limit = "0.5" if case == "cylinder" else "0.2"   # what the rows due below take
+    checked = check_recommendations(folder / source.name, name, known, model_error, tmp_path,
+                                    limit)
     # Force, heat and peak pressure are known well enough on all of these; on the cylinder, meshes
     # that this limit affords leave only the force so certain.
     due = {("recommended_1", key) for key in known if key != "edge_contact"}
@@ -326,7 +328,10 @@ def test_a_signal_ends_the_trade_and_its_child(number, tmp_path):
 
 def test_a_row_that_the_system_kills_is_only_that_row_s_failure(tmp_path):
     """As it does where memory runs out; here the first child dies as soon as it is seen."""
-    process = subprocess.Popen([PROGRAM, "trade", str(CYLINDER), "--out", str(tmp_path),
+    deck = tmp_path / "cylinder.inp"
+    text = CYLINDER.read_text().replace("20., 900.", "180., 900.")
+    deck.write_text(text[: text.index("*VERIFY")])
+    process = subprocess.Popen([PROGRAM, "trade", str(deck), "--out", str(tmp_path),
                                 "--limit", "0.01", "--quiet"], stderr=subprocess.PIPE, text=True)
     found = []
     while not found and process.poll() is None:

@@ -67,6 +67,12 @@ def masked(lines):
     return re.sub(number, "#", "\n".join(lines))
 
 
+def check_verdicts(tables):
+    """Assert that no verdict of tables fails."""
+    failed = [row for table in tables for row in table.rows if "FAIL" in map(str, row)]
+    assert not failed, f"these cases fail: {failed}"
+
+
 @dataclass
 class Document:
     """A file of docs/, the folder of its themes, their names in order, and what comes first."""
@@ -125,14 +131,22 @@ class Document:
 
     def check_parts(self, parts):
         """Assert that no verdict of these parts fails, and that the document tells the same."""
-        tables = [part for part in parts if isinstance(part, Table)]
-        failed = [row for table in tables for row in table.rows if "FAIL" in map(str, row)]
-        assert not failed, f"these cases fail: {failed}"
+        check_verdicts(part for part in parts if isinstance(part, Table))
         document = masked(self.path.read_text().splitlines())
         for part in parts:
             text = masked(lines_of(part)).strip()
             assert text in document, f"docs/{self.file} tells something else than\n{text}"
             assert not isinstance(part, Picture) or (PICTURES / part.file).exists()
+
+    def check_rows(self, tables):
+        """Assert that no verdict of these tables fails, and that the document has their rows among
+        those of the same table: for tests that run a part of the cases of a theme."""
+        check_verdicts(tables)
+        for table in tables:
+            told = [masked(row.values()) for row in self.rows(table.title)]
+            for row in table.rows:
+                found = dict(zip(table.head, map(shown, row), strict=True))
+                assert masked(found.values()) in told, f"docs/{self.file} does not tell {found}"
 
     def rows(self, title):
         """Return the rows of a table as the document has them: cells by the heads of the columns,

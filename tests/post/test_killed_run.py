@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from program import increments_in, run, start, write_deck
 
-KILLS = 80
+KILLS = 24
 MOST_TRIES = 400
 POLL_SECONDS = 0.0005
-REFINEMENT = "*REFINE, LEVELS=2"
+REFINEMENT = "*REFINE, LEVELS=1"
 SEED = 1987
 
 

@@ -124,9 +124,9 @@ def gain(rods, open_law, closed_law, omega):
     return (ends[1] - ends[0]) / (2 * step)
 
 
-def solutions(rods, open_law, closed_law, count=200000):
+def solutions(rods, open_law, closed_law, count=2000):
     """Return the conductances of all solutions: changes of sign of U(omega) - omega between count
-    conductances over all magnitudes, each narrowed down by bisection."""
+    conductances over all magnitudes, 100 a decade, each narrowed down by bisection."""
     of = image(rods, open_law, closed_law)
 
     def excess(omega):
@@ -134,9 +134,9 @@ def solutions(rods, open_law, closed_law, count=200000):
 
     found = []
     omegas = [10.0 ** (-4.0 + 20.0 * k / count) for k in range(count + 1)]
-    for low, high in pairwise(omegas):
-        rises = excess(low) < 0.0
-        if rises == (excess(high) < 0.0):
+    below = [(omega, excess(omega) < 0.0) for omega in omegas]
+    for (low, rises), (high, falls) in pairwise(below):
+        if rises == falls:
             continue
         while low < (middle := (low + high) / 2) < high:
             low, high = (middle, high) if (excess(middle) < 0.0) == rises else (low, middle)

@@ -3,8 +3,8 @@
 A theme is a file test_<theme>.py here, with TITLE, TEXT and a function tables(folder), which runs
 its cases in a folder and returns their tables (see tests/documents/document.py).
 `python tests/stability/report.py` with THERCON set runs all themes, or those named, and writes the
-document; each theme's test runs it again, and fails where a verdict does or where the document
-tells something else. Figures may differ in their digits.
+document. Each theme's test runs it again, or a part of a long one, and fails if a verdict fails or
+if the document differs. Figures may differ in their digits.
 """
 
 import sys
@@ -19,11 +19,11 @@ PREFACE = """# Stability at the extremes
 
 Where methods break: cases with their figures and a verdict, `pass` or `refused` where the program says clearly that
 it cannot. The document is written by `python tests/stability/report.py` from runs of the program; the tests
-`stability_*` run them all again.
+`stability_*` run them again, the longest ones in part.
 """
 DOCUMENT = Document("stability.md", HERE, ("fixed_point", "contact", "extremes", "invariance",
                                            "time_steps"), PREFACE)
-check = DOCUMENT.check
+check, check_rows = DOCUMENT.check, DOCUMENT.check_rows
 
 if __name__ == "__main__":
     DOCUMENT.write(sys.argv[1:])
