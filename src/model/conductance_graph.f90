@@ -53,12 +53,12 @@ contains
       class(conductance_graph_type), intent(in) :: self  !! the pair
       real(dp), intent(in) :: place                      !! [length]
       real(dp) :: omega                                  !! [power/(length^2 temperature)]
-      real(dp) :: ends(2), part
+      real(dp) :: ends(2), weights(2)
 
       if (self%rests(place)) then
-         ends = end_shares(self)
-         part = ends(2) + (ends(2) - ends(1))*place/self%width
-         omega = self%body*part/(1.0_dp - part)
+         ends = rest_ends(self)
+         weights = rest_weights(self, place)
+         omega = dot_product(weights, ends)/sum(weights)
       else
          omega = conductance(self%law, place < 0.0_dp, place, -self%modulus*(place + self%width))
       end if
@@ -69,12 +69,12 @@ contains
       class(conductance_graph_type), intent(in) :: self  !! the pair
       real(dp), intent(in) :: place                      !! [length]
       real(dp) :: slope                                  !! d omega/d place
-      real(dp) :: ends(2), part
+      real(dp) :: ends(2)
 
       if (self%rests(place)) then
-         ends = end_shares(self)
-         part = ends(2) + (ends(2) - ends(1))*place/self%width
-         slope = self%body/(1.0_dp - part)**2*(ends(2) - ends(1))/self%width
+         ends = rest_ends(self)
+         slope = (ends(2) - ends(1))/self%width/ &
+            product((ends + self%body)*sum(rest_weights(self, place)))
       else if (place < 0.0_dp) then
          slope = -self%modulus*conductance_slope(self%law, .true., 0.0_dp, &
             -self%modulus*(place + self%width))
@@ -83,15 +83,24 @@ contains
       end if
    end function slope
 
-   !> omega/(omega + body) at the two ends of the rest: closed and open.
-   pure function end_shares(self) result(shares)
+   !> omega at the two ends of the rest: closed and open.
+   pure function rest_ends(self) result(ends)
       class(conductance_graph_type), intent(in) :: self
-      real(dp) :: shares(2)
+      real(dp) :: ends(2)
 
-      shares = [conductance(self%law, .true., 0.0_dp, 0.0_dp), &
+      ends = [conductance(self%law, .true., 0.0_dp, 0.0_dp), &
          conductance(self%law, .false., 0.0_dp, 0.0_dp)]
-      shares = shares/(shares + self%body)
-   end function end_shares
+   end function rest_ends
+
+   !> Weights of the two ends in omega at rest: of a mean, because a share that rounds to 1 where
+   !> the bodies conduct next to nothing has no omega.
+   pure function rest_weights(self, place) result(weights)
+      class(conductance_graph_type), intent(in) :: self
+      real(dp), intent(in) :: place
+      real(dp) :: weights(2)
+
+      weights = [-place, self%width + place]/(self%width*(rest_ends(self) + self%body))
+   end function rest_weights
 
    !> Opening at a place.
    elemental function opening(self, place)
@@ -144,7 +153,7 @@ contains
       real(dp), intent(in) :: body                       !! of the bodies about the pair [as omega]
       real(dp), intent(in) :: own    !! derivative of the pair's opening by its omega
       real(dp) :: place                                  !! [length]
-      real(dp) :: kappa, start, reach(2), wanted, omega_start, omega_slope
+      real(dp) :: kappa, reach(2), wanted, omega_start, omega_slope
       integer :: i
 
       omega_start = self%omega(from)
@@ -156,9 +165,9 @@ contains
       if (abs(omega_slope*change) <= straight*omega_start .and. &
          (from + self%width)*(place + self%width) > 0.0_dp) return
       kappa = own*(omega_start + body)**2/body
-      start = omega_start/(omega_start + body)
       wanted = (self%advance(from) - own*omega_slope)*change
-      reach = self%place_of_opening(self%opening(from) + wanted + kappa*[-start, 1.0_dp - start])
+      reach = self%place_of_opening(self%opening(from) + wanted + &
+         kappa*[-omega_start, body]/(omega_start + body))
       if (self%rests(reach(1))) reach(1) = -self%width
       do i = 1, 200
          place = 0.5_dp*(reach(1) + reach(2))
@@ -217,8 +226,9 @@ contains
       place = self%place_of_opening(opening)
       if (abs(self%omega(place) - omega) <= rounding*omega) return
       if (self%may_rest(omega)) then
-         ends = end_shares(self)
-         place = self%width*(omega/(omega + self%body) - ends(2))/(ends(2) - ends(1))
+         ends = rest_ends(self)
+         place = self%width*(omega - ends(2))/(ends(2) - ends(1))* &
+            ((ends(1) + self%body)/(omega + self%body))
          place = min(max(place, -self%width), 0.0_dp)
          return
       end if

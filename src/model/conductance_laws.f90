@@ -76,7 +76,7 @@ contains
          end if
       else if (.not. closed .and. gap >= 0.0_dp) then
          if (law%open_kind == law_gas) then
-            slope = -law%gas_a/(law%gas_b + gap)**2
+            slope = -(law%gas_a/(law%gas_b + gap))/(law%gas_b + gap)
          else if (law%open_kind == law_clearance) then
             slope = line_slope(law%table_gap, law%open_omega, gap)
          end if
@@ -94,9 +94,8 @@ contains
       at = -1.0_dp
       if (closed) then
          if (law%closed_kind == law_power) then
-            if (law%power_c1 > 0.0_dp .and. omega >= law%power_c0) then
-               at = ((omega - law%power_c0)/law%power_c1)**(1.0_dp/law%power_n)
-            end if
+            if (law%power_c1 > 0.0_dp) at = power_root(omega - law%power_c0, law%power_c1, &
+               law%power_n)
          else if (law%closed_kind == law_pressure) then
             at = line_abscissa(law%table_pressure, law%closed_omega, omega)
          end if
@@ -106,6 +105,20 @@ contains
          at = line_abscissa(law%table_gap, law%open_omega, omega)
       end if
    end function conductance_inverse
+
+   !> Pressure with c1 p^n = rise; negative where there is none that can be told.
+   elemental function power_root(rise, c1, n) result(pressure)
+      real(dp), intent(in) :: rise   ! of omega above C0
+      real(dp), intent(in) :: c1     ! > 0
+      real(dp), intent(in) :: n      ! > 0
+      real(dp) :: pressure
+
+      pressure = rise
+      if (rise <= 0.0_dp) return
+      pressure = -1.0_dp
+      ! With a small n all pressures conduct nearly alike, and the root of another omega overflows.
+      if (log(rise) - log(c1) < min(n, 1.0_dp)*log(huge(rise))) pressure = (rise/c1)**(1.0_dp/n)
+   end function power_root
 
    !> Jump of omega from the open to the closed side at gamma = p = 0; zero for a continuous law.
    pure function law_jump(law) result(jump)
