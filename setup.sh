@@ -22,6 +22,7 @@ usage: ./setup.sh COMMAND
    test        install what is missing, build, check the sources, run every test
    build       install what is missing, build build/release/thercon
    lint        check the sources: fortitude, findent, shellcheck; with --fix mend what can be mended
+   coverage    install what is missing, build with gcov, run every test, report the lines executed
    bench       run thercon and CalculiX at equal error again, against the figures on record
 
 What is installed: Debian packages with apt-get, as root or with sudo; without either, the command
@@ -226,6 +227,22 @@ run_test() {
    return "$status"
 }
 
+# The tests of speed and of instructions are about the program as users have it.
+run_coverage() {
+   local status=0
+   install_packages "${build_packages[@]}" "${test_packages[@]}"
+   install_python_packages
+   make_venv "$build/sweep" "${sweep_requirements[@]}"
+   build_preset coverage
+   find "$build/coverage" -name '*.gcda' -delete
+   say "all tests, with lines counted"
+   ctest --preset coverage --parallel 2 --exclude-regex 'speed|memory' || status=1
+   "$venv/bin/gcovr" --root "$root" --filter "$root/src/" --txt-summary \
+      --txt "$build/coverage/lines.txt" "$build/coverage"
+   say "lines that no test executes are listed in build/coverage/lines.txt"
+   return "$status"
+}
+
 # Half an hour, most of it CalculiX.
 run_bench() {
    run_build
@@ -239,7 +256,7 @@ run_bench() {
 command=${1-}
 (($# == 0)) || shift
 case $command in
-   cylinder | test | build | bench) (($# == 0)) || fail "$command takes no argument: $1" ;;
+   cylinder | test | build | coverage | bench) (($# == 0)) || fail "$command takes no argument: $1" ;;
    lint) [[ $# == 0 || $* == --fix ]] || fail "lint takes --fix or nothing: $*" ;;
 esac
 case $command in
@@ -247,6 +264,7 @@ case $command in
    test) run_test ;;
    build) run_build ;;
    lint) run_lint "$@" ;;
+   coverage) run_coverage ;;
    bench) run_bench ;;
    help | --help | -h) usage ;;
    *)

@@ -4,6 +4,7 @@
 option(THERCON_WARNINGS "Compiler warnings; each stops the build" OFF)
 option(THERCON_CHECKS "Run-time checks; floating-point exceptions stop the program" OFF)
 option(THERCON_SANITIZERS "Address, leak and undefined-behaviour sanitizers" OFF)
+option(THERCON_COVERAGE "Executed lines are counted for gcov" OFF)
 
 if(NOT CMAKE_BUILD_TYPE)
    set(CMAKE_BUILD_TYPE Release)
@@ -41,4 +42,9 @@ if(THERCON_SANITIZERS)
       -fsanitize=address,undefined -fno-sanitize=signed-integer-overflow -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
    target_link_options(thercon_checks INTERFACE -fsanitize=address,undefined)
+endif()
+if(THERCON_COVERAGE)
+   # Programs that run side by side count in the same files.
+   target_compile_options(thercon_checks INTERFACE --coverage -fprofile-update=atomic)
+   target_link_options(thercon_checks INTERFACE --coverage)
 endif()
