@@ -227,20 +227,20 @@ run_test() {
    return "$status"
 }
 
-# The tests of speed and of instructions are about the program as users have it.
+# Lines count here, not verdicts: without optimisation the program rounds otherwise and is slow, and a
+# test that sees this fails.
 run_coverage() {
-   local status=0
    install_packages "${build_packages[@]}" "${test_packages[@]}"
    install_python_packages
    make_venv "$build/sweep" "${sweep_requirements[@]}"
    build_preset coverage
    find "$build/coverage" -name '*.gcda' -delete
    say "all tests, with lines counted"
-   ctest --preset coverage --parallel 2 --exclude-regex 'speed|memory' || status=1
-   "$venv/bin/gcovr" --root "$root" --filter "$root/src/" --txt-summary \
-      --txt "$build/coverage/lines.txt" "$build/coverage"
+   ctest --preset coverage --parallel 2 --exclude-regex memory || say "some tests have failed"
+   # More than 2^32 executions of a line are nothing odd here.
+   "$venv/bin/gcovr" --gcov-suspicious-hits-threshold 0 --root "$root" --filter "$root/src/" \
+      --txt-summary --txt "$build/coverage/lines.txt" "$build/coverage"
    say "lines that no test executes are listed in build/coverage/lines.txt"
-   return "$status"
 }
 
 # Half an hour, most of it CalculiX.

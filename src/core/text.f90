@@ -6,7 +6,7 @@ module text
    private
    public :: string_type
    public :: to_text, to_upper, without_blanks, read_integer, read_real, append
-   public :: is_whole, integer_fault, real_fault
+   public :: is_whole, integer_fault, real_fault, largest_magnitude
    public :: nearest_name, nearest_known, edit_distance, is_slip
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow

@@ -7,7 +7,7 @@ module deck_builder_gap_laws
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use text, only: to_text
+   use text, only: largest_magnitude, to_text
    implicit none
    private
    public :: build_gap_law, read_table, note_ends
@@ -72,6 +72,9 @@ contains
       if (valid(2) .and. law%gas_b <= 0.0_dp) then
          call report%error(field_place(data, 2), 'B must be positive')
          law%gas_b = 1.0_dp
+      else if (all(valid) .and. law%gas_a > largest_magnitude*law%gas_b) then
+         call report%error(field_place(data, 1), 'the conductance A/B of a gap of 0 exceeds '// &
+            to_text(largest_magnitude))
       end if
    end subroutine build_gas_law
 
