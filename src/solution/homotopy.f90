@@ -37,6 +37,8 @@ module homotopy
    integer, parameter :: most_arrived = 6           !! passes at t = 1 to which that applies
    real(dp), parameter :: rounding = 1.0e-12_dp     !! correction that cannot become smaller
    real(dp), parameter :: least_unit = 1.0e-8_dp    !! of lengths along the graphs
+   real(dp), parameter :: unlike = 0.1_dp           !! part of the openings by which points differ
+   real(dp), parameter :: golden = 0.5_dp*(sqrt(5.0_dp) - 1.0_dp)   !! spreads them evenly
    real(dp), parameter :: touching = 1.0e-6_dp      !! opening over length that is none
 
    !> Where the path is.
@@ -74,14 +76,15 @@ contains
       place = self%trial
    end subroutine begin
 
-   !> Goes back to t = 0, to openings where no point rests.
+   !> Goes back to t = 0, to openings where no point rests. Points that are alike by symmetry begin
+   !> apart: where several come to a kink at once, the sign of the determinant tells nothing.
    subroutine restart(self, graph, opening)
       class(homotopy_type), intent(inout) :: self
       type(conductance_graph_type), intent(in) :: graph(:)
       real(dp), intent(in) :: opening(:)
       integer :: k
 
-      self%first = opening
+      self%first = opening + unlike*self%length*[(modulo(k*golden, 1.0_dp), k=1, size(opening))]
       where (abs(self%first) < touching*self%length) self%first = touching*self%length
       self%base = graph%place_of_opening(self%first)
       self%trial = self%base
