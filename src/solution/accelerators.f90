@@ -11,6 +11,8 @@ module accelerators
    private
    public :: make_accelerator
 
+   integer, parameter :: fewest_steps = 20   !! passes of Newton's method before another is tried
+
 contains
 
    !> The accelerator that the deck asks for.
@@ -31,7 +33,7 @@ contains
          allocate (accelerator%g(size(graph)), source=controls%g)
       case default
          allocate (accelerator, source=newton_type(graph=graph, &
-            most_steps=controls%max_iterations/2))
+            most_steps=max(controls%max_iterations, fewest_steps)))
          allocate (accelerator%g(size(graph)), source=1.0_dp)
       end select
    end subroutine make_accelerator

@@ -20,7 +20,6 @@ module increment_iteration
 
    integer, parameter :: most_turns = 4   !! openings and closings of a pair whose law jumps
    integer, parameter :: path_share = 9   !! passes on a path, over those of the method itself
-   real(dp), parameter :: largest_floor = 1.0e-2_dp !! of the residual; above it omega has no digits
    real(dp), parameter :: no_strain = 1.0_dp  !! thermal strain that is none of the small ones
    integer, parameter :: most_away = 5    !! passes with larger ones from which no method returns
 
@@ -149,7 +148,7 @@ contains
          call find_residual(graph, operators%pairs%weight, pass, scales, passes(i)%residual, &
             next%resting)
          record%residual_floor = residual_floor(operators, data, next%contact, pass%image)
-         wanted = max(controls%tolerance, min(record%residual_floor, largest_floor))
+         wanted = max(controls%tolerance, record%residual_floor)
          next%omega = pass%omega
          if (passes(i)%residual <= wanted) exit
          away = merge(away + 1, 0, runs_away(data, next%jump))

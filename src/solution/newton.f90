@@ -12,10 +12,13 @@
 !> A pass is taken unless earlier ones, all but one, were better by both of its measures: |r|, and
 !> the mismatch of the shares omega/(omega + body) by which the heat goes (a filter: Gould, Leyffer
 !> & Toint 2004). Else its step is shortened. Where a short one does not help either, the method
+!> goes over to pseudo-transient continuation: (M/tau + J) dz = -r, implicit Euler steps of M dz/dt
+!> = -r whose tau grows as |r| falls (Kelley & Keyes 1998). That leads to a state which is stable in
+!> this sense, and there the steps are Newton's again. Where all passes are used up, the method
 !> follows a path that leads to a solution wherever it starts (homotopy).
 module newton
    use conductance_graph, only: conductance_graph_type
-   use dense, only: lu_type
+   use dense, only: eigenvalues, lu_type
    use fixed_point, only: accelerator_type, pass_type
    use homotopy, only: homotopy_type
    use kinds, only: dp
@@ -28,12 +31,16 @@ module newton
    real(dp), parameter :: shortest = 0.2_dp           !! part of a step below which it is given up
    real(dp), parameter :: retreating = 0.25_dp !! part of it left where no contact zones were found
    real(dp), parameter :: last_retreat = 1.0e-4_dp    !! part of it that is tried last then
+   real(dp), parameter :: first_time_step = 0.3_dp    !! tau at first
+   real(dp), parameter :: growth = 2.0_dp             !! of tau where |r| stays
+   real(dp), parameter :: growth_limits(2) = [0.1_dp, 4.0_dp]   !! of tau in a step
+   real(dp), parameter :: endless = 1.0e4_dp          !! tau above which a step is Newton's
    real(dp), parameter :: rounding = 1.0e-15_dp       !! |r| that is rounding, relative
 
    !> Memory of the method.
    type, extends(accelerator_type) :: newton_type
       type(conductance_graph_type), allocatable :: graph(:)    !! (m) laws of the pairs
-      integer :: most_steps = huge(1)   !! passes after which Newton's steps have failed
+      integer :: most_steps = huge(1)   !! passes after which steps have failed
       type(homotopy_type), allocatable, private :: path   !! once they have failed
       real(dp), allocatable, private :: place(:)       !! (m) z of the last pass taken [length]
       real(dp), allocatable, private :: rest(:)        !! (m) r there [length]
@@ -44,6 +51,7 @@ module newton
       real(dp), allocatable, private :: trial(:)       !! (m) z of the pass that runs [length]
       real(dp), allocatable, private :: filter(:, :)   !! (2, passes taken) their measures
       real(dp), private :: part = 1.0_dp               !! part of the present step that is tried
+      real(dp), private :: time_step = huge(1.0_dp)    !! tau; huge for Newton's method
    contains
       procedure :: asks_slope
       procedure :: next
@@ -92,7 +100,8 @@ contains
       do i = 1, size(self%filter, 2)
          if (all(found > (1.0_dp - least_fall*self%part)*self%filter(:, i))) better = better + 1
       end do
-      takes = better <= patience .or. found(1) <= rounding*norm2(pass%opening)
+      takes = better <= patience .or. self%time_step < endless .or. &
+         found(1) <= rounding*norm2(pass%opening)
    end function takes
 
    !> How far a pass is from the solution, in the openings and in the shares.
@@ -115,32 +124,40 @@ contains
       r = self%graph%opening(places_of(self, pass)) - pass%opening
    end function residual
 
-   !> A new step from a pass that is taken, else a shorter one, and along the path where that fails.
+   !> A new step from a pass that is taken, else a shorter one.
    subroutine next(self, pass, omega)
       class(newton_type), intent(inout) :: self   !! memory of the method
       type(pass_type), intent(in) :: pass         !! the last pass
       real(dp), intent(out) :: omega(:)           !! (m) next omega*
+      real(dp) :: fall
 
       if (allocated(self%path)) then
-         call self%path%next(self%graph, self%body, pass%opening, pass%slope, &
-            self%trial)
+         call self%path%next(self%graph, self%body, pass%opening, pass%slope, self%trial)
          omega = self%graph%omega(self%trial)
          return
       end if
       if (takes(self, pass)) then
+         if (self%time_step < endless) then
+            fall = norm2(self%rest)/max(norm2(residual(self, pass)), tiny(1.0_dp))
+            self%time_step = self%time_step*min(max(growth*fall, growth_limits(1)), &
+               growth_limits(2))
+         end if
+         if (self%time_step >= endless) self%time_step = huge(1.0_dp)
          call take(self, pass)
          call make_step(self)
       else
          self%part = self%part*shortening(self, pass)
-      end if
-      if (self%part < shortest .or. pass%iteration >= self%most_steps) then
-         allocate (self%path)
-         self%follows_path = .true.
-         call self%path%begin(self%graph, pass%opening, self%trial)
-         omega = self%graph%omega(self%trial)
-         return
+         if (self%part < shortest) then
+            self%time_step = first_time_step
+            call make_step(self)
+         end if
       end if
       call try(self, omega)
+      if (pass%iteration < self%most_steps) return
+      allocate (self%path)
+      self%follows_path = .true.
+      call self%path%begin(self%graph, pass%opening, self%trial)
+      omega = self%graph%omega(self%trial)
    end subroutine next
 
    !> A shorter step where the contact zones were not found.
@@ -219,6 +236,7 @@ contains
    subroutine make_step(self)
       class(newton_type), intent(inout) :: self
       real(dp) :: matrix(size(self%rest), size(self%rest)), step(size(self%rest), 1)
+      real(dp) :: inertia(size(self%rest))
       type(lu_type) :: lu
       logical :: singular
       integer :: k
@@ -226,9 +244,14 @@ contains
       self%part = 1.0_dp
       self%step = -self%rest
       if (.not. allocated(self%jacobian)) return
+      inertia = inertias(self)
+      if (self%time_step < endless) self%time_step = min(self%time_step, &
+         stable_time_step(self, inertia))
       matrix = self%jacobian
       step(:, 1) = -self%rest
       do k = 1, size(step)
+         if (self%time_step < endless) matrix(k, k) = matrix(k, k) + &
+            inertia(k)/self%time_step
          if (.not. self%graph(k)%rests(self%place(k))) cycle
          ! No conductance at which the pair may rest brings its opening to 0: it does not rest.
          if (sum(abs(self%jacobian(k, :)))*self%graph(k)%width > abs(self%rest(k))) cycle
@@ -242,5 +265,37 @@ contains
       call lu%solve(step)
       self%step = step(:, 1)
    end subroutine make_step
+
+   !> The diagonal of M: 1, and for a pair at rest what makes the time in which it goes through its
+   !> rest that of the others, however long the rest is.
+   pure function inertias(self) result(inertia)
+      type(newton_type), intent(in) :: self
+      real(dp) :: inertia(size(self%rest))
+      integer :: k
+
+      inertia = 1.0_dp
+      do k = 1, size(inertia)
+         if (self%graph(k)%rests(self%place(k)) .and. abs(self%jacobian(k, k)) > 0.0_dp) then
+            inertia(k) = abs(self%jacobian(k, k))
+         end if
+      end do
+   end function inertias
+
+   !> Largest tau with which (M/tau + J) dz = -r leads where M dz/dt = -r does: half of that at
+   !> which the matrix is singular. Where heat closes the gap it crosses, J has negative eigenvalues
+   !> on the way, and a longer step goes backwards.
+   function stable_time_step(self, inertia) result(tau)
+      type(newton_type), intent(in) :: self
+      real(dp), intent(in) :: inertia(:)
+      real(dp) :: tau
+      real(dp), allocatable :: real_part(:), imaginary_part(:)
+      logical :: found
+
+      tau = huge(1.0_dp)
+      call eigenvalues(-self%jacobian/spread(inertia, 2, size(inertia)), real_part, &
+         imaginary_part, found)
+      if (.not. found) return
+      tau = 0.5_dp/max(maxval(real_part, mask=abs(imaginary_part) <= real_part), tiny(1.0_dp))
+   end function stable_time_step
 
 end module newton

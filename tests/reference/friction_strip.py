@@ -80,8 +80,9 @@ def strip_zones(length, height, young, expansion, friction, pressure, rises, cou
             force = np.linalg.solve(rows, right)
             carried = lifted[:, :-2] @ force + lifted[:, -2:] @ given
             motion = moved[face] @ np.r_[force, given] - place
-            new = np.where(slips, np.where(sliding * motion > 1e-15, 0.0, sliding),
-                           np.sign(force) * (np.abs(force) > friction * carried * (1 + 1e-12)))
+            rounding = 1e-11 * np.abs(place).max(initial=1e-9)
+            new = np.where(slips, np.where(sliding * motion > rounding, 0.0, sliding),
+                           np.sign(force) * (np.abs(force) > friction * carried * (1 + 1e-11)))
             if (new == sliding).all():
                 break
             sliding = new
