@@ -5,7 +5,7 @@ module text
    implicit none
    private
    public :: string_type
-   public :: to_text, to_upper, without_blanks, read_integer, read_real, append
+   public :: others, to_text, to_upper, without_blanks, read_integer, read_real, append
    public :: is_whole, integer_fault, real_fault, largest_magnitude
    public :: nearest_name, nearest_known, edit_distance, is_slip
 
@@ -294,5 +294,15 @@ contains
       end do
       distance = row(len(b), len(a))
    end function edit_distance
+
+   !> The ending of a message that names one of several: their number, if it is more than one.
+   pure function others(n, words) result(ending)
+      integer, intent(in) :: n                 !! how many there are
+      character(*), intent(in) :: words        !! what stands before the number
+      character(:), allocatable :: ending      !! empty for one
+
+      ending = ''
+      if (n > 1) ending = words//to_text(n)
+   end function others
 
 end module text

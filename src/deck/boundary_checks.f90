@@ -8,7 +8,7 @@ module boundary_checks
    use model, only: model_type
    use order_reduction, only: side_corners
    use steps, only: dof_temperature, solves_heat, solves_mechanics
-   use text, only: to_text
+   use text, only: others, to_text
    implicit none
    private
    public :: check_boundaries
@@ -158,15 +158,5 @@ contains
       nodes = [request%item]
       if (request%set > 0) nodes = model%mesh%node_sets(request%set)%members
    end function nodes_of
-
-   !> Tells a number that is more than the one that is named.
-   pure function others(n, words) result(ending)
-      integer, intent(in) :: n
-      character(*), intent(in) :: words
-      character(:), allocatable :: ending
-
-      ending = ''
-      if (n > 1) ending = words//to_text(n)
-   end function others
 
 end module boundary_checks

@@ -8,7 +8,7 @@ module jacobian_checks
    use kinds, only: dp
    use mesh, only: mesh_type
    use misplaced_nodes, only: corner_areas, element_jacobians, find_misplaced
-   use text, only: to_text
+   use text, only: others, to_text
    implicit none
    private
    public :: check_jacobians, check_corners
@@ -97,16 +97,6 @@ contains
       words = ': its corners must go round anticlockwise'
       if (side_node_count(kind) == 3) words = words//', its midside nodes lie near the middle'
    end function advice
-
-   !> Tells a number that is more than the one that is named.
-   pure function others(n, words) result(ending)
-      integer, intent(in) :: n
-      character(*), intent(in) :: words
-      character(:), allocatable :: ending
-
-      ending = ''
-      if (n > 1) ending = words//to_text(n)
-   end function others
 
    !> Numbers in a row: elements 1, 2 and 3.
    pure function listed(noun, numbers, conjunction) result(words)

@@ -8,7 +8,7 @@ module mesh_checks
    use kinds, only: dp
    use mesh, only: mesh_type
    use sorting, only: sort_order
-   use text, only: to_text
+   use text, only: others, to_text
    implicit none
    private
    public :: check_planes, check_sides
@@ -196,15 +196,5 @@ contains
          end associate
       end do
    end subroutine check_faces
-
-   !> Tells a number that is more than the one that is named.
-   pure function others(n, words) result(ending)
-      integer, intent(in) :: n
-      character(*), intent(in) :: words
-      character(:), allocatable :: ending
-
-      ending = ''
-      if (n > 1) ending = words//to_text(n)
-   end function others
 
 end module mesh_checks

@@ -37,6 +37,7 @@ module homotopy
    integer, parameter :: most_arrived = 6           !! passes at t = 1 to which that applies
    real(dp), parameter :: rounding = 1.0e-12_dp     !! correction that cannot become smaller
    real(dp), parameter :: least_unit = 1.0e-8_dp    !! of lengths along the graphs
+   real(dp), parameter :: no_part = 1.0e-100_dp     !! of the tangent, whose quotients stay finite
    real(dp), parameter :: unlike = 0.1_dp           !! part of the openings by which points differ
    real(dp), parameter :: golden = 0.5_dp*(sqrt(5.0_dp) - 1.0_dp)   !! spreads them evenly
    real(dp), parameter :: touching = 1.0e-6_dp      !! opening over length that is none
@@ -205,7 +206,7 @@ contains
 
       longest = longest_step*[max(1.0_dp, abs(graph%opening(self%base))/self%length)/self%unit, &
          1.0_dp]
-      self%step = min(self%step, minval(longest/max(abs(self%tangent), tiny(1.0_dp))))
+      self%step = min(self%step, minval(longest/max(abs(self%tangent), no_part)))
       call move(self, graph, body, self%base, self%base_t, &
          self%correction + self%step*self%tangent, self%tangent)
    end subroutine advance
@@ -272,7 +273,7 @@ contains
       real(dp) :: rate   !! [length]
 
       rate = 1.0_dp/(graph%advance(place)/length + &
-         body*abs(graph%slope(place))/(graph%omega(place) + body)**2)
+         body/(graph%omega(place) + body)*abs(graph%slope(place))/(graph%omega(place) + body))
    end function place_rate
 
    !> Places at the ends of walks along the graphs, of given lengths.
