@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import report  # isort: skip, it makes the modules below known
 import h5py
 import pytest
+from deck_runs import CYLINDER
 from instructions import PROGRAM, Profile, profile
 from needed_decks import CASES, COUPLED, FIELDS, TABLES, Case, write_deck
 from program_parts import PARTS
@@ -24,6 +25,7 @@ together from start to end of the process, are medians. Without heat the top is 
 """
 ALLOWED = 0.02   # of all instructions, for a part that is off
 RUNS = 5         # of which CPU seconds are the median
+CYLINDER_ALLOWED = 1.0e9  # instructions, about 0.15 s on one core
 # Uniform refinements, increments, and the decks: of the finer mesh those in which most is off.
 SIZES = ((0, 20, CASES), (2, 2, tuple(CASES[k] for k in (0, 3, 6))))
 MEASURED = pytest.mark.skipif(
@@ -140,6 +142,15 @@ def test_parts_that_are_off_cost_next_to_nothing(tmp_path):
     groups = [measured(cases, tmp_path, levels, increments, runs=1)
               for (*_, cases), levels, increments in zip(SIZES, (0, 1), (5, 1), strict=True)]
     report.check_rows([off(groups)])
+
+
+@MEASURED
+def test_published_cylinder_takes_few_instructions(tmp_path):
+    """From reading the deck to closing the result file, with the estimates; a time would tell more
+    of the machine and its load than of the program."""
+    spent = profile("run", "--quiet", CYLINDER, "--out", tmp_path, path=tmp_path / "callgrind.out")
+    assert (tmp_path / "cylinder.sta").read_text().splitlines()[-1].split()[0] == "45"
+    assert spent.total <= CYLINDER_ALLOWED
 
 
 def test_parts_name_what_the_program_has():
