@@ -25,8 +25,9 @@ module increment_iteration
 
 contains
 
-   !> Conductances, jumps and contact state of an increment, from a start. Where laws jump, a method
-   !> that knows no pairs at rest hands an increment that it cannot solve to Newton's.
+   !> Conductances, jumps and contact state of an increment, from a start. Where another method
+   !> fails, Newton's solves the increment if laws jump, since the others know no pairs at rest;
+   !> elsewhere it only tells what the failure means.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
    subroutine iterate(operators, controls, graph, scales, start, data, next, &
       record, pass, error)
@@ -40,7 +41,6 @@ contains
       type(increment_record_type), intent(inout) :: record       !! receives passes and work
       type(pass_type), intent(out) :: pass                       !! the last pass
       type(error_type), allocatable, intent(out) :: error        !! see above
-      type(fixed_point_type) :: fallback
       type(contact_state_type) :: guess
 
       guess = next%contact
@@ -54,20 +54,69 @@ contains
          call use_method(operators, controls, graph, scales, data, next, record, pass, error)
       end if
       if (.not. allocated(error)) return
-      if (controls%method == method_newton .or. .not. any(graph%width > 0.0_dp)) then
+      if (controls%method == method_newton) then
+         call name_runaway(operators, data, next%jump, record, error)
+      else if (any(graph%width > 0.0_dp)) then
+         deallocate (error)
+         call append(record%notes, 'a pair whose conductance jumps comes to no state by the '// &
+            'method of the deck; the increment is handed to NEWTON')
+         next%contact = guess
+         pass%omega = start
+         call use_method(operators, by_newton(controls), graph, scales, data, next, record, pass, &
+            error)
+         if (allocated(error)) call name_runaway(operators, data, next%jump, record, error)
+      else if (.not. operators%contact%driven) then
+         call explain_failure(operators, by_newton(controls), graph, scales, start, data, guess, &
+            next, record, error)
+      end if
+   end subroutine iterate
+
+   !> The controls with Newton's method.
+   pure function by_newton(controls)
+      type(fixed_point_type), intent(in) :: controls
+      type(fixed_point_type) :: by_newton
+
+      by_newton = controls
+      by_newton%method = method_newton
+   end function by_newton
+
+   !> Says of an increment in which another method failed what Newton's finds in it: a solution, or
+   !> that the heat runs away.
+   subroutine explain_failure(operators, controls, graph, scales, start, data, guess, next, record, &
+      error)
+      type(interface_operators_type), intent(inout) :: operators
+      type(fixed_point_type), intent(in) :: controls
+      type(conductance_graph_type), intent(in) :: graph(:)
+      type(contact_scales_type), intent(in) :: scales
+      real(dp), intent(in) :: start(:)
+      type(increment_data_type), intent(inout) :: data
+      type(contact_state_type), intent(in) :: guess
+      type(solution_state_type), intent(in) :: next
+      type(increment_record_type), intent(inout) :: record
+      type(error_type), allocatable, intent(inout) :: error
+      type(solution_state_type) :: other
+      type(increment_record_type) :: other_record
+      type(pass_type) :: pass
+      type(error_type), allocatable :: other_error
+
+      if (runs_away(data, next%jump)) then
          call name_runaway(operators, data, next%jump, record, error)
          return
       end if
-      deallocate (error)
-      call append(record%notes, 'a pair whose conductance jumps comes to no state by the '// &
-         'method of the deck; the increment is handed to NEWTON')
-      fallback = controls
-      fallback%method = method_newton
-      next%contact = guess
+      other = next
+      other%contact = guess
+      other_record%increment = record%increment
+      allocate (other_record%iterations(0))
       pass%omega = start
-      call use_method(operators, fallback, graph, scales, data, next, record, pass, error)
-      if (allocated(error)) call name_runaway(operators, data, next%jump, record, error)
-   end subroutine iterate
+      call use_method(operators, controls, graph, scales, data, other, other_record, pass, &
+         other_error)
+      operators%contact%driven = .false.
+      if (allocated(other_error)) then
+         call name_runaway(operators, data, other%jump, record, error)
+      else
+         error%message = error%message//'; *FIXED POINT, METHOD=NEWTON solves it'
+      end if
+   end subroutine explain_failure
 
    !> Whether the temperature jumps of a pass strain a body beyond all small strains, if they are
    !> numbers at all.

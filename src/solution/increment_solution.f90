@@ -6,7 +6,6 @@ module increment_solution
    use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
       law_conductance, temperature_jumps, thermal_forces
    use contact_states, only: contact_state_type
-   use controls, only: fixed_point_type, method_names, method_newton
    use errors, only: error_type, status_no_convergence
    use films, only: film_history
    use finite_values, only: check_finite
@@ -77,9 +76,6 @@ contains
             call pass_once(operators, previous, data, next, record, error)
          else
             call solve_coupled(operators, step, previous, data, next, record, error)
-            if (allocated(error) .and. .not. allocated(record%runaway)) then
-               call suggest_newton(operators, step%fixed_point, error)
-            end if
          end if
       else
          call solve_mechanics(operators, step, data, next, record, error)
@@ -87,19 +83,6 @@ contains
       if (.not. allocated(error)) call settle_idle_pairs(operators, next)
       next%has_mechanics = .true.
    end subroutine solve_pairs
-
-   !> Adds the method of choice to an error of another one. Bodies that are driven away no method
-   !> holds, and where laws jump the increment has been handed over already.
-   subroutine suggest_newton(operators, controls, error)
-      type(interface_operators_type), intent(in) :: operators
-      type(fixed_point_type), intent(in) :: controls
-      type(error_type), intent(inout) :: error
-
-      if (controls%method == method_newton .or. operators%contact%driven) return
-      if (any(law_jumps(operators%pairs%law))) return
-      error%message = error%message//'; *FIXED POINT, METHOD=NEWTON may solve it, where '// &
-         trim(method_names(controls%method))//' does not'
-   end subroutine suggest_newton
 
    !> Idle pairs count as open without a gap; where their law jumps they rest. For the next
    !> increment they are closed still: the body stays where it touches.

@@ -41,6 +41,8 @@ module increments
       type(run_size_type) :: sizes                  !! sizes over all steps
       character(:), allocatable :: undecided        !! what was last warned of
       real(dp) :: pivot_told = 1.0_dp               !! smallest pivot that was warned of
+      character(:), allocatable :: runaway          !! last thermal runaway of an attempt, in words
+      real(dp) :: runaway_time = 0.0_dp             !! where this attempt would have ended [time]
    contains
       procedure :: start
       procedure :: reduce
@@ -141,17 +143,18 @@ contains
          if (.not. allocated(error)) exit
          if (error%status == status_no_convergence) then
             call note_failure(record, increment_size, error%message)
+            if (allocated(record%runaway)) then
+               self%runaway = record%runaway
+               self%runaway_time = record%time
+            end if
             if (self%control%can_cut_back(model, increment_size)) then
                call self%control%cut_back(model, increment_size)
                deallocate (error)
                before = record
                cycle
             end if
-            if (allocated(record%runaway)) then
-               if (record%runaway /= error%message) error%message = error%message// &
-                  '; larger increments end in '//record%runaway
-            end if
-            error%message = error%message//'; '//self%control%why_not_again(model, increment_size)
+            error%message = error%message//'; '// &
+               self%control%why_not_again(model, increment_size)//runaway_ahead(self, record)
          end if
          error%message = 'increment '//to_text(record%increment)//' (time '// &
             to_text(record%time)//'): '//error%message
@@ -161,6 +164,17 @@ contains
       self%state = next
       call self%control%accept(model, clock)
    end subroutine advance
+
+   !> Says of a failed increment that one that goes further ends in thermal runaway.
+   pure function runaway_ahead(self, record) result(words)
+      class(simulation_type), intent(in) :: self
+      type(increment_record_type), intent(in) :: record
+      character(:), allocatable :: words
+
+      words = ''
+      if (.not. allocated(self%runaway) .or. record%time >= self%runaway_time) return
+      words = '; an increment to time '//to_text(self%runaway_time)//' ended in '//self%runaway
+   end function runaway_ahead
 
    !> Warns of pivots so small that digits are lost which results need, again where it is a tenth.
    subroutine warn_of_pivot(self, record)

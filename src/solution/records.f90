@@ -165,7 +165,7 @@ module records
       !> One an *EL PRINT of the step, empty where its table is not due; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
       type(work_record_type) :: work = work_record_type()       !! re-factorisation
-      character(:), allocatable :: runaway  !! thermal runaway of any attempt, in words
+      character(:), allocatable :: runaway  !! thermal runaway, in words; else unallocated
       type(string_type), allocatable :: notes(:)                !! unallocated for none
       type(string_type), allocatable :: warnings(:)             !! unallocated for none
    end type increment_record_type
@@ -190,9 +190,6 @@ contains
 
       if (allocated(record%iterations)) record%iterations%cut_backs = record%cut_backs
       if (allocated(before%failed)) record%failed = before%failed
-      if (allocated(before%runaway) .and. .not. allocated(record%runaway)) then
-         record%runaway = before%runaway
-      end if
       if (allocated(before%iterations)) then
          if (allocated(record%iterations)) then
             record%iterations = [before%iterations, record%iterations]
