@@ -146,11 +146,13 @@ def solutions(rods, open_law, closed_law, count=2000):
 
 @dataclass(frozen=True)
 class Solution:
-    """A solution: conductance, derivatives of s by it and of the law by s, which is 0 at rest."""
+    """A solution: conductance, derivatives of s by it and of the law by s, which is 0 at rest, and
+    s itself, the gap or how far the rods press into each other, negative."""
 
     conductance: float
     opening: float
     slope: float
+    separation: float
 
     @property
     def gain(self):
@@ -177,17 +179,17 @@ def exact_solutions(rods, a, b, touch, c):
         space = Decimal(rods.gap) - (a1 * l1 * t1 + a2 * l2 * t2)
         closing = (-a1 * l1**2 / (2 * k1) + a2 * l2**2 / (2 * k2)) * (t1 - t2)
         r = a * resistance
-        found = [(a / y, -a / y**2) for y in roots(
+        found = [(a / y, -a / y**2, y - b) for y in roots(
             Decimal(1), r - b - space, closing * a - r * (b + space)) if y > b]
-        found += [(y, -1 / stiff) for y in roots(
+        found += [(y, -1 / stiff, (touch - y) * stiff) for y in roots(
             stiff * resistance, stiff + (space - stiff * touch) * resistance - closing,
             space - stiff * touch) if y >= touch]
         if closing * space > 0:   # at rest s = space - e1 q = 0
             y = 1 / (closing / space - resistance)
             if min(a / b, touch) < y < max(a / b, touch):
-                found.append((y, Decimal(0)))
-        return [Solution(float(y), float(-closing / (resistance * y + 1)**2), float(slope))
-                for y, slope in sorted(found)]
+                found.append((y, Decimal(0), Decimal(0)))
+        return [Solution(float(y), float(-closing / (resistance * y + 1)**2), float(slope), float(s))
+                for y, slope, s in sorted(found)]
 
 
 def roots(a, b, c):

@@ -1,5 +1,6 @@
 """Runs of two rods between walls, many in a batch, by every method."""
 
+import shutil
 from dataclasses import dataclass
 
 import h5py
@@ -19,7 +20,9 @@ METHODS = {
 }
 PLAIN = {"PICARD": 1.0, "relaxed 0.5": 0.5}   # their g
 EPSILON = 2.0**-52
-UNITS = 64   # in the last place that displacements are wrong by, where elements are square
+COORDINATES = 1e-15   # rounding that the program allows them, in the extent of the model
+AT_ONCE = 250   # decks of one batch
+UNITS = 8   # in the last place that displacements are wrong by, where elements are square
 
 
 @dataclass(frozen=True)
@@ -44,29 +47,58 @@ class Case:
         """Return all solutions in closed form."""
         return rods.exact_solutions(self.rods, self.a, self.b, self.touch, self.c)
 
+    @property
+    def moves(self):
+        """Return how far the ends can move towards each other by heat, and the gap."""
+        hottest = max(abs(t) for t in self.rods.temperature)
+        return abs(self.rods.gap) + sum(a * l * hottest for a, l in zip(
+            self.rods.expansion, self.rods.length, strict=True))
+
+    @property
+    def rounding(self):
+        """Return what the rounding of displacements and of coordinates makes of a gap. Elements
+        resist more across than along by the square of their length over their width, and one rod
+        more than the other, to forces or to heat."""
+        def ratio(values):
+            return max(values) / min(values)
+
+        def of_rods(constants):
+            return ratio([c / l for c, l in zip(constants, self.rods.length, strict=True)])
+
+        resists = max(of_rods(self.rods.young), of_rods(self.rods.conductivity))
+        slenderness = self.slender * ratio(self.rods.length)
+        return slenderness**2 * (UNITS * EPSILON * resists * self.moves
+                                 + COORDINATES * sum(self.rods.length))
+
+    @property
+    def gap_allowed(self):
+        """Return the error of a gap that residual and rounding explain."""
+        return 2 * (self.tolerance * self.moves + self.rounding)
+
     def allowed(self, solution):
         """Return the error of a conductance that residual and rounding explain, relative."""
-        both = self.rods
-        hottest = max(abs(t) for t in both.temperature)
-        moves = max(abs(both.gap), *(a * l * hottest for a, l in
-                                     zip(both.expansion, both.length, strict=True)))
-        # Elements are stiffer across than along by the square of their length over their width.
-        loss = (self.slender * max(both.length) / min(both.length)) ** 2
-        wrong = UNITS * EPSILON * loss * moves
-        if solution.slope == 0.0:   # at rest gap and pressure are what is left
-            rest = 2 * (self.tolerance * moves + wrong)
-            return rest / abs(solution.opening * solution.conductance)
-        rounding = wrong * abs(solution.slope) / solution.conductance
-        return 2 * (self.tolerance + rounding) / min(abs(1 - solution.gain), 1)
+        rounding = self.rounding * abs(solution.slope) / solution.conductance
+        error = 2 * (self.tolerance + rounding) / min(abs(1 - solution.gain), 1)
+        if self.jumps and abs(solution.separation) <= self.gap_allowed:
+            # The pair is at rest, or as good as: gap and pressure are what is left.
+            error += self.gap_allowed / abs(solution.opening * solution.conductance)
+        return error
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run found; no conductance where the method did not converge."""
+    """What a run found; no conductance where the method did not converge. At its end, datasets of
+    the pairs by their names."""
 
     passes: int = 0
     conductance: float | None = None
     gain: float | None = None
+    pairs: dict | None = None
+
+    @property
+    def has_unlike_pairs(self):
+        """Return whether some pairs are open, pressed or at rest, and others are not."""
+        return len(set(zip(self.pairs["gap"] > 0, self.pairs["pressure"] > 0, strict=True))) > 1
 
 
 def cards(case, method):
@@ -95,6 +127,15 @@ def cards(case, method):
 
 def outcomes(folder, cases, method):
     """Run cases by a method; return their outcomes."""
+    found = []
+    for first in range(0, len(cases), AT_ONCE):
+        found += outcomes_at_once(folder, cases[first:first + AT_ONCE], method)
+        shutil.rmtree(folder)
+    return found
+
+
+def outcomes_at_once(folder, cases, method):
+    """Run some cases by a method; return their outcomes."""
     folder.mkdir()
     decks = [write(folder / f"case{i}.inp", cards(case, method)) for i, case in enumerate(cases)]
     process = run("run", "--quiet", *decks, "--out", folder)
@@ -108,12 +149,14 @@ def outcomes(folder, cases, method):
             found.append(Outcome())
             continue
         with h5py.File(result) as file:
-            omega, flux = (file[f"contact/FACE/{n}"][-1] for n in ("conductance", "heat_flux"))
-            weight = file["contact/FACE/weight"][()]
+            pairs = {name: file[f"contact/FACE/{name}"][-1]
+                     for name in ("conductance", "heat_flux", "gap", "pressure")}
+            pairs["weight"] = weight = file["contact/FACE/weight"][()]
             # Heat by mean jump: pairs that rest may share out their heat in many ways.
-            omega = weight @ flux / (weight @ (flux / omega))
+            flux = pairs["heat_flux"]
+            omega = weight @ flux / (weight @ (flux / pairs["conductance"]))
             found.append(Outcome(int(file["history/iterations"][-1]), float(omega),
-                                 float(file["history/coupling_gain"][-1])))
+                                 float(file["history/coupling_gain"][-1]), pairs))
     return found
 
 
