@@ -5,6 +5,7 @@ module doubled_increments
    use companion_steps, only: companion_step
    use errors, only: error_type
    use films, only: left_films
+   use increment_data, only: increment_workspace_type
    use increment_solution, only: recover_fields, solve_pairs
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
@@ -58,7 +59,7 @@ contains
    subroutine follow(self, model, operators, loads, number, accepted, time, ends_step)
       class(doubled_increments_type), intent(inout) :: self      !! the second run
       type(model_type), intent(in) :: model                      !! the model
-      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+      type(interface_operators_type), intent(inout) :: operators !! the bodies; films change them
       type(loads_type), intent(in) :: loads                      !! loads at its end
       integer, intent(in) :: number                              !! number of the step
       type(solution_state_type), intent(in) :: accepted          !! the run's state there
@@ -68,6 +69,7 @@ contains
       type(solution_state_type) :: before, next
       type(step_type) :: step
       type(increment_record_type) :: record
+      type(increment_workspace_type) :: workspace
 
       if (.not. self%is_led .or. self%is_lost) return
       if (number /= self%step) self%waiting = modulo(planned_increments(model%steps(number)), 2)
@@ -94,11 +96,11 @@ contains
             error)
       end if
       if (.not. allocated(error)) call solve_pairs(operators, loads, model, step, before, &
-         next, record, error)
+         workspace, next, record, error)
       self%is_lost = allocated(error)
       if (self%is_lost) return
       if (has_memory(step%scheme) .or. .not. solves_mechanics(step%analysis)) then
-         call recover_fields(operators, loads, model, step, next)
+         call recover_fields(operators, loads, model, step, workspace, self%state, next)
       end if
       self%state = next
       self%time = time

@@ -14,6 +14,7 @@ module refinement_error
    use controls, only: implicit_scheme
    use errors, only: error_type
    use films, only: net_heat
+   use increment_data, only: increment_workspace_type
    use increment_solution, only: recover_fields, solve_pairs
    use interface_operators, only: interface_operators_type
    use interface_quantities, only: quantities_of, quantities_of_state
@@ -68,6 +69,7 @@ contains
       type(error_type), allocatable, intent(out) :: error        !! see above
       type(corrected_type) :: fields
       type(increment_record_type) :: record
+      type(increment_workspace_type) :: workspace
       real(dp) :: values(size(change, 1), size(change, 2))
       type(solution_state_type) :: before
       type(step_type) :: estimate_step
@@ -91,10 +93,11 @@ contains
          if (allocated(error)) return
       end if
       if (solves_heat(step%analysis) .and. has_memory(step%scheme)) then
-         call solve_pairs(operators, loads, model, estimate_step, previous, fields%coarse, record, &
-            error)
+         call solve_pairs(operators, loads, model, estimate_step, previous, workspace, &
+            fields%coarse, record, error)
          if (allocated(error)) return
-         call recover_fields(operators, loads, model, estimate_step, fields%coarse)
+         call recover_fields(operators, loads, model, estimate_step, workspace, previous, &
+            fields%coarse)
       end if
       call quantities_of_state(operators, fields%coarse, implicit_scheme, values)
       fields%displacement = refined%prolong(fields%coarse%displacement, 2)
@@ -159,7 +162,7 @@ contains
    !> Solves the increment on the old mesh with what is out of balance on the new one.
    subroutine correct(refined, operators, loads, model, step, previous, next, fields, error)
       type(refined_model_type), intent(in) :: refined
-      type(interface_operators_type), intent(inout) :: operators
+      type(interface_operators_type), intent(in) :: operators
       type(loads_type), intent(in) :: loads
       type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
@@ -168,6 +171,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: trial
       type(increment_record_type) :: record
+      type(increment_workspace_type) :: workspace
 
       trial = fields%coarse
       associate (u => fields%displacement(:size(next%displacement)), &
@@ -180,9 +184,9 @@ contains
             2) + operators%mechanical%matrix%multiply(u) - &
             thermal_forces(operators, t - model%initial_temperature)
       end associate
-      call solve_pairs(operators, loads, model, step, previous, trial, record, error)
+      call solve_pairs(operators, loads, model, step, previous, workspace, trial, record, error)
       if (allocated(error)) return
-      call recover_fields(operators, loads, model, step, trial)
+      call recover_fields(operators, loads, model, step, workspace, previous, trial)
       fields%displacement = fields%displacement + refined%prolong(trial%displacement - &
          fields%displacement(:size(trial%displacement)), 2)
       fields%temperature = fields%temperature + refined%prolong(trial%temperature - &

@@ -11,6 +11,7 @@ module active_set
    use closing_path, only: follow_closing_path
    use contact_states, only: condition_code, contact_state_type
    use contact_system, only: contact_system_type
+   use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use friction, only: next_status
    use idle_pairs, only: find_idle_pairs
@@ -35,65 +36,69 @@ contains
    !> whatever sets are tried.
    !> Errors: no active set satisfies all conditions; the bodies are not held, and then driven is
    !> set, and the status is the one in which they are driven away.
-   subroutine solve_contact(system, load, state, error)
-      type(contact_system_type), intent(inout) :: system  !! the reduced system
+   subroutine solve_contact(system, load, work, state, error)
+      type(contact_system_type), intent(in) :: system     !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
+      type(contact_workspace_type), intent(inout) :: work !! laws in, factors of the solution out
       type(contact_state_type), intent(inout) :: state    !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error !! see above
 
-      call find_state(system, load, state, error)
+      call find_state(system, load, work, state, error)
       if (allocated(error)) return
-      call find_idle_pairs(system, load, force_rounding(system, load, state), state)
+      call find_idle_pairs(system, load, force_rounding(system, load, work, state), work, state)
    end subroutine solve_contact
 
    !> A state that satisfies all contact conditions.
    !> Errors: as solve_contact.
-   subroutine find_state(system, load, state, error)
-      type(contact_system_type), intent(inout) :: system
+   subroutine find_state(system, load, work, state, error)
+      type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: guess
 
       guess = state
-      system%anchor = positions(system, state)
-      system%several = .false.
-      call search(system, load, state, error)
+      work%anchor = positions(system, work, state)
+      work%several = .false.
+      call search(system, load, work, state, error)
       if (.not. allocated(error)) then
-         system%several = system%turns_back()
-         if (system%several) call take_forward(system, load, state)
+         work%several = work%turns_back(system)
+         if (work%several) call take_forward(system, load, work, state)
          return
       end if
       state = guess
       if (size(system%motion, 2) > 0) then
-         call hold_softly(system, load, state, error)
+         call hold_softly(system, load, work, state, error)
       else
-         call follow_closing_path(system, load, state, error)
-         if (.not. allocated(error)) call system%solve_set(load, state, error)
+         call follow_closing_path(system, load, work, state, error)
+         if (.not. allocated(error)) call work%solve_set(system, load, state, error)
       end if
    end subroutine find_state
 
    !> Takes, in place of a state at which the path of states turns back, one at which it goes on,
    !> where it can be found.
-   subroutine take_forward(system, load, state)
-      type(contact_system_type), intent(inout) :: system
+   subroutine take_forward(system, load, work, state)
+      type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
       type(contact_state_type) :: forward
       type(error_type), allocatable :: error
 
       forward = state
-      call follow_closing_path(system, load, forward, error)
+      call follow_closing_path(system, load, work, forward, error)
       if (allocated(error)) return
-      call system%solve_set(load, forward, error)
+      call work%solve_set(system, load, forward, error)
       if (.not. allocated(error)) state = forward
    end subroutine take_forward
 
    !> Corrects the active set until nothing violates its condition.
    !> Errors: as solve_set; the sets do not settle.
-   subroutine search(system, load, state, error)
-      type(contact_system_type), intent(inout) :: system
+   subroutine search(system, load, work, state, error)
+      type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       integer :: visited(size(state%status), most_sets)
@@ -103,9 +108,9 @@ contains
 
       one_at_a_time = .false.
       do set = 1, most_sets
-         call system%solve_set(load, state, error)
+         call work%solve_set(system, load, state, error)
          if (allocated(error)) return
-         call judge(system, load, state, next, excess)
+         call judge(system, load, work, state, next, excess)
          corrected = excess > 0.0_dp
          if (.not. any(corrected)) return
          visited(:, set) = condition_code(state)
@@ -123,46 +128,46 @@ contains
 
    !> Contact state where the supports alone do not hold the bodies.
    !> Errors: as solve_contact.
-   subroutine hold_softly(system, load, state, error)
-      type(contact_system_type), intent(inout) :: system
+   subroutine hold_softly(system, load, work, state, error)
+      type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      type(contact_system_type) :: soft
+      type(contact_workspace_type) :: soft
       real(dp) :: hold, place(size(system%motion, 2)), way(size(system%motion, 2))
       integer :: step
 
-      soft = system
-      soft%motion = system%motion(:, :0)
-      place = matmul(positions(system, state), system%motion)
+      place = matmul(positions(system, work, state), system%motion)
       do step = 1, soft_steps
          hold = max(first_hold*0.1_dp**(step - 1), least_hold)*stiffness_of_pairs(system)
-         soft%schur = system%schur + hold*matmul(system%motion, transpose(system%motion))
-         call soft%forget_factors()
+         soft = work%another()
+         soft%hold = hold
          associate (soft_load => load + hold*matmul(system%motion, place))
-            call search(soft, soft_load, state, error)
-            if (allocated(error)) call follow_closing_path(soft, soft_load, state, error)
+            call search(system, soft_load, soft, state, error)
+            if (allocated(error)) call follow_closing_path(system, soft_load, soft, state, error)
          end associate
          if (allocated(error)) return
-         way = matmul(positions(system, state), system%motion) - place
+         way = matmul(positions(system, work, state), system%motion) - place
          place = place + way
-         if (holds_exactly(system, load, state)) return
+         if (holds_exactly(system, load, work, state)) return
          ! A light load comes no farther than load/hold: the body goes on across the open gaps.
          associate (far => norm2(state%gap) + barely*system%least_length*sqrt(real(size(load), dp)))
-            if (system%driven .and. norm2(way) > 0.0_dp) place = place + &
+            if (work%driven .and. norm2(way) > 0.0_dp) place = place + &
                max(far/norm2(way) - 1.0_dp, 0.0_dp)*way
          end associate
       end do
       ! The last trial says why: driven is set, or some pair is wrong without the hold.
-      call system%solve_set(load, state, error)
+      call work%solve_set(system, load, state, error)
       if (.not. allocated(error)) call set_error(error, status_no_convergence, unsettled)
    end subroutine hold_softly
 
    !> Whether a set that was found with the hold satisfies all conditions without it; then the state
    !> is the exact one.
-   logical function holds_exactly(system, load, state)
-      type(contact_system_type), intent(inout) :: system
+   logical function holds_exactly(system, load, work, state)
+      type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
       type(contact_state_type) :: exact
       type(error_type), allocatable :: error
@@ -170,24 +175,25 @@ contains
       real(dp) :: excess(size(state%status))
 
       exact = state
-      call system%solve_set(load, exact, error)
+      call work%solve_set(system, load, exact, error)
       holds_exactly = .not. allocated(error)
       if (.not. holds_exactly) return
-      call judge(system, load, exact, next, excess)
+      call judge(system, load, work, exact, next, excess)
       holds_exactly = all(excess <= 0.0_dp)
       if (holds_exactly) state = exact
    end function holds_exactly
 
    !> Relative displacements of a state.
-   pure function positions(system, state) result(d)
+   pure function positions(system, work, state) result(d)
       type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
       real(dp) :: d(size(system%schur, 1))
       integer :: k
 
       d = 0.0_dp
       do k = 1, size(state%status)
-         d(system%normal(k)) = system%initial_gap(k) - state%gap(k)
+         d(system%normal(k)) = work%initial_gap(k) - state%gap(k)
          if (system%tangent(k) > 0) d(system%tangent(k)) = state%tangential(k)
       end do
    end function positions
@@ -203,42 +209,45 @@ contains
    end function stiffness_of_pairs
 
    !> What status each pair should have, and by how much it violates the present one.
-   subroutine judge(system, load, state, next, excess)
+   subroutine judge(system, load, work, state, next, excess)
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
       integer, intent(out) :: next(:, :)
       real(dp), intent(out) :: excess(:)
       real(dp) :: gap_tolerance, force_tolerance
       integer :: k
 
-      gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(system%initial_gap)), &
+      gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(work%initial_gap)), &
          maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
-      force_tolerance = force_rounding(system, load, state)
+      force_tolerance = force_rounding(system, load, work, state)
       next(1, :) = state%status
       next(2, :) = state%direction
       do k = 1, size(state%status)
          call next_status(next(1, k), next(2, k), state%gap(k), state%force(k), &
-            state%shear_force(k), system%slip(state, k), system%friction(k), &
+            state%shear_force(k), work%slip(system, state, k), system%friction(k), &
             system%tangent(k) > 0, gap_tolerance, force_tolerance, excess(k))
       end do
    end subroutine judge
 
    !> Contact force that is rounding.
-   pure real(dp) function force_rounding(system, load, state)
+   pure real(dp) function force_rounding(system, load, work, state)
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
 
       force_rounding = max(1.0e-12_dp*maxval(abs(state%force)), &
-         1.0e-13_dp*largest_term(system, load, state), system%least_force()) + tiny(1.0_dp)
+         1.0e-13_dp*largest_term(system, load, work, state), work%least_force(system)) + tiny(1.0_dp)
    end function force_rounding
 
    !> Largest sum of the terms of which a contact force is made, S d - c, without their signs: what
    !> its rounding goes by where the terms cancel, as in a body that contact moves as a whole.
-   pure function largest_term(system, load, state) result(force)
+   pure function largest_term(system, load, work, state) result(force)
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
       real(dp) :: force
       real(dp) :: terms(size(load))
@@ -246,7 +255,7 @@ contains
 
       terms = abs(load)
       do k = 1, size(state%status)
-         terms = terms + abs(system%initial_gap(k) - state%gap(k))* &
+         terms = terms + abs(work%initial_gap(k) - state%gap(k))* &
             abs(system%schur(:, system%normal(k)))
          if (system%tangent(k) == 0) cycle
          terms = terms + abs(state%tangential(k))*abs(system%schur(:, system%tangent(k)))

@@ -22,6 +22,7 @@ module closing_instant
    use active_set, only: solve_contact
    use contact_states, only: closing_law_type, contact_state_type
    use contact_system, only: contact_system_type
+   use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
    use records, only: status_open, status_stick
@@ -40,15 +41,30 @@ module closing_instant
 contains
 
    !> Contact state at the end of an increment, with the references of the pairs that close in it.
-   !> The system has no laws of an earlier increment (drop_laws). Only the statuses of the guess
-   !> count: where bodies are loose, the motion is the least one from the start of the increment.
+   !> Only the statuses of the guess count: where bodies are loose, the motion is the least one from
+   !> the start of the increment. The workspace may have laws of an earlier pass; a pass that fails
+   !> leaves none.
    !> Error: as solve_contact, or closing laws that do not settle.
-   subroutine solve_increment(system, previous, load, state, error)
-      type(contact_system_type), intent(inout) :: system  !! the reduced system
+   subroutine solve_increment(system, previous, load, work, state, error)
+      type(contact_system_type), intent(in) :: system     !! the reduced system
       type(contact_state_type), intent(in) :: previous    !! state at the start of the increment
       real(dp), intent(in) :: load(:)                     !! (tail) condensed load [force]
+      type(contact_workspace_type), intent(inout) :: work !! laws and factors of the solution out
       type(contact_state_type), intent(inout) :: state    !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error !! see above
+
+      call settle_laws(system, previous, load, work, state, error)
+      if (allocated(error)) work%closing = closing_law_type()
+   end subroutine solve_increment
+
+   !> Solves with frozen closing laws until they stay.
+   subroutine settle_laws(system, previous, load, work, state, error)
+      type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: previous
+      real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(inout) :: work
+      type(contact_state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(out) :: error
       logical :: holds(size(state%status))
       real(dp) :: change
       integer :: k, pass
@@ -57,15 +73,15 @@ contains
       do pass = 1, most_passes
          state%gap = previous%gap
          state%tangential = previous%tangential
-         call solve_contact(system, load, state, error)
+         call solve_contact(system, load, work, state, error)
          if (allocated(error)) return
          holds = state%status /= status_open .or. (holds .and. pass > free_passes)
-         call update_laws(system, previous, state, holds, pass > plain_passes, change, error)
+         call update_laws(system, previous, state, holds, pass > plain_passes, work, change, error)
          if (allocated(error)) return
          if (change <= merge(settled, rounding, pass <= free_passes)) then
             do k = 1, size(state%status)
-               if (system%closing(k)%acts .and. state%status(k) /= status_open) then
-                  state%reference(k) = state%tangential(k) - system%slip(state, k)
+               if (work%closing(k)%acts .and. state%status(k) /= status_open) then
+                  state%reference(k) = state%tangential(k) - work%slip(system, state, k)
                end if
             end do
             call drop_rounding(state)
@@ -74,7 +90,7 @@ contains
       end do
       call set_error(error, status_no_convergence, &
          'the instants at which pairs close do not settle')
-   end subroutine solve_increment
+   end subroutine settle_laws
 
    !> An active set satisfies its conditions to rounding. A closed pair that pulls by rounding
    !> carries nothing, and an open one that overlaps by it has no gap.
@@ -88,20 +104,21 @@ contains
       end where
    end subroutine drop_rounding
 
-   !> Closing laws of the pairs that are closed now and were open at the start of the increment. A
-   !> pair that has opened again keeps its law, on which nothing depends: without it the pair might
-   !> close, with it open, for ever.
-   subroutine update_laws(system, previous, state, holds, damped, change, error)
-      type(contact_system_type), intent(inout) :: system
+   !> Closing laws of the pairs that are closed now and were open at the start of the increment,
+   !> where they have changed. A pair that has opened again keeps its law, on which nothing depends:
+   !> without it the pair might close, with it open, for ever.
+   subroutine update_laws(system, previous, state, holds, damped, work, change, error)
+      type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: previous
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: holds(:)
       logical, intent(in) :: damped
+      type(contact_workspace_type), intent(inout) :: work
       real(dp), intent(out) :: change
       type(error_type), allocatable, intent(out) :: error
-      type(contact_system_type) :: held
+      type(contact_workspace_type) :: held
       type(contact_state_type) :: held_state
-      type(closing_law_type) :: law
+      type(closing_law_type) :: laws(size(state%status))
       logical :: closes(size(state%status)), alone
       real(dp) :: compliance(2, 2)
       integer :: k
@@ -110,25 +127,25 @@ contains
       closes = previous%status == status_open .and. state%status /= status_open .and. &
          system%tangent > 0
       if (.not. any(closes)) return
-      held = system
-      call held%drop_laws()
+      held = work%another()
+      held%closing = closing_law_type()
       held_state = state
       held_state%status = merge(status_stick, status_open, holds)
-      call held%factor_set(held_state, error)
+      call held%factor_set(system, held_state, error)
       if (allocated(error)) return
+      laws = work%closing
       do k = 1, size(closes)
          if (.not. closes(k)) cycle
-         call find_compliance(held, held_state, k, compliance, alone, error)
+         call find_compliance(system, held, held_state, k, compliance, alone, error)
          if (allocated(error)) return
-         call make_law(compliance, previous, state, k, law)
-         if (alone) law%fraction = 0.0_dp
-         change = max(change, law_change(system%closing(k), law))
-         if (damped .and. system%closing(k)%acts) then
-            law%fraction = 0.5_dp*(law%fraction + system%closing(k)%fraction)
-         end if
-         system%closing(k) = law
+         call make_law(compliance, previous, state, k, laws(k))
+         if (alone) laws(k)%fraction = 0.0_dp
+         change = max(change, law_change(work%closing(k), laws(k)))
+         if (damped .and. work%closing(k)%acts) laws(k)%fraction = 0.5_dp* &
+            (laws(k)%fraction + work%closing(k)%fraction)
       end do
-      if (change > settled) call system%forget_factors()
+      ! Laws that stay keep the factors.
+      if (change > settled) work%closing = laws
    end subroutine update_laws
 
    !> Relative change from one law to another.
@@ -149,24 +166,25 @@ contains
    !> this pair holds a body, relieved it would go without end: it closes at once, for which a
    !> normal compliance of zero and the start of the increment stand.
    !> Error: a singular system.
-   subroutine find_compliance(held, held_state, k, compliance, alone, error)
-      type(contact_system_type), intent(in) :: held
+   subroutine find_compliance(system, held, held_state, k, compliance, alone, error)
+      type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(in) :: held
       type(contact_state_type), intent(in) :: held_state
       integer, intent(in) :: k
       real(dp), intent(out) :: compliance(2, 2)
       logical, intent(out) :: alone
       type(error_type), allocatable, intent(out) :: error
-      type(contact_system_type) :: opened
+      type(contact_workspace_type) :: opened
       type(contact_state_type) :: opened_state
-      real(dp) :: response(size(held%schur, 1), 2), stiffness(2, 2), determinant
+      real(dp) :: response(size(system%schur, 1), 2), stiffness(2, 2), determinant
       integer :: places(2)
 
-      places = [held%normal(k), held%tangent(k)]
-      if (held%give(k) > 0.0_dp) then
-         opened = held
+      places = [system%normal(k), system%tangent(k)]
+      if (system%compliance(k) > 0.0_dp) then
+         opened = held%another()
          opened_state = held_state
          opened_state%status(k) = status_open
-         call opened%factor_set(opened_state, error)
+         call opened%factor_set(system, opened_state, error)
          if (allocated(error)) return
          response = 0.0_dp
          response(places(1), 1) = 1.0_dp
@@ -175,14 +193,14 @@ contains
          compliance = response(places, :)
          alone = size(opened%loose, 2) > size(held%loose, 2)
       else
-         stiffness = held%stiffness(places)
+         stiffness = held%stiffness(system, places)
          determinant = stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1)
-         alone = determinant <= nothing*held%schur(places(1), places(1))* &
-            held%schur(places(2), places(2))
+         alone = determinant <= nothing*system%schur(places(1), places(1))* &
+            system%schur(places(2), places(2))
          if (.not. alone) compliance = reshape([stiffness(2, 2), -stiffness(2, 1), &
             -stiffness(1, 2), stiffness(1, 1)], [2, 2])/determinant
       end if
-      if (alone) compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp/held%alone(k)], [2, 2])
+      if (alone) compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp/system%alone(k)], [2, 2])
    end subroutine find_compliance
 
    !> The closing law of one pair.

@@ -7,8 +7,9 @@
 !> whatever the friction is, so that the path, which cannot return to where it began, arrives at
 !> t = 0 (Lemke's method with its geometric covering vector).
 module closing_path
-   use contact_states, only: closing_law_type, contact_state_type
+   use contact_states, only: contact_state_type
    use contact_system, only: contact_system_type
+   use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
    use records, only: status_open, status_slip, status_stick
@@ -30,23 +31,24 @@ contains
 
    !> Contact state under a condensed load, the references of friction being given.
    !> Errors: the supports alone do not hold the bodies; the path does not arrive.
-   subroutine follow_closing_path(system, load, state, error)
+   subroutine follow_closing_path(system, load, work, state, error)
       type(contact_system_type), intent(in) :: system     !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
+      type(contact_workspace_type), intent(in) :: work    !! gaps, laws, hold
       type(contact_state_type), intent(inout) :: state    !! references in, solution out
       type(error_type), allocatable, intent(out) :: error !! see above
-      type(contact_system_type) :: path
+      type(contact_workspace_type) :: path
       type(piece_type) :: piece
       real(dp) :: cover(size(state%status)), step, t
       integer :: entering, event, k, n, sense
 
-      path = system
-      call path%forget_factors()
+      path = work%another()
+      path%hold = work%hold
       allocate (piece%slip(size(cover), 2), piece%slack(2, size(cover), 2))
       cover = [(1.0_dp + modulo(k*golden, 1.0_dp), k=1, size(cover))]
       state%status = status_open
       state%direction = 0
-      call solve_piece(path, system, load, cover, state, piece, error)
+      call solve_piece(system, load, cover, work, path, state, piece, error)
       if (allocated(error)) return
       t = max(maxval(-piece%base%gap/cover), 0.0_dp)
       sense = -1
@@ -59,9 +61,9 @@ contains
          end if
          if (k == 0) exit
          t = t + sense*step
-         call change_condition(path, dot_product([1.0_dp, t], piece%slip(k, :)), event, k, state, &
+         call change_condition(system, dot_product([1.0_dp, t], piece%slip(k, :)), event, k, state, &
             entering)
-         call solve_piece(path, system, load, cover, state, piece, error)
+         call solve_piece(system, load, cover, work, path, state, piece, error)
          if (allocated(error)) return
          sense = merge(1, -1, piece%slack(entering, k, 2) > 0.0_dp)
       end do
@@ -70,10 +72,11 @@ contains
 
    !> Both ends of a piece, with one factorisation.
    !> Error: as solve_set.
-   subroutine solve_piece(path, system, load, cover, state, piece, error)
-      type(contact_system_type), intent(inout) :: path
+   subroutine solve_piece(system, load, cover, work, path, state, piece, error)
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:), cover(:)
+      type(contact_workspace_type), intent(in) :: work
+      type(contact_workspace_type), intent(inout) :: path
       type(contact_state_type), intent(in) :: state
       type(piece_type), intent(inout) :: piece
       type(error_type), allocatable, intent(out) :: error
@@ -81,18 +84,18 @@ contains
       type(contact_state_type) :: rate
 
       piece%base = state
-      path%initial_gap = system%initial_gap
-      path%closing%start = system%closing%start
-      call path%solve_set(load, piece%base, error)
+      path%initial_gap = work%initial_gap
+      path%closing%start = work%closing%start
+      call path%solve_set(system, load, piece%base, error)
       if (allocated(error)) return
-      call measure(path, piece%base, piece%slip(:, 1), piece%slack(:, :, 1))
+      call measure(system, path, piece%base, piece%slip(:, 1), piece%slack(:, :, 1))
       rate = state
       rate%reference = 0.0_dp
       path%initial_gap = cover
       path%closing%start = 0.0_dp
-      call path%solve_set(0.0_dp*load, rate, error)
+      call path%solve_set(system, 0.0_dp*load, rate, error)
       if (allocated(error)) return
-      call measure(path, rate, piece%slip(:, 2), piece%slack(:, :, 2))
+      call measure(system, path, rate, piece%slip(:, 2), piece%slack(:, :, 2))
    end subroutine solve_piece
 
    !> The pair whose condition ends first along a piece, 0 for none, and how far away that is.
@@ -124,8 +127,9 @@ contains
    !> Slip, and what must not be negative under each pair's condition: the gap; or force and slip
    !> against friction; or the distances to both sides of the cone. A second one that is missing is
    !> zero.
-   pure subroutine measure(path, state, slip, slack)
-      type(contact_system_type), intent(in) :: path
+   pure subroutine measure(system, path, state, slip, slack)
+      type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(in) :: path
       type(contact_state_type), intent(in) :: state
       real(dp), intent(out) :: slip(:)
       real(dp), intent(out) :: slack(:, :)
@@ -134,21 +138,21 @@ contains
 
       slack = 0.0_dp
       do k = 1, size(slip)
-         slip(k) = path%slip(state, k)
+         slip(k) = path%slip(system, state, k)
          if (state%status(k) == status_open) then
             slack(1, k) = state%gap(k)
          else if (state%status(k) == status_slip) then
             slack(:, k) = [state%force(k), -state%direction(k)*slip(k)]
          else
-            cone = path%friction(k)*state%force(k)
+            cone = system%friction(k)*state%force(k)
             slack(:, k) = [cone - state%shear_force(k), cone + state%shear_force(k)]
          end if
       end do
    end subroutine measure
 
    !> Gives a pair the condition that follows on the end of its present one.
-   pure subroutine change_condition(path, slip, event, k, state, entering)
-      type(contact_system_type), intent(in) :: path
+   pure subroutine change_condition(system, slip, event, k, state, entering)
+      type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: slip
       integer, intent(in) :: event
       integer, intent(in) :: k
@@ -160,7 +164,7 @@ contains
       case (status_open)
          state%status(k) = status_slip
          state%direction(k) = 0
-         if (path%tangent(k) == 0 .or. path%friction(k) <= 0.0_dp) return
+         if (system%tangent(k) == 0 .or. system%friction(k) <= 0.0_dp) return
          state%direction(k) = merge(-1, 1, slip > 0.0_dp)
       case (status_slip)
          state%status(k) = merge(status_open, status_stick, event == 1)

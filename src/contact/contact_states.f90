@@ -15,6 +15,7 @@ module contact_states
       !> (m) d_n, with the digits that it loses in h; unallocated before a solution [length]
       real(dp), allocatable :: approach(:)
       real(dp), allocatable :: tangential(:)  !! (m) d_t [length]
+      real(dp), allocatable :: slip_origin(:) !! (m) d_t at which a pair last closed [length]
       real(dp), allocatable :: force(:)       !! (m) -lambda_n, positive in compression [force]
       real(dp), allocatable :: shear_force(:) !! (m) lambda_t [force]
       real(dp), allocatable :: link(:)        !! (links) what holds rings together [length]

@@ -6,6 +6,7 @@
 module contact_tangent
    use contact_states, only: contact_state_type
    use contact_system, only: contact_system_type
+   use contact_workspace, only: contact_workspace_type
    use kinds, only: dp
    use records, only: status_open, status_stick
    implicit none
@@ -15,8 +16,9 @@ module contact_tangent
 contains
 
    !> Changes of gaps and normal forces with the condensed load, one column a change of load.
-   pure subroutine contact_response(system, state, load, gap, force, sound)
-      type(contact_system_type), intent(in) :: system !! the system, as its last solution left it
+   pure subroutine contact_response(system, work, state, load, gap, force, sound)
+      type(contact_system_type), intent(in) :: system !! the reduced system
+      type(contact_workspace_type), intent(in) :: work !! as its last solution left it
       type(contact_state_type), intent(in) :: state   !! that solution
       real(dp), intent(in) :: load(:, :)              !! (tail, n) changes of c [force]
       real(dp), intent(out) :: gap(:, :)              !! (m, n) changes of the gaps [length]
@@ -27,12 +29,12 @@ contains
 
       motion = load
       sound = .true.
-      if (any(closes(system, state))) then
-         call move_with_instants(system, state, motion, sound)
+      if (any(closes(system, work, state))) then
+         call move_with_instants(system, work, state, motion, sound)
       else
-         call system%solve_free(motion)
+         call work%solve_free(motion)
       end if
-      lambda = matmul(system%schur(:, system%free), motion(system%free, :)) - load
+      lambda = matmul(system%schur(:, work%rows%free), motion(work%rows%free, :)) - load
       gap = 0.0_dp
       force = 0.0_dp
       do k = 1, size(state%status)
@@ -45,37 +47,39 @@ contains
    end subroutine contact_response
 
    !> Pairs whose place of sticking depends on their forces.
-   pure function closes(system, state)
+   pure function closes(system, work, state)
       type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
       logical :: closes(size(state%status))   !! (m)
 
-      closes = system%closing%acts .and. state%status == status_stick .and. system%tangent > 0
+      closes = work%closing%acts .and. state%status == status_stick .and. system%tangent > 0
    end function closes
 
    !> Motion under changes of load, the instants of closing following.
-   pure subroutine move_with_instants(system, state, motion, sound)
+   pure subroutine move_with_instants(system, work, state, motion, sound)
       type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
       real(dp), intent(inout) :: motion(:, :)   !! loads in; displacements in the free rows out
       logical, intent(out) :: sound
-      type(contact_system_type) :: tangent
+      type(contact_workspace_type) :: tangent
       logical :: moves(size(state%status)), singular
       real(dp) :: arm
       integer :: k
 
-      tangent = system
-      moves = closes(system, state)
+      tangent = work
+      moves = closes(system, work, state)
       do k = 1, size(moves)
          if (.not. moves(k)) cycle
-         associate (law => system%closing(k), place => system%tangent(k))
+         associate (law => work%closing(k), place => system%tangent(k))
             arm = (dot_product(law%compliance, [-state%force(k), state%shear_force(k)]) - &
-               (state%tangential(k) - law%start))/(law%compliance(2) + system%give(k))
-            tangent%share(place) = tangent%share(place) + arm*law%rate(1)
-            tangent%own(place) = tangent%own(place) + arm*law%rate(2)
+               (state%tangential(k) - law%start))/(law%compliance(2) + system%compliance(k))
+            tangent%rows%share(place) = tangent%rows%share(place) + arm*law%rate(1)
+            tangent%rows%own(place) = tangent%rows%own(place) + arm*law%rate(2)
          end associate
       end do
-      call tangent%factor_rows(singular)
+      call tangent%factor_rows(system, singular)
       sound = .not. singular
       if (sound) call tangent%solve_free(motion)
    end subroutine move_with_instants

@@ -7,6 +7,7 @@
 module idle_pairs
    use contact_states, only: contact_state_type
    use contact_system, only: contact_system_type
+   use contact_workspace, only: contact_workspace_type
    use errors, only: error_type
    use kinds, only: dp
    use records, only: status_open
@@ -18,64 +19,63 @@ module idle_pairs
 
 contains
 
-   !> Sets system%idle for a state that satisfies all conditions. No force is left of idle pairs,
+   !> Sets work%idle for a state that satisfies all conditions. No force is left of idle pairs,
    !> and none of any closed pair is negative.
-   subroutine find_idle_pairs(system, load, rounding, state)
-      type(contact_system_type), intent(inout) :: system  !! the reduced system, as solved last
+   subroutine find_idle_pairs(system, load, rounding, work, state)
+      type(contact_system_type), intent(in) :: system     !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
       real(dp), intent(in) :: rounding                    !! of the contact forces [force]
+      type(contact_workspace_type), intent(inout) :: work !! as it was solved last
       type(contact_state_type), intent(inout) :: state    !! solution
-      type(contact_system_type) :: opened
 
-      system%idle = state%status /= status_open .and. state%force <= rounding
-      if (any(system%idle)) then
-         opened = system
-         call keep_unloaded(opened, load, state, system%idle)
-      end if
-      where (state%force <= 0.0_dp .or. system%idle)
+      work%idle = state%status /= status_open .and. state%force <= rounding
+      if (any(work%idle)) call keep_unloaded(system, load, work, state, work%idle)
+      where (state%force <= 0.0_dp .or. work%idle)
          state%force = 0.0_dp
          state%shear_force = 0.0_dp
       end where
    end subroutine find_idle_pairs
 
    !> Of the pairs given, keeps those that hinder a motion which no load drives once they are open.
-   subroutine keep_unloaded(opened, load, state, idle)
-      type(contact_system_type), intent(inout) :: opened
+   subroutine keep_unloaded(system, load, work, state, idle)
+      type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
       logical, intent(inout) :: idle(:)
+      type(contact_workspace_type) :: opened
       type(contact_state_type) :: trial
       type(error_type), allocatable :: error
-      integer :: loose
 
-      loose = size(opened%loose, 2)
+      opened = work%another()
       do while (any(idle))
          trial = state
          where (idle)
             trial%status = status_open
             trial%direction = 0
          end where
-         call opened%solve_set(load, trial, error)
+         call opened%solve_set(system, load, trial, error)
          if (opened%driven) then
-            idle = idle .and. .not. moved(opened, abs(matmul(opened%loose, opened%drive)))
-         else if (allocated(error) .or. size(opened%loose, 2) == loose) then
+            idle = idle .and. .not. moved(system, opened%rows%free, abs(matmul(opened%loose, opened%drive)))
+         else if (allocated(error) .or. size(opened%loose, 2) == size(work%loose, 2)) then
             idle = .false.
          else
-            idle = idle .and. moved(opened, norm2(opened%loose, dim=2))
+            idle = idle .and. moved(system, opened%rows%free, norm2(opened%loose, dim=2))
             exit
          end if
       end do
    end subroutine keep_unloaded
 
    !> Pairs that a motion of the free places moves.
-   pure function moved(system, motion)
+   pure function moved(system, free, motion)
       type(contact_system_type), intent(in) :: system
+      integer, intent(in) :: free(:)                !! places that are sought
       real(dp), intent(in) :: motion(:)             !! (free) lengths of the motion
       logical :: moved(size(system%normal))         !! (m)
       logical :: moves(0:size(system%schur, 1))
 
       moves = .false.
-      moves(system%free) = motion > nothing*maxval(motion)
+      moves(free) = motion > nothing*maxval(motion)
       moved = moves(system%normal) .or. moves(system%tangent)
    end function moved
 

@@ -36,7 +36,7 @@ module mumps_solver
    !> MUMPS's factors behind the common interface.
    type, extends(linear_solver_type) :: mumps_solver_type
       private
-      type(dmumps_struc), allocatable :: mumps   !! MUMPS's own data
+      type(dmumps_struc), pointer :: mumps => null()   !! MUMPS's own data
    contains
       procedure :: factor
       procedure :: condense
@@ -52,7 +52,7 @@ contains
       type(sparse_matrix_type), intent(in) :: lower
       integer, intent(in) :: tail
       type(error_type), allocatable, intent(out) :: error
-      integer :: attempt
+      integer :: attempt, j
 
       self%order = lower%row_count
       self%tail = tail
@@ -84,7 +84,11 @@ contains
       ! RINFOG(19) is of the matrix as MUMPS has scaled it, rows and columns to about 1.
       if (self%mumps%rinfog(19) > 0.0_dp) self%smallest_pivot = min(1.0_dp, self%mumps%rinfog(19))
       self%factor_bytes = factor_entries(self%mumps%infog(9))*storage_size(1.0_dp)/8
-      call self%skyline%set_schur(reshape(self%mumps%schur(:tail*tail), [tail, tail]))
+      allocate (self%schur(tail, tail))
+      self%schur(:, :) = reshape(self%mumps%schur(:tail*tail), [tail, tail])
+      do j = 1, tail
+         self%schur(j, :j) = self%schur(:j, j)
+      end do
    end subroutine factor
 
    !> Version of MUMPS.
@@ -194,7 +198,7 @@ contains
 
    !> As condense_interface of linear_solver says.
    subroutine condense(self, rhs, condensed)
-      class(mumps_solver_type), intent(inout) :: self
+      class(mumps_solver_type), intent(in) :: self
       real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(out) :: condensed(:, :)
 
@@ -208,7 +212,7 @@ contains
 
    !> As recover_interface of linear_solver says.
    subroutine recover(self, rhs, on_tail, solution)
-      class(mumps_solver_type), intent(inout) :: self
+      class(mumps_solver_type), intent(in) :: self
       real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(in) :: on_tail(:, :)
       real(dp), intent(out) :: solution(:, :)
@@ -227,7 +231,7 @@ contains
 
    !> Hands right-hand sides to MUMPS, with room for the condensed ones.
    subroutine load_rhs(self, rhs)
-      class(mumps_solver_type), intent(inout) :: self
+      class(mumps_solver_type), intent(in) :: self
       real(dp), intent(in) :: rhs(:, :)
 
       associate (id => self%mumps)
@@ -248,7 +252,7 @@ contains
    subroutine release(self)
       class(mumps_solver_type), intent(inout) :: self
 
-      if (.not. allocated(self%mumps)) return
+      if (.not. associated(self%mumps)) return
       self%mumps%job = job_end
       call dmumps(self%mumps)
       associate (id => self%mumps)

@@ -4,6 +4,7 @@ module skyline_solver
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
    use ordering, only: adjacency, permuted_lower, profile_order
+   use skyline, only: skyline_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -13,6 +14,7 @@ module skyline_solver
    type, extends(linear_solver_type) :: skyline_solver_type
       private
       integer, allocatable :: place(:)      !! (order) new place of each unknown
+      type(skyline_type) :: skyline         !! the factors
    contains
       procedure :: factor
       procedure :: condense
@@ -45,14 +47,16 @@ contains
       call self%skyline%factor_leading(bad_column)
       self%full_flops = self%skyline%leading_flops
       self%smallest_pivot = self%skyline%smallest_pivot
-      self%factor_bytes = storage_size(1.0_dp)/8*size(self%skyline%value, kind=long)
+      self%factor_bytes = storage_size(1.0_dp)/8*(size(self%skyline%value, kind=long) + &
+         int(tail, long)*(tail + 1)/2)
+      call move_alloc(self%skyline%schur, self%schur)
       if (bad_column > 0) call set_error(error, status_deck, &
          'singular matrix: some body is not held by its supports and contacts, or far too softly')
    end subroutine factor
 
    !> As condense_interface of linear_solver says.
    subroutine condense(self, rhs, condensed)
-      class(skyline_solver_type), intent(inout) :: self
+      class(skyline_solver_type), intent(in) :: self
       real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(out) :: condensed(:, :)
       real(dp), allocatable :: x(:, :)
@@ -65,7 +69,7 @@ contains
 
    !> As recover_interface of linear_solver says.
    subroutine recover(self, rhs, on_tail, solution)
-      class(skyline_solver_type), intent(inout) :: self
+      class(skyline_solver_type), intent(in) :: self
       real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(in) :: on_tail(:, :)
       real(dp), intent(out) :: solution(:, :)
@@ -84,6 +88,7 @@ contains
       class(skyline_solver_type), intent(inout) :: self
 
       if (allocated(self%place)) deallocate (self%place)
+      self%skyline = skyline_type()
    end subroutine release
 
 end module skyline_solver

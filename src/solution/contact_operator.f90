@@ -4,51 +4,39 @@ module contact_operator
    use closing_instant, only: solve_increment
    use conductance_laws, only: conductance, conductance_slope
    use contact_states, only: contact_state_type
-   use controls, only: thermal_scheme_type
    use errors, only: error_type, status_no_convergence
    use finite_values, only: check_finite
+   use increment_data, only: increment_data_type, increment_workspace_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use pair_tractions, only: pressures
-   use records, only: status_open, status_slip, work_record_type
+   use records, only: status_open, status_slip
+   use tail_factors, only: tail_flops
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
    private
-   public :: increment_data_type, temperature_jumps, law_conductance, law_pressure
-   public :: contact_operator_pass, kept_contact, residual_floor, thermal_forces
-
-   !> What stays fixed while the iteration of an increment runs.
-   type :: increment_data_type
-      type(thermal_scheme_type) :: scheme            !! scheme of (3.4)
-      type(contact_state_type) :: previous           !! contact state at the start of the increment
-      real(dp), allocatable :: omega_old(:)          !! (m) omega_i
-      real(dp), allocatable :: jump_old(:)           !! (m) T_xi - T_eta at the start [temperature]
-      real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
-      real(dp), allocatable :: diagonal(:) !! (thermal tail) diagonal of the present tail factors
-      real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
-      real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]
-      real(dp) :: expansion = 0.0_dp !! largest coefficient of expansion [1/temperature]
-   end type increment_data_type
+   public :: contact_operator_pass, temperature_jumps, law_conductance, law_pressure
+   public :: kept_contact, residual_floor, thermal_forces
 
 contains
 
    !> U: conductance in, conductance of the resulting contact state out.
    !> Errors: as solve_increment; jumps or conductances overflow.
-   subroutine contact_operator_pass(operators, data, omega, jump, state, image, work, error)
-      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
-      type(increment_data_type), intent(inout) :: data           !! the increment
+   subroutine contact_operator_pass(operators, data, omega, workspace, jump, state, image, error)
+      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
+      type(increment_data_type), intent(in) :: data              !! the increment
       real(dp), intent(in) :: omega(:)                           !! (m) omega*
+      type(increment_workspace_type), intent(inout) :: workspace !! loads in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(inout) :: state           !! guess in, solution out
       real(dp), intent(out) :: image(:)                          !! (m) U(omega*)
-      type(work_record_type), intent(inout) :: work              !! counters of re-factorisation
       type(error_type), allocatable, intent(out) :: error        !! see above
 
-      call temperature_jumps(operators, data, omega, jump, work)
+      call temperature_jumps(operators, data, omega, workspace, jump)
       call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       if (allocated(error)) return
       call solve_increment(operators%contact, data%previous, &
-         condensed_load(operators, data, jump), state, error)
+         condensed_load(operators, data, jump), workspace%contact, state, error)
       if (allocated(error)) return
       image = law_conductance(operators, state)
       call check_finite(image, 'conductances', status_no_convergence, error)
@@ -56,38 +44,33 @@ contains
 
    !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first
    !> changed one on are factored again.
-   subroutine temperature_jumps(operators, data, omega, jump, work)
-      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
-      type(increment_data_type), intent(inout) :: data           !! the increment
+   subroutine temperature_jumps(operators, data, omega, workspace, jump)
+      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
+      type(increment_data_type), intent(in) :: data              !! the increment
       real(dp), intent(in) :: omega(:)                           !! (m) omega*
+      type(increment_workspace_type), intent(inout) :: workspace !! heat in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
-      type(work_record_type), intent(inout) :: work              !! counters of re-factorisation
       real(dp) :: x(operators%thermal%map%tail), diagonal(operators%thermal%map%tail)
       real(dp) :: of_pair(size(omega)), history(size(omega))
-      integer :: k, first_changed
+      integer :: k
 
       associate (place => operators%jump_place, weight => operators%pairs%weight, &
-         solver => operators%thermal%solver)
+         solver => operators%thermal%solver, tail => workspace%tail, work => workspace%work)
          of_pair = contact_diagonal(data%scheme, weight, data%omega_old, omega)
          history = contact_history(data%scheme, weight, data%omega_old, omega, data%jump_old)
-         x = operators%thermal%condensed
+         x = workspace%heat%condensed
          diagonal = 0.0_dp
          do k = 1, size(omega)
             if (place(k) == 0) cycle
             diagonal(place(k)) = of_pair(k)
             x(place(k)) = x(place(k)) + history(k)
          end do
-         first_changed = size(x) + 1
-         do k = size(x), 1, -1
-            if (abs(diagonal(k) - data%diagonal(k)) > 0.0_dp) first_changed = k
-         end do
-         call solver%refactor_tail(diagonal, first_changed)
-         data%diagonal = diagonal
-         work%columns_again = work%columns_again + size(x) + 1 - first_changed
+         call tail%refactor(solver%schur, diagonal)
+         work%columns_again = work%columns_again + size(x) + 1 - tail%first_changed
          work%columns_full = work%columns_full + solver%order
-         work%flops_again = work%flops_again + solver%tail_flops(first_changed)
-         work%flops_full = work%flops_full + solver%full_flops + solver%tail_flops(1)
-         call solver%solve_tail(x)
+         work%flops_again = work%flops_again + tail_flops(size(x), tail%first_changed)
+         work%flops_full = work%flops_full + solver%full_flops + tail_flops(size(x), 1)
+         call tail%solve(x)
          jump = data%held_jump
          do k = 1, size(omega)
             if (place(k) > 0) jump(k) = x(place(k))

@@ -21,13 +21,12 @@ contains
       integer :: m
 
       m = size(pairs%slave)
-      allocate (contact%normal(m), contact%tangent(m), contact%closing(m))
+      allocate (contact%normal(m), contact%tangent(m))
       associate (map => mechanical%map)
          contact%normal(:) = map%tail_index(map%relative(1, :))
          contact%tangent(:) = map%tail_index(map%relative(2, :))
       end associate
-      contact%schur = mechanical%solver%schur_complement()
-      contact%initial_gap = pairs%initial_gap
+      contact%schur = mechanical%solver%schur
       contact%friction = pairs%friction
       call set_motions(pairs, rigid, contact)
       call set_rings(mechanical, pairs, contact)
@@ -43,7 +42,6 @@ contains
       integer :: k, m, s
 
       allocate (contact%rigid(size(contact%schur, 1), size(rigid, 2)), source=0.0_dp)
-      allocate (contact%least_drive(size(contact%schur, 1)), source=0.0_dp)
       do k = 1, size(pairs%slave)
          s = 2*pairs%slave(k)
          m = 2*pairs%master(k)
@@ -72,13 +70,13 @@ contains
 
       associate (map => mechanical%map)
          contact%link = map%tail_index(map%links%force)
-         allocate (contact%give(size(pairs%slave)), source=0.0_dp)
+         allocate (contact%compliance(size(pairs%slave)), source=0.0_dp)
          contact%alone = [(contact%schur(contact%normal(k), contact%normal(k)), &
             k=1, size(pairs%slave))]
          do k = 1, size(pairs%slave)
             if (.not. map%in_ring(k)) cycle
             nodes = [pairs%slave(k), pairs%master(k)]
-            contact%give(k) = ring_give/node_stiffness(mechanical%matrix, nodes, 2)
+            contact%compliance(k) = ring_give/node_stiffness(mechanical%matrix, nodes, 2)
             contact%alone(k) = stiffness_alone(contact%alone(k), mechanical%matrix, nodes, 2)
          end do
       end associate

@@ -2,18 +2,17 @@
 !> what is said of the solution.
 module coupled_increment
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use conductance_graph, only: conductance_graph_type
-   use contact_operator, only: increment_data_type
    use controls, only: start_both, start_closed, start_given, start_open, start_previous
    use coupling_gains, only: coupling_gain_type, find_gain
    use errors, only: error_type
-   use fixed_point, only: pass_type, predicted_conductance
+   use fixed_point, only: predicted_conductance
+   use increment_data, only: increment_data_type, increment_workspace_type
    use increment_iteration, only: iterate
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use opening_slopes, only: make_graph, opening_slope
    use records, only: increment_record_type
-   use resting_pairs, only: contact_scales, contact_scales_type
+   use resting_pairs, only: contact_scales
    use solution_state, only: solution_state_type
    use steps, only: step_type
    use text, only: append, to_text
@@ -31,30 +30,27 @@ contains
 
    !> Conductances, jumps and contact state of an increment.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
-   subroutine solve_coupled(operators, step, previous, data, next, record, error)
-      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+   subroutine solve_coupled(operators, step, previous, data, workspace, next, record, error)
+      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(step_type), intent(in) :: step                        !! the step
       type(solution_state_type), intent(in) :: previous          !! state at the start
-      type(increment_data_type), intent(inout) :: data           !! the increment
+      type(increment_data_type), intent(inout) :: data           !! receives graphs and scales
+      type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
       type(solution_state_type), intent(inout) :: next           !! guess in, solution out
-      type(increment_record_type), intent(inout) :: record       !! receives passes and work
+      type(increment_record_type), intent(inout) :: record       !! receives passes
       type(error_type), allocatable, intent(out) :: error        !! see above
-      type(contact_scales_type) :: scales
-      type(conductance_graph_type), allocatable :: graph(:)
-      type(pass_type) :: pass
 
-      scales = contact_scales(operators, data)
-      graph = make_graph(operators, scales%length)
+      data%scales = contact_scales(operators, data)
+      data%graph = make_graph(operators, data%scales%length)
       next%omega_before = previous%omega
       if (step%start%kind == start_both) then
-         call solve_from_both(operators, step, graph, scales, previous, data, next, record, pass, &
-            error)
+         call solve_from_both(operators, step, previous, data, workspace, next, record, error)
       else
-         call iterate(operators, step%fixed_point, graph, scales, starting_conductance(operators, &
-            step, step%start%kind, previous, next), data, next, record, pass, error)
+         next%omega = starting_conductance(operators, step, step%start%kind, previous, next)
+         call iterate(operators, step%fixed_point, data, workspace, next, record, error)
       end if
       if (allocated(error) .or. .not. step%fixed_point%finds_gain) return
-      call judge(operators, data, graph, next, pass, record)
+      call judge(operators, data, next, workspace, record)
    end subroutine solve_coupled
 
    !> omega*^0 of a start.
@@ -93,48 +89,47 @@ contains
    !> The increment from the last ones, and from both ends of the conductance: do all lead to one
    !> solution? That of the first start that leads to any is the increment's. It is found last, for
    !> the factors to be its own.
-   subroutine solve_from_both(operators, step, graph, scales, previous, data, next, record, pass, &
-      error)
-      type(interface_operators_type), intent(inout) :: operators
+   subroutine solve_from_both(operators, step, previous, data, workspace, next, record, error)
+      type(interface_operators_type), intent(in) :: operators
       type(step_type), intent(in) :: step
-      type(conductance_graph_type), intent(in) :: graph(:)
-      type(contact_scales_type), intent(in) :: scales
       type(solution_state_type), intent(in) :: previous
-      type(increment_data_type), intent(inout) :: data
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record
-      type(pass_type), intent(out) :: pass
       type(error_type), allocatable, intent(out) :: error
       integer, parameter :: kinds(3) = [start_open, start_closed, start_previous]
       character(*), parameter :: names(3) = [character(8) :: 'OPEN', 'CLOSED', 'PREVIOUS']
       type(solution_state_type) :: guess
+      type(increment_workspace_type) :: fresh
       type(increment_record_type) :: other_record
-      real(dp) :: omega(size(graph), 3)
+      real(dp) :: omega(size(next%omega), 3)
       logical :: found(3)
       integer :: i
 
       guess = next
+      fresh = workspace
       do i = 1, 3
-         next = guess
-         other_record = increment_record_type(increment=record%increment)
-         call iterate(operators, step%fixed_point, graph, scales, starting_conductance(operators, &
-            step, kinds(i), previous, next), data, next, other_record, pass, error)
+         call try_start(i)
          found(i) = .not. allocated(error)
          omega(:, i) = next%omega
          if (allocated(error)) call append(record%notes, 'the start from '//trim(names(i))// &
             ' finds no solution: '//error%message)
       end do
-      if (.not. found(3) .and. any(found)) then
-         i = findloc(found, .true., dim=1)
-         next = guess
-         other_record = increment_record_type(increment=record%increment)
-         call iterate(operators, step%fixed_point, graph, scales, starting_conductance(operators, &
-            step, kinds(i), previous, next), data, next, other_record, pass, error)
-      end if
+      if (.not. found(3) .and. any(found)) call try_start(findloc(found, .true., dim=1))
       call move_alloc(other_record%iterations, record%iterations)
       record%residual_floor = other_record%residual_floor
-      record%work = other_record%work
       call compare(omega(:, 1), omega(:, 2), omega(:, 3), found, record)
+   contains
+      subroutine try_start(i)
+         integer, intent(in) :: i
+
+         next = guess
+         next%omega = starting_conductance(operators, step, kinds(i), previous, next)
+         workspace = fresh
+         other_record = increment_record_type(increment=record%increment)
+         call iterate(operators, step%fixed_point, data, workspace, next, other_record, error)
+      end subroutine try_start
    end subroutine solve_from_both
 
    !> Says whether all starts lead to one solution.
@@ -164,27 +159,29 @@ contains
    end function differ
 
    !> The gain of the coupling, and what follows from it.
-   subroutine judge(operators, data, graph, next, pass, record)
+   subroutine judge(operators, data, next, workspace, record)
       type(interface_operators_type), intent(in) :: operators
       type(increment_data_type), intent(in) :: data
-      type(conductance_graph_type), intent(in) :: graph(:)
       type(solution_state_type), intent(in) :: next
-      type(pass_type), intent(inout) :: pass
+      type(increment_workspace_type), intent(in) :: workspace
       type(increment_record_type), intent(inout) :: record
+      real(dp), allocatable :: slope(:, :), body(:)
       type(coupling_gain_type) :: gain
       character(:), allocatable :: at
       logical :: found
 
       record%coupling_gain = 0.0_dp
       record%coupling_gain_max = 0.0_dp
-      if (.not. (any(abs(graph%slope(graph%place_of_opening(pass%opening))) > 0.0_dp) .or. &
-         any(next%resting))) return
+      associate (graph => data%graph, opening => workspace%pass%opening)
+         if (.not. (any(abs(graph%slope(graph%place_of_opening(opening))) > 0.0_dp) .or. &
+            any(next%resting))) return
+      end associate
       record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       record%coupling_gain_max = record%coupling_gain
       at = 'increment '//to_text(record%increment)//': '
-      call opening_slope(operators, data, graph, next%jump, next%contact, pass%slope, pass%body)
-      if (.not. allocated(pass%slope)) return
-      call find_gain(graph, pass%opening, pass%slope, next%resting, gain, found)
+      call opening_slope(operators, data, workspace, next%jump, next%contact, slope, body)
+      if (.not. allocated(slope)) return
+      call find_gain(data%graph, workspace%pass%opening, slope, next%resting, gain, found)
       if (.not. found) return
       record%coupling_gain = gain%largest
       record%coupling_gain_max = gain%largest_real

@@ -59,7 +59,7 @@ contains
    end subroutine prepare
 
    !> Stress, averaged at the points, and its estimated error.
-   subroutine recover_stress(self, model, displacement, temperature, stress, estimate)
+   pure subroutine recover_stress(self, model, displacement, temperature, stress, estimate)
       class(recovery_type), intent(in) :: self             !! the recovery
       type(model_type), intent(in) :: model                !! the model
       real(dp), intent(in) :: displacement(:, :)           !! (2, nodes) [length]
@@ -86,7 +86,7 @@ contains
    end subroutine recover_stress
 
    !> Heat flux, averaged at the points, and its estimated error.
-   subroutine recover_heat_flux(self, model, temperature, flux, estimate)
+   pure subroutine recover_heat_flux(self, model, temperature, flux, estimate)
       class(recovery_type), intent(in) :: self             !! the recovery
       type(model_type), intent(in) :: model                !! the model
       real(dp), intent(in) :: temperature(:)               !! (nodes) [temperature]

@@ -77,7 +77,7 @@ contains
       if (allocated(record%stress)) then
          record%stress(:, first:last) = element_stress(model%mesh, model%sections, &
             model%materials, model%orientations, element, places(:, :n), &
-            reshape(state%displacement, shape(state%reaction)), &
+            reshape(state%displacement, [2, size(state%temperature)]), &
             state%stress_temperature - model%initial_temperature)
          if (local_axes) then
             do g = 1, n

@@ -11,22 +11,25 @@ module field_problem
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    implicit none
    private
-   public :: field_problem_type
+   public :: field_load_type, field_problem_type
 
-   !> Matrix of the bodies, numbering of the unknowns, factors, and the load of the present
-   !> increment.
+   !> What acts on a field at the end of an increment.
+   type :: field_load_type
+      real(dp), allocatable :: given(:)                       !! (dofs) prescribed values
+      real(dp), allocatable :: rhs(:, :)                      !! (equations, 1) right-hand side
+      real(dp), allocatable :: condensed(:) !! (tail) right-hand side condensed on the tail
+   end type field_load_type
+
+   !> Matrix of the bodies, numbering of the unknowns, factors.
    type :: field_problem_type
       type(sparse_matrix_type) :: matrix !! (dofs, dofs) bodies alone, both triangles
       !> (dofs, dofs) what is added to it, such as films; without values where there is nothing.
       type(sparse_matrix_type) :: added
       type(equation_map_type) :: map                          !! numbering of the unknowns
       class(linear_solver_type), allocatable :: solver        !! factors
-      real(dp), allocatable :: given(:)                       !! (dofs) prescribed values
-      real(dp), allocatable :: rhs(:, :)                      !! (equations, 1) right-hand side
-      real(dp), allocatable :: condensed(:) !! (tail) right-hand side condensed on the tail
    contains
       procedure :: reduce
-      procedure :: set_load
+      procedure :: load_of
       procedure :: condense_load
       procedure :: recover
       procedure :: unit_responses
@@ -60,52 +63,53 @@ contains
          call self%solver%factor(self%map%transform(self%matrix), self%map%tail, error)
       end if
       if (allocated(error)) return
-      call check_finite(reshape(self%solver%schur_complement(), [self%map%tail**2]), &
-         'factors of the bodies', status_deck, error)
+      call check_finite([self%solver%schur], 'factors of the bodies', status_deck, error)
    end subroutine reduce
 
-   !> Takes the load of an increment.
-   subroutine set_load(self, forces, given)
-      class(field_problem_type), intent(inout) :: self    !! the problem
+   !> The load of an increment.
+   pure function load_of(self, forces, given) result(load)
+      class(field_problem_type), intent(in) :: self       !! the problem
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
       real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
+      type(field_load_type) :: load                       !! not condensed
       real(dp) :: zero(self%map%equations), supported(size(given))
 
       zero = 0.0_dp
-      self%given = given
+      load%given = given
       supported = self%map%expand(zero, given)
-      if (allocated(self%rhs)) deallocate (self%rhs)
-      allocate (self%rhs(self%map%equations, 1))
-      self%rhs(:, 1) = self%map%restrict(forces - self%matrix%multiply(supported)) + &
+      allocate (load%rhs(self%map%equations, 1))
+      load%rhs(:, 1) = self%map%restrict(forces - self%matrix%multiply(supported)) + &
          self%map%support_load(given)
-      if (allocated(self%added%value)) self%rhs(:, 1) = self%rhs(:, 1) - &
+      if (allocated(self%added%value)) load%rhs(:, 1) = load%rhs(:, 1) - &
          self%map%restrict(self%added%multiply(supported))
-   end subroutine set_load
+   end function load_of
 
-   !> Condenses the load of the increment on the tail.
-   subroutine condense_load(self)
-      class(field_problem_type), intent(inout) :: self    !! the problem, its load set
+   !> Condenses a load on the tail.
+   subroutine condense_load(self, load)
+      class(field_problem_type), intent(in) :: self       !! the problem, reduced
+      type(field_load_type), intent(inout) :: load        !! receives what is condensed
       real(dp) :: condensed(self%map%tail, 1)
 
-      call self%solver%condense(self%rhs, condensed)
-      self%condensed = condensed(:, 1)
+      call self%solver%condense(load%rhs, condensed)
+      load%condensed = condensed(:, 1)
    end subroutine condense_load
 
-   !> Values of all degrees of freedom under the load of the increment.
-   function recover(self, on_tail) result(values)
-      class(field_problem_type), intent(inout) :: self    !! the problem
+   !> Values of all degrees of freedom under a load.
+   function recover(self, load, on_tail) result(values)
+      class(field_problem_type), intent(in) :: self       !! the problem, reduced
+      type(field_load_type), intent(in) :: load           !! its load
       real(dp), intent(in) :: on_tail(:)                  !! (tail) solution on the tail
       real(dp) :: values(self%matrix%row_count)           !! (dofs)
       real(dp) :: solution(self%map%equations, 1)
 
-      call self%solver%recover(self%rhs, reshape(on_tail, [size(on_tail), 1]), solution)
-      values = self%map%expand(solution(:, 1), self%given)
+      call self%solver%recover(load%rhs, reshape(on_tail, [size(on_tail), 1]), solution)
+      values = self%map%expand(solution(:, 1), load%given)
    end function recover
 
    !> Values of all degrees of freedom for unit values of some tail unknowns, without load and with
    !> zero prescribed values.
    subroutine unit_responses(self, first, values)
-      class(field_problem_type), intent(inout) :: self    !! the problem
+      class(field_problem_type), intent(in) :: self       !! the problem
       integer, intent(in) :: first                        !! first of the tail unknowns
       real(dp), intent(out) :: values(:, :)               !! (dofs, number of tail unknowns)
       real(dp), allocatable :: zero(:, :), unit(:, :), solution(:, :)
@@ -127,7 +131,7 @@ contains
 
    !> Nodal forces condensed on the tail.
    subroutine condense_forces(self, forces, condensed)
-      class(field_problem_type), intent(inout) :: self    !! the problem
+      class(field_problem_type), intent(in) :: self       !! the problem
       real(dp), intent(in) :: forces(:, :)                !! (dofs, columns)
       real(dp), intent(out) :: condensed(:, :)            !! (tail, columns)
       real(dp) :: rhs(self%map%equations, size(forces, 2))

@@ -23,7 +23,7 @@ module heat_balance
 contains
 
    !> Heat that enters by loads and prescribed temperatures, and both balances of heat.
-   subroutine balance_heat(operators, model, loads, scheme, carrying, previous, next, record)
+   pure subroutine balance_heat(operators, model, loads, scheme, carrying, previous, next, record)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
@@ -69,13 +69,10 @@ contains
    !> long as it stays so.
    pure subroutine warn_of_heat(scheme, next, record)
       type(thermal_scheme_type), intent(in) :: scheme         !! coefficients of (3.4)
-      type(solution_state_type), intent(inout) :: next        !! keeps whether it is
+      type(solution_state_type), intent(in) :: next           !! whether it was
       type(increment_record_type), intent(inout) :: record    !! receives the warning
-      logical :: was_out
 
-      was_out = next%is_out_of_balance
-      next%is_out_of_balance = record%heat_imbalance_pointwise > sound_imbalance
-      if (was_out .or. .not. next%is_out_of_balance) return
+      if (next%is_out_of_balance .or. record%heat_imbalance_pointwise <= sound_imbalance) return
       call append(record%warnings, 'increment '//to_text(record%increment)// &
          ': at its end heat is out of balance by '// &
          to_text(100.0_dp*record%heat_imbalance_pointwise)//' % of the largest rate '// &

@@ -1,5 +1,6 @@
 !> What a solved increment must satisfy before it is accepted.
 module increment_checks
+   use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use interface_operators, only: interface_operators_type
@@ -108,9 +109,10 @@ contains
 
    !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
    !> and nothing holds, contact states of which friction allows several.
-   subroutine warn_of_choices(model, operators, loads, next, record, undecided)
+   subroutine warn_of_choices(model, operators, contact, loads, next, record, undecided)
       type(model_type), intent(in) :: model                     !! the model
       type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      type(contact_workspace_type), intent(in) :: contact       !! of the solution
       type(loads_type), intent(in) :: loads                     !! supports of the increment
       type(solution_state_type), intent(in) :: next             !! state at its end
       type(increment_record_type), intent(inout) :: record      !! receives the warning
@@ -118,9 +120,9 @@ contains
       character(:), allocatable :: free, words
 
       words = ''
-      if (operators%contact%several) words = &
+      if (contact%several) words = &
          'with so much friction other contact states satisfy all conditions, too'
-      if (size(operators%contact%loose, 2) > 0 .or. any(next%idle)) then
+      if (size(contact%loose, 2) > 0 .or. any(next%idle)) then
          free = bodies_held_by_no_pair(model, operators%pairs, loads%displacement%active, &
             merge(status_open, next%contact%status, next%idle .or. next%resting))
          if (len(free) > 0) words = &

@@ -1,17 +1,17 @@
 !> The fixed-point iteration omega = U(omega) of an increment, section 4, from one start or another.
 module increment_iteration
    use accelerators, only: make_accelerator
-   use conductance_graph, only: conductance_graph_type
-   use contact_operator, only: contact_operator_pass, increment_data_type, residual_floor
+   use contact_operator, only: contact_operator_pass, residual_floor
    use contact_states, only: closing_law_type, contact_state_type
    use controls, only: fixed_point_type, method_newton
    use errors, only: error_type, set_error, status_no_convergence
-   use fixed_point, only: accelerator_type, pass_type
+   use fixed_point, only: accelerator_type
+   use increment_data, only: increment_data_type, increment_workspace_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use opening_slopes, only: opening_slope, openings
    use records, only: increment_record_type, iteration_record_type, status_open
-   use resting_pairs, only: contact_scales_type, find_residual, settle
+   use resting_pairs, only: find_residual, settle
    use solution_state, only: solution_state_type
    use text, only: append, to_text
    implicit none
@@ -25,49 +25,43 @@ module increment_iteration
 
 contains
 
-   !> Conductances, jumps and contact state of an increment, from a start. Where another method
-   !> fails, Newton's solves the increment if laws jump, since the others know no pairs at rest;
-   !> elsewhere it only tells what the failure means.
+   !> Conductances, jumps and contact state of an increment. Where another method fails, Newton's
+   !> solves the increment if laws jump, since the others know no pairs at rest; elsewhere it only
+   !> tells what the failure means.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
-   subroutine iterate(operators, controls, graph, scales, start, data, next, &
-      record, pass, error)
-      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+   subroutine iterate(operators, controls, data, workspace, next, record, error)
+      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(fixed_point_type), intent(in) :: controls             !! *FIXED POINT
-      type(conductance_graph_type), intent(in) :: graph(:)       !! (m) graphs of the conductance
-      type(contact_scales_type), intent(in) :: scales            !! largest values
-      real(dp), intent(in) :: start(:)                           !! (m) omega*^0
-      type(increment_data_type), intent(inout) :: data           !! the increment
-      type(solution_state_type), intent(inout) :: next           !! guess in, solution out
-      type(increment_record_type), intent(inout) :: record       !! receives passes and work
-      type(pass_type), intent(out) :: pass                       !! the last pass
+      type(increment_data_type), intent(in) :: data              !! the increment
+      type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
+      type(solution_state_type), intent(inout) :: next           !! omega*^0 and guess in
+      type(increment_record_type), intent(inout) :: record       !! receives passes
       type(error_type), allocatable, intent(out) :: error        !! see above
-      type(contact_state_type) :: guess
+      type(solution_state_type) :: start
 
-      guess = next%contact
-      pass%omega = start
+      start = next
       allocate (record%iterations(0))
-      call use_method(operators, controls, graph, scales, data, next, record, pass, error)
+      call use_method(operators, controls, data, workspace, next, record, error)
       if (allocated(error) .and. size(record%iterations) == 0) then
          ! Not even the contact zones of the start were found: those of the last increment may be.
-         next%contact = guess
-         pass%omega = data%omega_old
-         call use_method(operators, controls, graph, scales, data, next, record, pass, error)
+         next%contact = start%contact
+         next%omega = data%omega_old
+         call use_method(operators, controls, data, workspace, next, record, error)
       end if
       if (.not. allocated(error)) return
       if (controls%method == method_newton) then
          call name_runaway(operators, data, next%jump, record, error)
-      else if (any(graph%width > 0.0_dp)) then
+      else if (any(data%graph%width > 0.0_dp)) then
          deallocate (error)
          call append(record%notes, 'a pair whose conductance jumps comes to no state by the '// &
             'method of the deck; the increment is handed to NEWTON')
-         next%contact = guess
-         pass%omega = start
-         call use_method(operators, by_newton(controls), graph, scales, data, next, record, pass, &
-            error)
+         next = start
+         call use_method(operators, by_newton(controls), data, workspace, next, record, error)
          if (allocated(error)) call name_runaway(operators, data, next%jump, record, error)
-      else if (.not. operators%contact%driven) then
-         call explain_failure(operators, by_newton(controls), graph, scales, start, data, guess, &
-            next, record, error)
+      else if (runs_away(data, next%jump)) then
+         call name_runaway(operators, data, next%jump, record, error)
+      else if (.not. workspace%contact%driven) then
+         call explain_failure(operators, by_newton(controls), data, start, workspace, record, error)
       end if
    end subroutine iterate
 
@@ -82,35 +76,24 @@ contains
 
    !> Says of an increment in which another method failed what Newton's finds in it: a solution, or
    !> that the heat runs away.
-   subroutine explain_failure(operators, controls, graph, scales, start, data, guess, next, record, &
-      error)
-      type(interface_operators_type), intent(inout) :: operators
+   subroutine explain_failure(operators, controls, data, start, workspace, record, error)
+      type(interface_operators_type), intent(in) :: operators
       type(fixed_point_type), intent(in) :: controls
-      type(conductance_graph_type), intent(in) :: graph(:)
-      type(contact_scales_type), intent(in) :: scales
-      real(dp), intent(in) :: start(:)
-      type(increment_data_type), intent(inout) :: data
-      type(contact_state_type), intent(in) :: guess
-      type(solution_state_type), intent(in) :: next
+      type(increment_data_type), intent(in) :: data
+      type(solution_state_type), intent(in) :: start
+      type(increment_workspace_type), intent(in) :: workspace
       type(increment_record_type), intent(inout) :: record
-      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), intent(inout) :: error
+      type(increment_workspace_type) :: other_workspace
       type(solution_state_type) :: other
       type(increment_record_type) :: other_record
-      type(pass_type) :: pass
       type(error_type), allocatable :: other_error
 
-      if (runs_away(data, next%jump)) then
-         call name_runaway(operators, data, next%jump, record, error)
-         return
-      end if
-      other = next
-      other%contact = guess
+      other = start
+      other_workspace = workspace
       other_record%increment = record%increment
       allocate (other_record%iterations(0))
-      pass%omega = start
-      call use_method(operators, controls, graph, scales, data, other, other_record, pass, &
-         other_error)
-      operators%contact%driven = .false.
+      call use_method(operators, controls, data, other_workspace, other, other_record, other_error)
       if (allocated(other_error)) then
          call name_runaway(operators, data, other%jump, record, error)
       else
@@ -148,21 +131,18 @@ contains
    end subroutine name_runaway
 
    !> The iteration by one method.
-   subroutine use_method(operators, controls, graph, scales, data, next, record, pass, error)
-      type(interface_operators_type), intent(inout) :: operators
+   subroutine use_method(operators, controls, data, workspace, next, record, error)
+      type(interface_operators_type), intent(in) :: operators
       type(fixed_point_type), intent(in) :: controls
-      type(conductance_graph_type), intent(in) :: graph(:)
-      type(contact_scales_type), intent(in) :: scales
-      type(increment_data_type), intent(inout) :: data
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record
-      type(pass_type), intent(inout) :: pass
       type(error_type), allocatable, intent(out) :: error
       class(accelerator_type), allocatable :: accelerator
       type(iteration_record_type) :: passes((1 + path_share)*controls%max_iterations)
       type(contact_state_type) :: good
-      type(closing_law_type), allocatable :: good_closing(:)
-      integer :: turns(size(graph)), away, before, i
+      integer :: turns(size(data%graph)), away, before, i
       real(dp) :: wanted
       logical :: possible
 
@@ -170,49 +150,49 @@ contains
       turns = 0
       away = 0
       wanted = controls%tolerance
-      pass%image = pass%omega
-      call operators%contact%drop_laws()
-      call make_accelerator(controls, graph, accelerator)
-      do i = 1, size(passes)
-         if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
-         good = next%contact
-         good_closing = operators%contact%closing
-         pass%iteration = i
-         call contact_operator_pass(operators, data, pass%omega, next%jump, next%contact, &
-            pass%image, record%work, error)
-         passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
-            residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
-            g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
-            pairs_changed=count(next%contact%status /= good%status))
-         if (allocated(error)) then
-            call accelerator%retreat(pass%omega, possible)
-            if (.not. possible) exit
-            deallocate (error)
-            next%contact = good
-            operators%contact%closing = good_closing
-            call operators%contact%forget_factors()
-            cycle
-         end if
-         pass%opening = openings(operators, graph, next%contact)
-         call find_residual(graph, operators%pairs%weight, pass, scales, passes(i)%residual, &
-            next%resting)
-         record%residual_floor = residual_floor(operators, data, next%contact, pass%image)
-         wanted = max(controls%tolerance, record%residual_floor)
-         next%omega = pass%omega
-         if (passes(i)%residual <= wanted) exit
-         away = merge(away + 1, 0, runs_away(data, next%jump))
-         if (away >= merge(1, most_away, accelerator%follows_path)) exit
-         where ((next%contact%status == status_open) .neqv. (good%status == status_open)) &
-            turns = turns + 1
-         if (controls%method /= method_newton .and. any(turns > most_turns .and. &
-            graph%width > 0.0_dp)) exit
-         call find_slope(operators, data, graph, next, accelerator, pass)
-         call accelerator%next(pass, next%omega)
+      workspace%contact%closing = closing_law_type()
+      call make_accelerator(controls, data%graph, accelerator)
+      associate (pass => workspace%pass)
          pass%omega = next%omega
-      end do
-      call close_passes(record, passes, i, wanted, error)
-      if (allocated(error)) return
-      where (operators%pairs%weight <= 0.0_dp) next%omega = pass%image
+         pass%image = pass%omega
+         do i = 1, size(passes)
+            if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
+            good = next%contact
+            pass%iteration = i
+            call contact_operator_pass(operators, data, pass%omega, workspace, next%jump, &
+               next%contact, pass%image, error)
+            passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
+               residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
+               g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
+               pairs_changed=count(next%contact%status /= good%status))
+            if (allocated(error)) then
+               call accelerator%retreat(pass%omega, possible)
+               if (.not. possible) exit
+               deallocate (error)
+               next%contact = good
+               cycle
+            end if
+            pass%opening = openings(operators, data%graph, next%contact)
+            call find_residual(data%graph, data%scales, operators%pairs%weight, pass, &
+               passes(i)%residual, next%resting)
+            record%residual_floor = residual_floor(operators, data, next%contact, pass%image)
+            wanted = max(controls%tolerance, record%residual_floor)
+            next%omega = pass%omega
+            if (passes(i)%residual <= wanted) exit
+            away = merge(away + 1, 0, runs_away(data, next%jump))
+            if (away >= merge(1, most_away, accelerator%follows_path)) exit
+            where ((next%contact%status == status_open) .neqv. (good%status == status_open)) &
+               turns = turns + 1
+            if (controls%method /= method_newton .and. any(turns > most_turns .and. &
+               data%graph%width > 0.0_dp)) exit
+            call find_slope(operators, data, next, accelerator, workspace)
+            call accelerator%next(pass, next%omega)
+            pass%omega = next%omega
+         end do
+         call close_passes(record, passes, i, wanted, error)
+         if (allocated(error)) return
+         where (operators%pairs%weight <= 0.0_dp) next%omega = pass%image
+      end associate
       call settle(next%resting, next%contact)
    end subroutine use_method
 
@@ -236,17 +216,18 @@ contains
    end subroutine close_passes
 
    !> The derivative of a pass, where the accelerator asks for it.
-   subroutine find_slope(operators, data, graph, next, accelerator, pass)
+   subroutine find_slope(operators, data, next, accelerator, workspace)
       type(interface_operators_type), intent(in) :: operators
       type(increment_data_type), intent(in) :: data
-      type(conductance_graph_type), intent(in) :: graph(:)
       type(solution_state_type), intent(in) :: next
       class(accelerator_type), intent(in) :: accelerator
-      type(pass_type), intent(inout) :: pass
+      type(increment_workspace_type), intent(inout) :: workspace
 
-      if (allocated(pass%slope)) deallocate (pass%slope)
-      if (accelerator%asks_slope(pass)) call opening_slope(operators, data, graph, next%jump, &
-         next%contact, pass%slope, pass%body)
+      associate (pass => workspace%pass)
+         if (allocated(pass%slope)) deallocate (pass%slope)
+         if (accelerator%asks_slope(pass)) call opening_slope(operators, data, workspace, &
+            next%jump, next%contact, pass%slope, pass%body)
+      end associate
    end subroutine find_slope
 
 end module increment_iteration

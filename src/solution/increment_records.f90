@@ -1,11 +1,10 @@
-!> The record of an accepted increment, made from its state.
+!> The record of a solved increment, made from its state, which it leaves as it is.
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use balances, only: contact_violation, force_residual, imbalance
    use conductance_laws, only: conductance
    use contact_operator, only: kept_contact, thermal_forces
    use contact_states, only: contact_state_type
-   use contact_system, only: contact_system_type
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery
    use element_kinds, only: axisymmetric
@@ -16,17 +15,16 @@ module increment_records
    use loads, only: loads_type
    use mesh, only: extent_of
    use model, only: model_type
-   use pair_rows, only: tangential_position
    use pair_tractions, only: in_contact, pressures, shears
-   use records, only: contact_record_type, error_record_type, increment_record_type, status_open, &
-      status_slip, status_stick
+   use records, only: contact_record_type, increment_record_type, status_open, status_slip, &
+      status_stick
    use solution_state, only: carrying_conductance, solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use text, only: append, to_text
    use zone_edges, only: contact_edges, stick_edges
    implicit none
    private
-   public :: make_record
+   public :: complete_record
 
    !> Part of K u or of the gaps below which a force or a displacement is no scale to measure by:
    !> where nothing is loaded only rounding is left of them.
@@ -36,25 +34,23 @@ module increment_records
 
 contains
 
-   !> Completes the record of an increment, whose place in the steps it has, with contact state,
-   !> fields and balances, and settles the slip memory. What the step does not solve stands as the
-   !> last step that did left it; stress and flux with their errors are made where needed.
-   subroutine make_record(operators, model, recovery, loads, step, previous, next, record)
+   !> Completes the record of an increment, which has its place in the steps and its passes, with
+   !> contact state, fields and balances. What the step does not solve stands as the last step that
+   !> did left it; stress and flux with their errors are made where needed.
+   pure subroutine complete_record(operators, model, recovery, loads, step, previous, next, record)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
       type(recovery_type), intent(in) :: recovery             !! stress and flux with their errors
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
       type(step_type), intent(in) :: step                     !! the step
       type(solution_state_type), intent(in) :: previous       !! state at the start
-      type(solution_state_type), intent(inout) :: next        !! state at the end
+      type(solution_state_type), intent(in) :: next           !! state at the end
       type(increment_record_type), intent(inout) :: record    !! the record
       real(dp) :: carrying(size(next%omega))
       logical :: recovers
       integer :: i
 
       recovers = needs_recovery(record, model)
-      if (solves_mechanics(step%analysis)) call settle_slip(operators, previous, next)
-      next%smallest_gap = min(previous%smallest_gap, next%contact%gap)
       carrying = carrying_conductance(next, step%scheme)
       allocate (record%contacts(size(operators%interfaces)))
       do i = 1, size(operators%interfaces)
@@ -63,19 +59,21 @@ contains
       end do
       record%fields%temperature = next%temperature
       if (solves_mechanics(step%analysis)) then
-         call recover_stress(model, recovery, recovers, next)
+         if (recovers) call recovery%recover_stress(model, reshape(next%displacement, [2, &
+            size(next%temperature)]), next%temperature - model%initial_temperature, &
+            record%fields%stress, record%stress_error)
          call balance_forces(operators, model, loads, next, record)
       else
          record%force_imbalance = ieee_value(1.0_dp, ieee_quiet_nan)
          record%contact_violation = record%force_imbalance
+         if (allocated(next%stress)) record%fields%stress = next%stress
+         record%stress_error = next%stress_error
+         if (next%has_mechanics) record%fields%reaction = next%reaction
       end if
       if (next%has_mechanics) then
          record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
-         if (allocated(next%stress)) record%fields%stress = next%stress
-         record%stress_error = next%stress_error
-         record%fields%reaction = next%reaction
-         record%fields%external_force = next%reaction + reshape(next%force_load, &
-            shape(next%reaction))
+         record%fields%external_force = record%fields%reaction + reshape(next%force_load, &
+            shape(record%fields%reaction))
       end if
       call warn_of_floor(step, record)
       if (solves_heat(step%analysis)) then
@@ -93,7 +91,7 @@ contains
       if (allocated(step%element_prints)) then
          record%element_points = points_of_elements(model, step, next, record)
       end if
-   end subroutine make_record
+   end subroutine complete_record
 
    !> Warns where the last places of the displacements change omega by more than the tolerance: the
    !> fixed point was then met no better than this.
@@ -108,52 +106,6 @@ contains
          ' only, not to TOL='//to_text(step%fixed_point%tolerance)//': it takes its gaps from '// &
          'displacements that are far larger, whose last places change it')
    end subroutine warn_of_floor
-
-   !> Slip counts from the instant of closing. Tangential positions that the contact system does not
-   !> carry, of pairs that are frictionless or held, are taken from the recovered displacements, and
-   !> such a pair closes where it is at that instant on the straight line between its ends.
-   pure subroutine settle_slip(operators, previous, next)
-      type(interface_operators_type), intent(in) :: operators
-      type(solution_state_type), intent(in) :: previous
-      type(solution_state_type), intent(inout) :: next
-      real(dp) :: before
-      integer :: k
-
-      associate (pairs => operators%pairs, contact => next%contact)
-         do k = 1, size(pairs%slave)
-            if (operators%contact%tangent(k) == 0) then
-               before = tangential_position(pairs, k, previous%displacement)
-               contact%tangential(k) = tangential_position(pairs, k, next%displacement)
-               contact%reference(k) = before + &
-                  closing_fraction(operators%contact, previous%contact%gap(k), &
-                  contact%force(k), operators%contact%normal(k))* &
-                  (contact%tangential(k) - before)
-            end if
-            if (contact%status(k) == status_open .or. next%idle(k)) then
-               next%closing(k) = contact%tangential(k)
-            else if (previous%contact%status(k) == status_open) then
-               next%closing(k) = contact%reference(k)
-            end if
-         end do
-      end associate
-   end subroutine settle_slip
-
-   !> Instant at which a pair without a tangential unknown closed, as a fraction of the increment:
-   !> relieved of its force alone it would overlap by force/stiffness. One that carries no force, as
-   !> at rest, closes at the end.
-   pure function closing_fraction(system, gap, force, place) result(fraction)
-      type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: gap, force
-      integer, intent(in) :: place
-      real(dp) :: fraction
-      real(dp) :: stiffness(1, 1)
-
-      fraction = merge(1.0_dp, 0.0_dp, gap > 0.0_dp)
-      if (gap <= 0.0_dp .or. force <= 0.0_dp) return
-      ! Zero where the pair alone holds a body, but for rounding: it then closes at once.
-      stiffness = max(system%stiffness([place]), 0.0_dp)
-      fraction = gap*stiffness(1, 1)/(gap*stiffness(1, 1) + force)
-   end function closing_fraction
 
    !> Contact state of one interface.
    pure function contact_record(operators, with_heat, i, next, carrying) result(record)
@@ -186,7 +138,7 @@ contains
          record%pressure = pressures(pairs, contact%force(first:last), closed)
          record%shear = shears(pairs, contact%shear_force(first:last), closed, &
             operators%pairs%friction(first), record%pressure)
-         record%slip = contact%tangential(first:last) - next%closing(first:last)
+         record%slip = contact%tangential(first:last) - contact%slip_origin(first:last)
          record%normal_force = sum(contact%force(first:last))
          record%shear_force = sum(contact%shear_force(first:last))
          call contact_edges(pairs%arc_length, record%status, record%pressure, record%gap, &
@@ -225,31 +177,12 @@ contains
          max(maxval(abs(temperature)), maxval(abs(model%initial_temperature))))
    end function least_displacement
 
-   !> Stress and its error where something asks for them; else none, for what the state had is of
-   !> an earlier increment.
-   subroutine recover_stress(model, recovery, recovers, next)
-      type(model_type), intent(in) :: model
-      type(recovery_type), intent(in) :: recovery
-      logical, intent(in) :: recovers
-      type(solution_state_type), intent(inout) :: next
-
-      next%stress_temperature = next%temperature
-      if (recovers) then
-         call recovery%recover_stress(model, reshape(next%displacement, [2, &
-            size(next%temperature)]), next%temperature - model%initial_temperature, next%stress, &
-            next%stress_error)
-      else
-         if (allocated(next%stress)) deallocate (next%stress)
-         next%stress_error = error_record_type()
-      end if
-   end subroutine recover_stress
-
    !> Reactions, force balance, and the contact conditions on the recovered displacements.
-   subroutine balance_forces(operators, model, loads, next, record)
+   pure subroutine balance_forces(operators, model, loads, next, record)
       type(interface_operators_type), intent(in) :: operators
       type(model_type), intent(in) :: model
       type(loads_type), intent(in) :: loads
-      type(solution_state_type), intent(inout) :: next
+      type(solution_state_type), intent(in) :: next
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
       real(dp) :: least, length, scale
@@ -273,7 +206,7 @@ contains
          record%contact_violation = contact_violation(next%displacement, &
             internal - next%force_load, held, operators%pairs, next%contact, &
             operators%contact%tangent > 0, length, scale)
-         next%reaction = reshape(merge(residual, 0.0_dp, held), [2, size(next%temperature)])
+         record%fields%reaction = reshape(merge(residual, 0.0_dp, held), [2, size(next%temperature)])
       end associate
    end subroutine balance_forces
 

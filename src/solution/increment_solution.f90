@@ -3,13 +3,17 @@ module increment_solution
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
    use conductance_laws, only: law_jumps
-   use contact_operator, only: contact_operator_pass, increment_data_type, kept_contact, &
-      law_conductance, temperature_jumps, thermal_forces
+   use contact_operator, only: contact_operator_pass, kept_contact, law_conductance, &
+      temperature_jumps, thermal_forces
    use contact_states, only: contact_state_type
+   use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, status_no_convergence
    use films, only: film_history
+   use field_problem, only: field_load_type
    use finite_values, only: check_finite
    use coupled_increment, only: solve_coupled
+   use friction_memory, only: remember_slip
+   use increment_data, only: increment_data_type, increment_workspace_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -32,12 +36,13 @@ contains
    !> belong to welded contacts. A field that the step does not solve stays.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds,
    !> loads that overflow.
-   subroutine solve_pairs(operators, loads, model, step, previous, next, record, error)
-      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+   subroutine solve_pairs(operators, loads, model, step, previous, workspace, next, record, error)
+      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
       type(model_type), intent(in) :: model                      !! the model
       type(step_type), intent(in) :: step                        !! the step
       type(solution_state_type), intent(in) :: previous          !! state at the start
+      type(increment_workspace_type), intent(out) :: workspace   !! of the solution
       !> guess and loads at the end in, solution out
       type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record       !! receives passes and work
@@ -53,57 +58,59 @@ contains
       record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       record%coupling_gain_max = record%coupling_gain
       if (solves_heat(step%analysis)) then
-         call load_heat(operators, loads, previous, data, next)
-         call check_finite([operators%thermal%condensed, next%temperature], &
+         call load_heat(operators, loads, previous, data, workspace, next)
+         call check_finite([workspace%heat%condensed, next%temperature], &
             'heat and temperatures', status_no_convergence, error)
          if (allocated(error)) return
          call warn_of_imbalance(operators, loads, data, previous, next, record)
          if (size(next%omega) > 0 .and. .not. operators%is_coupled) then
-            call conduct(operators, previous, data, next, record)
+            call conduct(operators, previous, data, workspace, next)
          end if
       end if
+      record%work = workspace%work
       if (.not. solves_mechanics(step%analysis)) return
       data%displacement_scale = maxval(abs(previous%displacement))
       next%contact%reference = previous%contact%tangential
-      call operators%contact%drop_laws()
       if (.not. solves_heat(step%analysis)) call give_temperatures(operators, loads, previous, next)
-      call load_mechanics(operators, loads, model, data, next)
-      call check_finite([operators%mechanical%rhs(:, 1), data%welded_load], 'forces', &
+      call load_mechanics(operators, loads, model, data, workspace, next)
+      call check_finite([workspace%force%rhs(:, 1), data%welded_load], 'forces', &
          status_no_convergence, error)
       if (allocated(error)) return
-      if (operators%is_coupled) then
-         if (is_explicit(step%scheme)) then
-            call pass_once(operators, previous, data, next, record, error)
-         else
-            call solve_coupled(operators, step, previous, data, next, record, error)
-         end if
+      if (.not. operators%is_coupled) then
+         call solve_mechanics(operators, step, data, workspace, next, record, error)
+      else if (is_explicit(step%scheme)) then
+         call pass_once(operators, previous, data, workspace, next, record, error)
       else
-         call solve_mechanics(operators, step, data, next, record, error)
+         call solve_coupled(operators, step, previous, data, workspace, next, record, error)
       end if
-      if (.not. allocated(error)) call settle_idle_pairs(operators, next)
+      record%work = workspace%work
+      if (.not. allocated(error)) call settle_idle_pairs(operators, workspace%contact%idle, next)
       next%has_mechanics = .true.
    end subroutine solve_pairs
 
    !> Idle pairs count as open without a gap; where their law jumps they rest. For the next
    !> increment they are closed still: the body stays where it touches.
-   pure subroutine settle_idle_pairs(operators, next)
+   pure subroutine settle_idle_pairs(operators, idle, next)
       type(interface_operators_type), intent(in) :: operators
+      logical, intent(in) :: idle(:)
       type(solution_state_type), intent(inout) :: next
 
-      next%idle = operators%contact%idle
+      next%idle = idle
       next%resting = next%resting .or. (next%idle .and. law_jumps(operators%pairs%law))
    end subroutine settle_idle_pairs
 
    !> Contact of an increment whose temperatures do not depend on it.
-   subroutine solve_mechanics(operators, step, data, next, record, error)
-      type(interface_operators_type), intent(inout) :: operators
+   subroutine solve_mechanics(operators, step, data, workspace, next, record, error)
+      type(interface_operators_type), intent(in) :: operators
       type(step_type), intent(in) :: step
       type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable, intent(out) :: error
 
-      call solve_increment(operators%contact, data%previous, data%welded_load, next%contact, error)
+      call solve_increment(operators%contact, data%previous, data%welded_load, workspace%contact, &
+         next%contact, error)
       if (allocated(error)) return
       next%omega = law_conductance(operators, next%contact)
       next%omega_before = next%omega
@@ -133,26 +140,27 @@ contains
    !> Jumps and temperatures of an increment whose mechanics they do not depend on, for want of it
    !> or because the conductance is constant: it is that of the contact state that stays, at both
    !> ends of the increment.
-   subroutine conduct(operators, previous, data, next, record)
-      type(interface_operators_type), intent(inout) :: operators
+   subroutine conduct(operators, previous, data, workspace, next)
+      type(interface_operators_type), intent(in) :: operators
       type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(inout) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
 
       next%omega = law_conductance(operators, kept_contact(previous%contact, &
          previous%has_mechanics))
       where (previous%resting) next%omega = previous%omega
       data%omega_old = next%omega
-      call temperature_jumps(operators, data, next%omega, next%jump, record%work)
+      call temperature_jumps(operators, data, next%omega, workspace, next%jump)
       next%omega_before = next%omega
       next%omega_start = next%omega
-      next%temperature = temperatures(operators, next%jump)
+      next%temperature = temperatures(operators, workspace%heat, next%jump)
    end subroutine conduct
 
    !> Temperatures of the whole bodies with these jumps.
-   function temperatures(operators, jump) result(values)
-      type(interface_operators_type), intent(inout) :: operators
+   function temperatures(operators, load, jump) result(values)
+      type(interface_operators_type), intent(in) :: operators
+      type(field_load_type), intent(in) :: load
       real(dp), intent(in) :: jump(:)
       real(dp) :: values(operators%thermal%matrix%row_count)
       real(dp) :: on_tail(operators%thermal%map%tail)
@@ -163,21 +171,22 @@ contains
       do k = 1, size(jump)
          if (operators%jump_place(k) > 0) on_tail(operators%jump_place(k)) = jump(k)
       end do
-      values = operators%thermal%recover(on_tail)
+      values = operators%thermal%recover(load, on_tail)
    end function temperatures
 
    !> An increment explicit in omega: temperatures by the conductance at its start, then mechanics,
    !> then the conductance at its end. Nothing is iterated.
-   subroutine pass_once(operators, previous, data, next, record, error)
-      type(interface_operators_type), intent(inout) :: operators
+   subroutine pass_once(operators, previous, data, workspace, next, record, error)
+      type(interface_operators_type), intent(in) :: operators
       type(solution_state_type), intent(in) :: previous
-      type(increment_data_type), intent(inout) :: data
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable, intent(out) :: error
 
-      call contact_operator_pass(operators, data, previous%omega, next%jump, next%contact, &
-         next%omega, record%work, error)
+      call contact_operator_pass(operators, data, previous%omega, workspace, next%jump, &
+         next%contact, next%omega, error)
       if (allocated(error)) return
       next%omega_before = previous%omega
       next%resting = .false.
@@ -195,11 +204,12 @@ contains
    end function only_pass
 
    !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.
-   subroutine load_heat(operators, loads, previous, data, next)
-      type(interface_operators_type), intent(inout) :: operators
+   subroutine load_heat(operators, loads, previous, data, workspace, next)
+      type(interface_operators_type), intent(in) :: operators
       type(loads_type), intent(in) :: loads
       type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(inout) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       real(dp), allocatable :: forces(:), zero(:)
 
@@ -207,37 +217,38 @@ contains
          forces = field_history(data%scheme, operators%thermal%matrix, previous%temperature) + &
             film_history(data%scheme, previous%film, next%film, previous%temperature) + &
             scheme_load(data%scheme, previous%heat_load, next%heat_load)
-         call operators%thermal%set_load(forces, given)
-         call operators%thermal%condense_load()
+         workspace%heat = operators%thermal%load_of(forces, given)
+         call operators%thermal%condense_load(workspace%heat)
          data%held_jump = given(operators%pairs%slave) - given(operators%pairs%master)
          where (operators%jump_place > 0) data%held_jump = 0.0_dp
-         allocate (data%diagonal(operators%thermal%map%tail), source=-1.0_dp)
          allocate (zero(operators%thermal%map%tail), source=0.0_dp)
-         next%temperature = operators%thermal%recover(zero)
+         next%temperature = operators%thermal%recover(workspace%heat, zero)
       end associate
    end subroutine load_heat
 
    !> Mechanical load of the increment, with the temperatures of load_heat or those that stay.
-   subroutine load_mechanics(operators, loads, model, data, next)
-      type(interface_operators_type), intent(inout) :: operators
+   subroutine load_mechanics(operators, loads, model, data, workspace, next)
+      type(interface_operators_type), intent(in) :: operators
       type(loads_type), intent(in) :: loads
       type(model_type), intent(in) :: model
       type(increment_data_type), intent(inout) :: data
-      type(solution_state_type), intent(inout) :: next
+      type(increment_workspace_type), intent(inout) :: workspace
+      type(solution_state_type), intent(in) :: next
       real(dp) :: thermal(2*size(next%temperature))
 
       thermal = thermal_forces(operators, next%temperature - model%initial_temperature)
-      operators%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
-      call operators%mechanical%set_load(next%force_load + thermal, loads%displacement%value)
-      call operators%mechanical%condense_load()
+      workspace%force = operators%mechanical%load_of(next%force_load + thermal, &
+         loads%displacement%value)
+      call operators%mechanical%condense_load(workspace%force)
       data%expansion = largest_expansion(model)
-      operators%contact%initial_gap = operators%pairs%initial_gap - &
-         held_approach(operators%pairs, loads%displacement%value)
+      workspace%contact = contact_workspace_type(operators%contact, operators%pairs%initial_gap - &
+         held_approach(operators%pairs, loads%displacement%value))
+      workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       associate (applied => next%force_load, rigid => operators%rigid)
-         operators%contact%least_drive = least_drive(operators%contact%rigid, &
+         workspace%contact%least_drive = least_drive(operators%contact%rigid, &
             matmul(abs(applied), abs(rigid)))
-         data%welded_load = balanced_load(operators%mechanical%condensed, &
-            operators%contact%rigid, operators%contact%motion, matmul(applied, rigid))
+         data%welded_load = balanced_load(workspace%force%condensed, operators%contact%rigid, &
+            operators%contact%motion, matmul(applied, rigid))
       end associate
    end subroutine load_mechanics
 
@@ -250,32 +261,37 @@ contains
          %expansion)), i=1, size(model%sections))])
    end function largest_expansion
 
-   !> Fields of the whole bodies, from the solution on the pairs.
-   subroutine recover_fields(operators, loads, model, step, next)
-      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
+   !> Fields of the whole bodies, from the solution on the pairs, and what pairs remember of it.
+   subroutine recover_fields(operators, loads, model, step, workspace, previous, next)
+      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
       type(model_type), intent(in) :: model                      !! the model
       type(step_type), intent(in) :: step                        !! the step
+      type(increment_workspace_type), intent(inout) :: workspace !! of the solution
+      type(solution_state_type), intent(in) :: previous          !! state at the start
       type(solution_state_type), intent(inout) :: next           !! as solve_pairs left it
       real(dp), allocatable :: on_tail(:)
       integer :: k
 
+      next%smallest_gap = min(previous%smallest_gap, next%contact%gap)
       if (.not. solves_mechanics(step%analysis)) return
       if (operators%is_coupled) then
-         next%temperature = temperatures(operators, next%jump)
-         call operators%mechanical%set_load(next%force_load + thermal_forces(operators, &
-            next%temperature - model%initial_temperature), loads%displacement%value)
+         next%temperature = temperatures(operators, workspace%heat, next%jump)
+         workspace%force = operators%mechanical%load_of(next%force_load + thermal_forces( &
+            operators, next%temperature - model%initial_temperature), loads%displacement%value)
       end if
       allocate (on_tail(operators%mechanical%map%tail))
-      on_tail(operators%contact%normal) = merge(next%contact%approach, &
-         operators%contact%initial_gap - next%contact%gap, next%contact%status == status_open)
-      do k = 1, size(next%contact%status)
-         if (operators%contact%tangent(k) > 0) then
-            on_tail(operators%contact%tangent(k)) = next%contact%tangential(k)
-         end if
-      end do
-      on_tail(operators%contact%link) = next%contact%link
-      next%displacement = operators%mechanical%recover(on_tail)
+      associate (contact => operators%contact)
+         on_tail(contact%normal) = merge(next%contact%approach, &
+            workspace%contact%initial_gap - next%contact%gap, next%contact%status == status_open)
+         do k = 1, size(next%contact%status)
+            if (contact%tangent(k) > 0) on_tail(contact%tangent(k)) = next%contact%tangential(k)
+         end do
+         on_tail(contact%link) = next%contact%link
+      end associate
+      next%displacement = operators%mechanical%recover(workspace%force, on_tail)
+      next%stress_temperature = next%temperature
+      call remember_slip(operators, workspace%contact, previous, next)
    end subroutine recover_fields
 
 end module increment_solution

@@ -4,10 +4,12 @@ module increments
    use discretisation_errors, only: recovery_type
    use errors, only: error_type, set_error, status_no_convergence
    use films, only: left_films
+   use heat_balance, only: sound_imbalance
    use increment_checks, only: check_balance, check_heat, check_values, check_violation, &
       warn_of_choices
    use increment_control, only: increment_control_type
-   use increment_records, only: make_record
+   use increment_data, only: increment_workspace_type
+   use increment_records, only: complete_record
    use increment_solution, only: recover_fields, solve_pairs
    use initial_state, only: make_initial_state
    use interface_operators, only: interface_operators_type
@@ -161,9 +163,26 @@ contains
          return
       end do
       call warn_of_pivot(self, record)
-      self%state = next
-      call self%control%accept(model, clock)
+      call accept_increment(self, model, clock, next, record)
    end subroutine advance
+
+   !> Makes the end of an increment the state of the run, the only place where that changes.
+   pure subroutine accept_increment(self, model, clock, next, record)
+      class(simulation_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(step_clock_type), intent(in) :: clock
+      type(solution_state_type), intent(in) :: next
+      type(increment_record_type), intent(in) :: record
+
+      self%state = next
+      self%state%stress_error = record%stress_error
+      if (allocated(self%state%stress)) deallocate (self%state%stress)
+      if (allocated(record%fields%stress)) self%state%stress = record%fields%stress
+      if (allocated(record%fields%reaction)) self%state%reaction = record%fields%reaction
+      if (solves_heat(model%steps(record%step)%analysis)) self%state%is_out_of_balance = &
+         record%heat_imbalance_pointwise > sound_imbalance
+      call self%control%accept(model, clock)
+   end subroutine accept_increment
 
    !> Says of a failed increment that one that goes further ends in thermal runaway.
    pure function runaway_ahead(self, record) result(words)
@@ -212,6 +231,7 @@ contains
       type(solution_state_type), intent(out) :: next
       type(increment_record_type), intent(out) :: record
       type(error_type), allocatable, intent(out) :: error
+      type(increment_workspace_type) :: workspace
       real(dp) :: since
 
       record%increment = self%control%increments + 1
@@ -238,22 +258,23 @@ contains
             call measure_factors(operators, self%sizes)
          end if
          since = wall_seconds()
-         call solve_pairs(operators, self%loads, model, step, self%state, next, record, error)
+         call solve_pairs(operators, self%loads, model, step, self%state, workspace, next, &
+            record, error)
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
             call check_heat(model, operators, self%loads, self%control%step, next, error)
          end if
          if (allocated(error)) then
-            if (operators%contact%driven) error%message = error%message// &
+            if (workspace%contact%driven) error%message = error%message// &
                bodies_held_by_no_pair(model, operators%pairs, self%loads%displacement%active, &
                next%contact%status)
             return
          end if
-         if (solves_mechanics(step%analysis)) call warn_of_choices(model, operators, self%loads, &
-            next, record, self%undecided)
+         if (solves_mechanics(step%analysis)) call warn_of_choices(model, operators, &
+            workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
-         call recover_fields(operators, self%loads, model, step, next)
-         call make_record(operators, model, self%recovery, self%loads, step, self%state, next, &
+         call recover_fields(operators, self%loads, model, step, workspace, self%state, next)
+         call complete_record(operators, model, self%recovery, self%loads, step, self%state, next, &
             record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_values(record, error)

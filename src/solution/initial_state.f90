@@ -23,8 +23,8 @@ contains
          contact => state%contact)
          allocate (contact%status(m), source=status_open)
          allocate (contact%direction(m), source=0)
-         allocate (contact%reference(m), contact%tangential(m), contact%force(m), &
-            contact%shear_force(m), state%closing(m), source=0.0_dp)
+         allocate (contact%reference(m), contact%tangential(m), contact%slip_origin(m), &
+            contact%force(m), contact%shear_force(m), source=0.0_dp)
          contact%gap = operators%pairs%initial_gap
          state%smallest_gap = contact%gap
          allocate (state%resting(m), state%idle(m), source=.false.)

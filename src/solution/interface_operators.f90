@@ -257,7 +257,7 @@ contains
 
    !> Condensed mechanical loads of fields of temperature.
    subroutine condense_thermal_load(self, temperature, condensed)
-      class(interface_operators_type), intent(inout) :: self !! the reduced bodies
+      class(interface_operators_type), intent(in) :: self !! the reduced bodies
       real(dp), intent(in) :: temperature(:, :) !! (nodes, columns) over the natural state
       real(dp), intent(out) :: condensed(:, :)               !! (mechanical tail, columns)
       real(dp) :: forces(self%thermal_load%row_count, size(temperature, 2))
@@ -271,17 +271,15 @@ contains
 
    !> Conductance of the bodies about each pair alone; 0 where both temperatures are prescribed. A
    !> pair that closes a ring, whose jump only the others hold, has that of the bodies at its nodes.
-   function conductors(self) result(conductance)
+   pure function conductors(self) result(conductance)
       class(interface_operators_type), intent(in) :: self  !! the reduced bodies
       real(dp) :: conductance(size(self%pairs%slave))      !! (m) [power/temperature]
-      real(dp), allocatable :: schur(:, :)
       integer :: k
 
       conductance = 0.0_dp
-      schur = self%thermal%solver%schur_complement()
       do k = 1, size(conductance)
          if (self%jump_place(k) == 0) cycle
-         conductance(k) = schur(self%jump_place(k), self%jump_place(k))
+         conductance(k) = self%thermal%solver%schur(self%jump_place(k), self%jump_place(k))
          if (.not. self%thermal%map%in_ring(k)) cycle
          conductance(k) = stiffness_alone(conductance(k), self%thermal%matrix, &
             [self%pairs%slave(k), self%pairs%master(k)], 1)

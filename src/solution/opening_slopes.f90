@@ -11,9 +11,10 @@
 module opening_slopes
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: law_jumps
-   use contact_operator, only: increment_data_type, law_pressure
+   use contact_operator, only: law_pressure
    use contact_states, only: contact_state_type
    use contact_tangent, only: contact_response
+   use increment_data, only: increment_data_type, increment_workspace_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use records, only: status_open
@@ -28,7 +29,7 @@ module opening_slopes
 contains
 
    !> Graphs of the conductance of all pairs.
-   function make_graph(operators, length) result(graph)
+   pure function make_graph(operators, length) result(graph)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       real(dp), intent(in) :: length                          !! of a rest, > 0 [length]
       type(conductance_graph_type), allocatable :: graph(:)   !! (m)
@@ -70,10 +71,10 @@ contains
    !> Derivative of the openings by the conductances, for the state that the last pass found with
    !> the given jumps; unallocated where it does not exist. Pairs of weight 0 carry no heat: their
    !> rows stay 0.
-   subroutine opening_slope(operators, data, graph, jump, state, slope, body)
-      type(interface_operators_type), intent(in) :: operators !! as the last pass left them
-      type(increment_data_type), intent(in) :: data           !! the increment
-      type(conductance_graph_type), intent(in) :: graph(:)    !! (m) graphs of the conductance
+   subroutine opening_slope(operators, data, workspace, jump, state, slope, body)
+      type(interface_operators_type), intent(in) :: operators  !! the reduced bodies
+      type(increment_data_type), intent(in) :: data            !! the increment
+      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(in) :: state           !! contact state
       real(dp), allocatable, intent(out) :: slope(:, :)       !! (m, m)
@@ -97,20 +98,20 @@ contains
          do k = 1, n
             associate (j => active(k))
                of_jump(place(j), k) = heat(j)
-               call operators%thermal%solver%solve_tail(of_jump(:, k))
-               body(j) = (heat(j)/of_jump(place(j), k) - data%diagonal(place(j)))/weight(j)
+               call workspace%tail%solve(of_jump(:, k))
+               body(j) = (heat(j)/of_jump(place(j), k) - workspace%tail%diagonal(place(j)))/weight(j)
             end associate
          end do
          where (body <= 0.0_dp) body = 1.0_dp
          allocate (gap(size(jump), n), force(size(jump), n))
-         call contact_response(operators%contact, state, matmul(operators%jump_load, of_jump), &
-            gap, force, sound)
+         call contact_response(operators%contact, workspace%contact, state, &
+            matmul(operators%jump_load, of_jump), gap, force, sound)
          do k = 1, size(jump)
             if (weight(k) <= 0.0_dp) cycle
             if (state%status(k) == status_open) then
                slope(k, active) = gap(k, :)
             else
-               slope(k, active) = -force(k, :)/(weight(k)*graph(k)%modulus)
+               slope(k, active) = -force(k, :)/(weight(k)*data%graph(k)%modulus)
             end if
          end do
       end associate

@@ -2,15 +2,15 @@
 !> Without them some increments have no solution, (1.8) asking for a law without a jump.
 module resting_pairs
    use conductance_graph, only: conductance_graph_type
-   use contact_operator, only: increment_data_type
    use contact_states, only: contact_state_type
    use fixed_point, only: pair_residual, pass_type
+   use increment_data, only: contact_scales_type, increment_data_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use records, only: status_open, status_slip
    implicit none
    private
-   public :: contact_scales_type, contact_scales, find_residual, settle
+   public :: contact_scales, find_residual, settle
 
    !> Part of the pressure that the overlap of a whole displacement would make, below which none
    !> counts as the largest of an increment.
@@ -19,12 +19,6 @@ module resting_pairs
    !> Part of the largest length that a gap counts by: what is left of one is closed in the end, and
    !> takes force.
    real(dp), parameter :: least_gap = 1.0e-5_dp
-
-   !> Largest values of an increment, by which gaps and pressures are small.
-   type :: contact_scales_type
-      real(dp) :: length = 0.0_dp   !! gap or displacement [length]
-      real(dp) :: force = 0.0_dp    !! nodal force at its start [force]
-   end type contact_scales_type
 
 contains
 
@@ -52,11 +46,11 @@ contains
    !> Largest residual of a pass over the pairs that carry heat, which those of weight 0 do not,
    !> and the pairs that rest in it: a conductance between the two
    !> values of its law needs no more of a pair than that neither gap nor pressure is left.
-   pure subroutine find_residual(graph, weight, pass, scales, residual, resting)
+   pure subroutine find_residual(graph, scales, weight, pass, residual, resting)
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
+      type(contact_scales_type), intent(in) :: scales       !! largest values of the increment
       real(dp), intent(in) :: weight(:)                     !! (m) tributary areas [length^2]
       type(pass_type), intent(in) :: pass                   !! the pass
-      type(contact_scales_type), intent(in) :: scales       !! largest values of the increment
       real(dp), intent(out) :: residual                     !! relative
       logical, intent(out) :: resting(:)                    !! (m) pairs that rest
       real(dp) :: by_law(size(graph)), by_rest(size(graph)), pressure(size(graph))

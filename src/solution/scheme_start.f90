@@ -1,9 +1,9 @@
 !> How far from equilibrium heat starts, which some schemes of (3.4) keep for ever.
 module scheme_start
    use balances, only: heat_residual
-   use contact_operator, only: increment_data_type
-   use interface_operators, only: interface_operators_type
    use films, only: net_heat
+   use increment_data, only: increment_data_type
+   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
    use records, only: increment_record_type

@@ -13,7 +13,6 @@ module solution_state
    !> State at the end of an increment.
    type :: solution_state_type
       type(contact_state_type) :: contact           !! contact state of all pairs
-      real(dp), allocatable :: closing(:)           !! (m) d_t at which a pair last closed [length]
       real(dp), allocatable :: omega(:)             !! (m) conductance
       logical, allocatable :: resting(:)            !! (m) pairs that rest, where a law jumps
       logical, allocatable :: idle(:)               !! (m) closed pairs that carry no force

@@ -1,0 +1,387 @@
+!> What one trial solution of the contact system works with: what the increment applies to it, the
+!> laws of pairs that close in the increment, and the factors of the active set of the moment. A
+!> second trial takes a workspace of its own.
+module contact_workspace
+   use contact_rows, only: contact_rows_type, rows_of
+   use contact_states, only: closing_law_type, condition_code, contact_state_type
+   use contact_system, only: contact_system_type
+   use dense, only: lu_type
+   use errors, only: error_type, set_error, status_no_convergence
+   use finite_values, only: check_finite
+   use kinds, only: dp
+   use loose_motions, only: free_motions, is_driven
+   use records, only: status_open, status_slip, status_stick
+   implicit none
+   private
+   public :: contact_workspace_type
+
+   real(dp), parameter :: rounding = 1.0e-12_dp !! of the forces that a load is condensed of
+   !> Part of the rounding of coordinates: a load that moves a pair no farther is a remainder of
+   !> loads that were taken off.
+   real(dp), parameter :: unresolved = 1.0e-3_dp
+
+   !> Data of the increment, and the factors for the active set of the last solution.
+   type :: contact_workspace_type
+      !> (m) h less the part of d_n that supports prescribe, which is no part of d_n here [length]
+      real(dp), allocatable :: initial_gap(:)
+      real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
+      real(dp), allocatable :: least_drive(:) !! (tail) resultants that count as none [force]
+      !> Stiffness that holds the unsupported motions softly, 0 for none [force/length]
+      real(dp) :: hold = 0.0_dp
+      type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing pairs
+      !> (tail) relative displacements that loose motions are least from
+      real(dp), allocatable :: anchor(:)
+      type(contact_rows_type) :: rows             !! rows of the active set
+      real(dp), allocatable :: loose(:, :)        !! (free, l) motions that the set leaves free
+      real(dp), allocatable :: drive(:)           !! (l) forces along them that nothing takes up
+      logical :: driven = .false.                 !! whether these are more than rounding
+      logical, allocatable :: idle(:)   !! (m) closed pairs that carry nothing (idle_pairs)
+      logical :: several = .false.                !! whether other states under the load are proven
+      type(lu_type), private :: lu                !! factors on the free places, bordered
+      real(dp), private :: border = 1.0_dp        !! scale of the border [force/length]
+      real(dp), allocatable, private :: scale(:)  !! (free) factor of the rows, 1 beside a border
+      integer, allocatable, private :: factored(:)   !! (m) condition codes of the factors
+      type(closing_law_type), allocatable, private :: factored_closing(:) !! (m) and their laws
+   contains
+      procedure :: another
+      procedure :: solve_set
+      procedure :: solve_free
+      procedure :: stiffness
+      procedure :: turns_back
+      procedure :: least_force
+      procedure :: slip
+      procedure :: factor_set
+      procedure :: factor_rows
+   end type contact_workspace_type
+
+   interface contact_workspace_type
+      module procedure new_workspace
+   end interface contact_workspace_type
+
+contains
+
+   !> A workspace for pairs with these gaps, on which nothing acts.
+   pure function new_workspace(system, initial_gap) result(work)
+      type(contact_system_type), intent(in) :: system  !! the reduced system
+      real(dp), intent(in) :: initial_gap(:)           !! (m) h [length]
+      type(contact_workspace_type) :: work             !! nothing closed, nothing factored
+
+      work%initial_gap = initial_gap
+      allocate (work%least_drive(size(system%schur, 1)), source=0.0_dp)
+      allocate (work%anchor(size(system%schur, 1)), source=0.0_dp)
+      allocate (work%closing(size(initial_gap)))
+      allocate (work%idle(size(initial_gap)), source=.false.)
+   end function new_workspace
+
+   !> A workspace for another trial under the same load, with the same laws.
+   pure function another(self) result(work)
+      class(contact_workspace_type), intent(in) :: self  !! of the first trial
+      type(contact_workspace_type) :: work               !! nothing factored
+
+      work%initial_gap = self%initial_gap
+      work%load_scale = self%load_scale
+      work%least_drive = self%least_drive
+      work%closing = self%closing
+      work%anchor = self%anchor
+   end function another
+
+   !> Tangential motion of a pair since friction acts on it in this increment.
+   pure function slip(self, system, state, k)
+      class(contact_workspace_type), intent(in) :: self !! laws of closing
+      type(contact_system_type), intent(in) :: system   !! the reduced system
+      type(contact_state_type), intent(in) :: state     !! contact state
+      integer, intent(in) :: k                          !! the pair
+      real(dp) :: slip                                  !! [length]
+
+      associate (law => self%closing(k))
+         if (law%acts) then
+            slip = (1.0_dp - law%fraction)*(state%tangential(k) - law%start) + law%fraction* &
+               dot_product(law%compliance, [-state%force(k), state%shear_force(k)])
+         else
+            slip = state%tangential(k) - state%reference(k)
+         end if
+         slip = slip + system%compliance(k)*state%shear_force(k)
+      end associate
+   end function slip
+
+   !> Solution for one active set. Where the load drives a body that the set leaves loose, driven
+   !> is set, and the values stay as they are.
+   !> Errors: as factor_set; a body is driven away; forces overflow.
+   subroutine solve_set(self, system, load, state, error)
+      class(contact_workspace_type), intent(inout) :: self !! the workspace
+      type(contact_system_type), intent(in) :: system      !! the reduced system
+      real(dp), intent(in) :: load(:)                      !! (tail) c [force]
+      type(contact_state_type), intent(inout) :: state     !! its statuses in, the values out
+      type(error_type), allocatable, intent(out) :: error  !! see above
+      real(dp) :: d(size(load)), lambda(size(load)), residual(size(load), 1)
+      real(dp), allocatable :: unbalanced(:, :)
+      integer :: k
+
+      self%driven = .false.
+      call self%factor_set(system, state, error)
+      if (allocated(error)) return
+      d = 0.0_dp
+      do k = 1, size(state%status)
+         if (state%status(k) == status_open) cycle
+         d(system%normal(k)) = self%initial_gap(k)
+         if (system%tangent(k) == 0 .or. state%status(k) /= status_stick) cycle
+         d(system%tangent(k)) = start_of_slip(self, state, k)
+      end do
+      residual(:, 1) = load - forces(self, system, d)
+      call self%solve_free(residual, unbalanced)
+      d(self%rows%free) = d(self%rows%free) + residual(self%rows%free, 1)
+      if (size(self%loose, 2) > 0) then
+         self%drive = unbalanced(:, 1)
+         call check_balance(self, system, load, d, error)
+         if (allocated(error)) return
+         call move_least(self, system, state, d)
+      end if
+      lambda = forces(self, system, d) - load
+      call check_finite([d, lambda], 'displacements and forces of the contact', &
+         status_no_convergence, error)
+      if (allocated(error)) return
+      call take_values(self, system, d, lambda, state)
+   end subroutine solve_set
+
+   !> The values of a solution.
+   pure subroutine take_values(self, system, d, lambda, state)
+      type(contact_workspace_type), intent(in) :: self
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: d(:), lambda(:)
+      type(contact_state_type), intent(inout) :: state
+      integer :: k
+
+      state%link = d(system%link)
+      state%approach = d(system%normal)
+      do k = 1, size(state%status)
+         state%gap(k) = self%initial_gap(k) - d(system%normal(k))
+         state%force(k) = -lambda(system%normal(k))
+         if (state%status(k) == status_open) then
+            state%force(k) = 0.0_dp
+         else
+            state%gap(k) = 0.0_dp
+         end if
+         if (system%tangent(k) == 0) cycle
+         state%tangential(k) = d(system%tangent(k))
+         select case (state%status(k))
+         case (status_open)
+            state%shear_force(k) = 0.0_dp
+         case (status_slip)
+            state%shear_force(k) = state%direction(k)*system%friction(k)*state%force(k)
+         case default
+            state%shear_force(k) = lambda(system%tangent(k))
+         end select
+      end do
+   end subroutine take_values
+
+   !> Place from which the slip of a pair counts, but for what its forces add.
+   pure real(dp) function start_of_slip(self, state, k)
+      type(contact_workspace_type), intent(in) :: self
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: k
+
+      start_of_slip = merge(self%closing(k)%start, state%reference(k), self%closing(k)%acts)
+   end function start_of_slip
+
+   !> S d, with the soft hold.
+   pure function forces(self, system, d)
+      type(contact_workspace_type), intent(in) :: self
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: d(:)
+      real(dp) :: forces(size(d))
+
+      forces = matmul(system%schur, d)
+      if (self%hold > 0.0_dp) forces = forces + &
+         self%hold*matmul(system%motion, matmul(d, system%motion))
+   end function forces
+
+   !> Columns of S, with the soft hold.
+   pure function columns(self, system, places)
+      type(contact_workspace_type), intent(in) :: self
+      type(contact_system_type), intent(in) :: system
+      integer, intent(in) :: places(:)
+      real(dp) :: columns(size(system%schur, 1), size(places))
+
+      columns = system%schur(:, places)
+      if (self%hold > 0.0_dp) columns = columns + &
+         self%hold*matmul(system%motion, transpose(system%motion(places, :)))
+   end function columns
+
+   !> Whether the load drives the loose motions, by more than rounding.
+   !> Error: it does.
+   subroutine check_balance(self, system, load, d, error)
+      type(contact_workspace_type), intent(inout) :: self
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: load(:), d(:)
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: least(size(d)), terms(size(d))
+      integer :: i
+
+      terms = abs(load) + matmul(abs(system%schur), abs(d))
+      least = self%least_drive + [(unresolved*system%least_length*abs(system%schur(i, i)), &
+         i=1, size(d))]
+      self%driven = is_driven(self%loose, self%drive, terms(self%rows%free), least(self%rows%free))
+      if (self%driven) call set_error(error, status_no_convergence, &
+         'the bodies are not held by their supports and the pairs that are in contact')
+   end subroutine check_balance
+
+   !> Moves loose bodies so that pairs slip least, and open ones stay at the anchor.
+   pure subroutine move_least(self, system, state, d)
+      type(contact_workspace_type), intent(in) :: self
+      type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: state
+      real(dp), intent(inout) :: d(:)
+      real(dp) :: way(size(d))
+      integer :: k
+
+      way = 0.0_dp
+      do k = 1, size(state%status)
+         associate (normal => system%normal(k), tangent => system%tangent(k))
+            if (state%status(k) == status_open) way(normal) = d(normal) - self%anchor(normal)
+            if (tangent == 0) cycle
+            way(tangent) = d(tangent) - self%anchor(tangent)
+            if (state%status(k) == status_slip) &
+               way(tangent) = d(tangent) - start_of_slip(self, state, k)
+         end associate
+      end do
+      associate (free => self%rows%free)
+         d(free) = d(free) - matmul(self%loose, matmul(way(free), self%loose))
+      end associate
+   end subroutine move_least
+
+   !> Factors the system of an active set, unless that is the set factored last.
+   !> Error: the system is singular.
+   subroutine factor_set(self, system, state, error)
+      class(contact_workspace_type), intent(inout) :: self !! the workspace
+      type(contact_system_type), intent(in) :: system      !! the reduced system
+      type(contact_state_type), intent(in) :: state        !! statuses and directions
+      type(error_type), allocatable, intent(out) :: error  !! see above
+      logical :: singular
+
+      if (is_factored(self, state)) return
+      self%rows = rows_of(system, state, self%closing)
+      if (self%hold > 0.0_dp) then
+         self%loose = reshape([real(dp) ::], [size(self%rows%free), 0])
+      else
+         self%loose = free_motions(system%motion, self%rows%free, self%rows%spring, system%schur)
+      end if
+      call self%factor_rows(system, singular)
+      if (singular) then
+         call set_error(error, status_no_convergence, 'the contact system is singular')
+      else
+         self%factored = condition_code(state)
+         self%factored_closing = self%closing
+      end if
+   end subroutine factor_set
+
+   !> Whether the factors are those of an active set; where closing starts does not enter them.
+   pure logical function is_factored(self, state)
+      type(contact_workspace_type), intent(in) :: self
+      type(contact_state_type), intent(in) :: state
+      integer :: k
+
+      is_factored = .false.
+      if (.not. allocated(self%factored)) return
+      if (any(self%factored /= condition_code(state))) return
+      do k = 1, size(self%closing)
+         associate (law => self%closing(k), factored => self%factored_closing(k))
+            if (law%acts .neqv. factored%acts) return
+            if (.not. law%acts) cycle
+            if (abs(law%fraction - factored%fraction) > 0.0_dp) return
+            if (any(abs(law%compliance - factored%compliance) > 0.0_dp)) return
+         end associate
+      end do
+      is_factored = .true.
+   end function is_factored
+
+   !> Factors the rows as they are, bordered by the loose motions.
+   pure subroutine factor_rows(self, system, singular)
+      class(contact_workspace_type), intent(inout) :: self !! the workspace
+      type(contact_system_type), intent(in) :: system      !! the reduced system
+      logical, intent(out) :: singular                     !! the rows depend on each other
+      real(dp) :: rows(size(self%rows%free) + size(self%loose, 2), size(self%rows%free) + &
+         size(self%loose, 2))
+      integer :: i
+
+      if (allocated(self%factored)) deallocate (self%factored)
+      rows = 0.0_dp
+      associate (f => size(self%rows%free), free => self%rows%free, &
+         of_tail => self%rows%combine(columns(self, system, self%rows%free)))
+         rows(:f, :f) = of_tail(free, :)
+         do i = 1, f
+            rows(i, i) = rows(i, i) + self%rows%spring(free(i))
+         end do
+         ! Rows of slipping pairs are mu times as large, those of stuck ones in rings 1e8 times.
+         self%scale = [(1.0_dp, i=1, f)]
+         if (size(self%loose, 2) == 0) self%scale = 1.0_dp/max(maxval(abs(rows(:f, :f)), dim=2), &
+            tiny(1.0_dp))
+         do i = 1, f
+            rows(i, :f) = self%scale(i)*rows(i, :f)
+         end do
+         self%border = max(maxval(abs(rows)), tiny(1.0_dp))
+         rows(:f, f + 1:) = self%border*self%loose
+         rows(f + 1:, :f) = self%border*transpose(self%loose)
+      end associate
+      call self%lu%factor(rows, singular)
+   end subroutine factor_rows
+
+   !> Free displacements that take up forces, with the factors of the last active set.
+   pure subroutine solve_free(self, x, unbalanced)
+      class(contact_workspace_type), intent(in) :: self  !! factors
+      real(dp), intent(inout) :: x(:, :) !! (tail, columns) forces; displacements in free rows
+      !> (l, columns) forces along the loose motions that nothing takes up.
+      real(dp), allocatable, intent(out), optional :: unbalanced(:, :)
+      real(dp) :: rows(size(self%rows%free) + size(self%loose, 2), size(x, 2))
+
+      associate (f => size(self%rows%free))
+         rows = 0.0_dp
+         associate (of_tail => self%rows%combine(x))
+            rows(:f, :) = spread(self%scale, 2, size(x, 2))*of_tail(self%rows%free, :)
+         end associate
+         if (size(rows, 1) > 0) call self%lu%solve(rows)
+         x(self%rows%free, :) = rows(:f, :)
+         if (present(unbalanced)) unbalanced = self%border*rows(f + 1:, :)
+      end associate
+   end subroutine solve_free
+
+   !> Forces at some places of the tail for unit displacements there, the free ones following; with
+   !> the factors of the last active set. Source: (2.4), statically condensed.
+   pure function stiffness(self, system, places)
+      class(contact_workspace_type), intent(in) :: self     !! factors
+      type(contact_system_type), intent(in) :: system       !! the reduced system
+      integer, intent(in) :: places(:)                      !! (n) places that are not free
+      real(dp) :: stiffness(size(places), size(places))     !! (n, n) [force/length]
+      real(dp) :: response(size(system%schur, 1), size(places))
+
+      response = -system%schur(:, places)
+      call self%solve_free(response)
+      stiffness = system%schur(places, places) + &
+         matmul(system%schur(places, self%rows%free), response(self%rows%free, :))
+   end function stiffness
+
+   !> Force that rounding leaves of what the load is made of, and of coordinates.
+   pure real(dp) function least_force(self, system)
+      class(contact_workspace_type), intent(in) :: self  !! scale of the load
+      type(contact_system_type), intent(in) :: system    !! the reduced system
+      integer :: i
+
+      least_force = rounding*self%load_scale + system%least_length* &
+         maxval([0.0_dp, (system%schur(i, i), i=1, size(system%schur, 1))])
+   end function least_force
+
+   !> Whether the set factored last turns the path of contact states back: its determinant is
+   !> negative, which needs friction. The signs at all states under one load add up to one, so that
+   !> then there are others. Closing laws, frozen in the set, are no part of that: with them none is
+   !> seen to turn.
+   pure logical function turns_back(self, system)
+      class(contact_workspace_type), intent(in) :: self  !! factors
+      type(contact_system_type), intent(in) :: system    !! the reduced system
+
+      turns_back = .false.
+      if (any(self%closing%acts)) return
+      ! Every link and every loose motion borders a positive matrix, which turns its sign.
+      turns_back = self%lu%negative_determinant() .neqv. &
+         (mod(size(system%link) + size(self%loose, 2), 2) == 1)
+   end function turns_back
+
+end module contact_workspace

@@ -1,0 +1,47 @@
+!> What an increment is solved from, and what its trial solutions work with.
+module increment_data
+   use conductance_graph, only: conductance_graph_type
+   use contact_states, only: contact_state_type
+   use contact_workspace, only: contact_workspace_type
+   use controls, only: thermal_scheme_type
+   use field_problem, only: field_load_type
+   use fixed_point, only: pass_type
+   use kinds, only: dp
+   use records, only: work_record_type
+   use tail_factors, only: tail_factors_type
+   implicit none
+   private
+   public :: contact_scales_type, increment_data_type, increment_workspace_type
+
+   !> Largest values of an increment, by which gaps and pressures are small.
+   type :: contact_scales_type
+      real(dp) :: length = 0.0_dp   !! gap or displacement [length]
+      real(dp) :: force = 0.0_dp    !! nodal force at its start [force]
+   end type contact_scales_type
+
+   !> What stays fixed while the increment is solved.
+   type :: increment_data_type
+      type(thermal_scheme_type) :: scheme            !! scheme of (3.4)
+      type(contact_state_type) :: previous           !! contact state at the start of the increment
+      real(dp), allocatable :: omega_old(:)          !! (m) omega_i
+      real(dp), allocatable :: jump_old(:)           !! (m) T_xi - T_eta at the start [temperature]
+      real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
+      real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
+      real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]
+      real(dp) :: expansion = 0.0_dp !! largest coefficient of expansion [1/temperature]
+      ! The next two are set where heat and mechanics are coupled.
+      type(conductance_graph_type), allocatable :: graph(:)  !! (m) graphs of the conductance
+      type(contact_scales_type) :: scales            !! largest values
+   end type increment_data_type
+
+   !> What a trial solution needs, and nobody but its own increment changes.
+   type :: increment_workspace_type
+      type(field_load_type) :: heat                  !! load of (3.4)
+      type(field_load_type) :: force                 !! load of (2.4)
+      type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
+      type(contact_workspace_type) :: contact        !! laws and factors of the contact
+      type(pass_type) :: pass                        !! the last pass
+      type(work_record_type) :: work                 !! re-factorisation so far
+   end type increment_workspace_type
+
+end module increment_data
