@@ -26,9 +26,7 @@ module fixed_point
       integer :: kept = 0 !! pairs whose g was kept in the last pass, eq. (4.2) giving none
       logical :: follows_path = .false.   !! on a continuous path of conductances (homotopy)
    contains
-      procedure :: asks_slope
       procedure(next_interface), deferred :: next
-      procedure :: retreat
    end type accelerator_type
 
    abstract interface
@@ -57,24 +55,6 @@ module fixed_point
    end type zaitsev_type
 
 contains
-
-   !> Whether next wants the derivative of this pass.
-   pure function asks_slope(self, pass) result(asks)
-      class(accelerator_type), intent(in) :: self    !! memory of the iteration
-      type(pass_type), intent(in) :: pass            !! the last pass, its slope not set
-      logical :: asks                                !! pass%slope is to be set
-
-      asks = allocated(pass%slope) .and. self%kept < 0
-   end function asks_slope
-
-   !> The next omega* where the contact zones of a pass were not found.
-   subroutine retreat(self, omega, possible)
-      class(accelerator_type), intent(inout) :: self !! memory of the iteration
-      real(dp), intent(inout) :: omega(:)            !! (m) omega* that failed in, next omega* out
-      logical, intent(out) :: possible               !! whether the accelerator has another one
-
-      possible = self%kept < 0 .and. size(omega) == 0
-   end subroutine retreat
 
    !> omega* becomes its image.
    subroutine next_picard(self, pass, omega)

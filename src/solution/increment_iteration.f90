@@ -9,6 +9,7 @@ module increment_iteration
    use increment_data, only: increment_data_type, increment_workspace_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
+   use newton, only: newton_type
    use opening_slopes, only: opening_slope, openings
    use records, only: increment_record_type, iteration_record_type, status_open
    use resting_pairs, only: find_residual, settle
@@ -166,7 +167,7 @@ contains
                g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
                pairs_changed=count(next%contact%status /= good%status))
             if (allocated(error)) then
-               call accelerator%retreat(pass%omega, possible)
+               call retreat(accelerator, pass%omega, possible)
                if (.not. possible) exit
                deallocate (error)
                next%contact = good
@@ -195,6 +196,20 @@ contains
       end associate
       call settle(next%resting, next%contact)
    end subroutine use_method
+
+   !> The next omega* where the contact zones of a pass were not found, which only Newton's method
+   !> has.
+   subroutine retreat(accelerator, omega, possible)
+      class(accelerator_type), intent(inout) :: accelerator
+      real(dp), intent(inout) :: omega(:)
+      logical, intent(out) :: possible
+
+      possible = .false.
+      select type (accelerator)
+      type is (newton_type)
+         call accelerator%retreat(omega, possible)
+      end select
+   end subroutine retreat
 
    !> Keeps the passes, and says so where the last one is not good enough.
    subroutine close_passes(record, passes, last, wanted, error)
@@ -225,8 +240,11 @@ contains
 
       associate (pass => workspace%pass)
          if (allocated(pass%slope)) deallocate (pass%slope)
-         if (accelerator%asks_slope(pass)) call opening_slope(operators, data, workspace, &
-            next%jump, next%contact, pass%slope, pass%body)
+         select type (accelerator)
+         type is (newton_type)
+            if (accelerator%asks_slope(pass)) call opening_slope(operators, data, workspace, &
+               next%jump, next%contact, pass%slope, pass%body)
+         end select
       end associate
    end subroutine find_slope
 
