@@ -56,28 +56,25 @@ contains
 
    !> Takes note of an accepted increment; at every second one, and at the end of a step, the second
    !> run moves on to its end.
-   subroutine follow(self, model, operators, loads, number, accepted, time, ends_step)
+   subroutine follow(self, model, operators, loads, accepted, record)
       class(doubled_increments_type), intent(inout) :: self      !! the second run
       type(model_type), intent(in) :: model                      !! the model
       type(interface_operators_type), intent(inout) :: operators !! the bodies; films change them
       type(loads_type), intent(in) :: loads                      !! loads at its end
-      integer, intent(in) :: number                              !! number of the step
       type(solution_state_type), intent(in) :: accepted          !! the run's state there
-      real(dp), intent(in) :: time                               !! total time there [time]
-      logical, intent(in) :: ends_step                           !! whether the step ends there
+      type(increment_record_type), intent(in) :: record          !! its place in the steps
       type(error_type), allocatable :: error
       type(solution_state_type) :: before, next
       type(step_type) :: step
-      type(increment_record_type) :: record
       type(increment_workspace_type) :: workspace
 
       if (.not. self%is_led .or. self%is_lost) return
-      if (number /= self%step) self%waiting = modulo(planned_increments(model%steps(number)), 2)
-      self%step = number
+      if (record%step /= self%step) self%waiting = modulo(planned_increments(model%steps(record%step)), 2)
+      self%step = record%step
       self%waiting = self%waiting + 1
-      if (self%waiting < 2 .and. .not. ends_step) return
-      self%has_doubled = self%has_doubled .or. time - self%time > 1.5_dp*accepted%increment_size
-      step = companion_step(model%steps(number))
+      if (self%waiting < 2 .and. .not. record%last_of_step) return
+      self%has_doubled = self%has_doubled .or. record%time - self%time > 1.5_dp*accepted%increment_size
+      step = companion_step(model%steps(record%step))
       next = self%state
       before = self%state
       next%contact = accepted%contact
@@ -87,7 +84,7 @@ contains
          before%omega = accepted%omega
          before%omega_before = accepted%omega
       end if
-      next%increment_size = time - self%time
+      next%increment_size = record%time - self%time
       next%heat_load = accepted%heat_load
       next%film = accepted%film
       next%force_load = accepted%force_load
@@ -95,15 +92,15 @@ contains
          call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, &
             error)
       end if
-      if (.not. allocated(error)) call solve_pairs(operators, loads, model, step, before, &
-         workspace, next, record, error)
+      if (.not. allocated(error)) call solve_pairs(operators, loads, step, before, &
+         workspace, next, error)
       self%is_lost = allocated(error)
       if (self%is_lost) return
       if (has_memory(step%scheme) .or. .not. solves_mechanics(step%analysis)) then
-         call recover_fields(operators, loads, model, step, workspace, self%state, next)
+         call recover_fields(operators, loads, step, workspace, self%state, next)
       end if
       self%state = next
-      self%time = time
+      self%time = record%time
       self%waiting = 0
    end subroutine follow
 

@@ -83,8 +83,8 @@ contains
          end associate
       end if
       self%step = record%step
-      call self%doubled%follow(model, simulation%operators, simulation%loads, self%step, &
-         simulation%state, record%time, record%last_of_step)
+      call self%doubled%follow(model, simulation%operators, simulation%loads, simulation%state, &
+         record)
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
       allocate (values(estimated_quantities, size(record%contacts)))
@@ -127,8 +127,8 @@ contains
       clock%period = model%steps(self%step)%period
       clock%step_time = clock%period
       clock%ramped = model%steps(self%step)%ramped
-      call find_change_by_refinement(self%refined, simulation%operators, simulation%loads, model, &
-         model%steps(self%step), clock, self%before, simulation%state, change, error)
+      call find_change_by_refinement(self%refined, simulation, model, clock, self%before, change, &
+         error)
       if (allocated(error)) then
          call append(record%notes, 'the errors of the mesh cannot be estimated: '//error%message)
          return

@@ -16,6 +16,7 @@ module refinement_error
    use films, only: net_heat
    use increment_data, only: increment_workspace_type
    use increment_solution, only: recover_fields, solve_pairs
+   use increments, only: simulation_type
    use interface_operators, only: interface_operators_type
    use interface_quantities, only: quantities_of, quantities_of_state
    use kinds, only: dp
@@ -25,7 +26,7 @@ module refinement_error
    use model, only: model_type
    use pair_rows, only: find_held_axes
    use refined_pairs, only: refined_pairs_type
-   use records, only: at_normal_force, at_shear_force, increment_record_type, status_open
+   use records, only: at_normal_force, at_shear_force, status_open
    use refined_model, only: refined_model_type
    use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
@@ -55,69 +56,90 @@ contains
    !> What the quantities of the interfaces change by on the refined mesh, at the end of an
    !> increment, in the equilibrium of heat there.
    !> Error: the increment has no solution under one of the corrections.
-   subroutine find_change_by_refinement(refined, operators, loads, model, step, clock, previous, &
-      next, change, error)
+   subroutine find_change_by_refinement(refined, simulation, model, clock, previous, change, error)
       type(refined_model_type), intent(inout) :: refined         !! the refined model
-      type(interface_operators_type), intent(inout) :: operators !! the reduced bodies
-      type(loads_type), intent(in) :: loads                      !! loads at the end
+      type(simulation_type), intent(inout) :: simulation         !! the run at the end; films change
       type(model_type), intent(in) :: model                      !! the model
-      type(step_type), intent(in) :: step                        !! the step
       type(step_clock_type), intent(in) :: clock                 !! the end of the increment
       type(solution_state_type), intent(in) :: previous          !! state at its start
-      type(solution_state_type), intent(in) :: next              !! state at its end
       real(dp), intent(out) :: change(:, :)                      !! (quantities, interfaces)
       type(error_type), allocatable, intent(out) :: error        !! see above
       type(corrected_type) :: fields
-      type(increment_record_type) :: record
-      type(increment_workspace_type) :: workspace
       real(dp) :: values(size(change, 1), size(change, 2))
       type(solution_state_type) :: before
-      type(step_type) :: estimate_step
+      type(step_type) :: step
       integer :: k
 
-      call refined%assemble(solves_mechanics(step%analysis), solves_heat(step%analysis), &
-         allocated(operators%thermal_load%value))
-      call refined%loads%move_to(clock, refined%model)
-      estimate_step = companion_step(step)
-      estimate_step%scheme = implicit_scheme
-      fields%coarse = next
-      call find_held_axes(refined%pairs, refined%prolong_set(loads%displacement%active, 2))
-      ! Old pairs move by the solutions on the old mesh alone, which keep their conditions.
-      fields%moves = .not. (refined%prolong_set(loads%displacement%active, 2) .or. &
-         refined%at_old_pair)
-      if (solves_heat(step%analysis)) then
-         fields%warms = .not. refined%prolong_set(loads%temperature%active, 1)
-         fields%film = refined%loads%film_matrix()
-         fields%conduction = refined%conduction_with(fields%film)
-         call operators%set_film(next%film, model, error)
-         if (allocated(error)) return
-      end if
-      if (solves_heat(step%analysis) .and. has_memory(step%scheme)) then
-         call solve_pairs(operators, loads, model, estimate_step, previous, workspace, &
-            fields%coarse, record, error)
-         if (allocated(error)) return
-         call recover_fields(operators, loads, model, estimate_step, workspace, previous, &
-            fields%coarse)
-      end if
-      call quantities_of_state(operators, fields%coarse, implicit_scheme, values)
-      fields%displacement = refined%prolong(fields%coarse%displacement, 2)
-      fields%temperature = refined%prolong(fields%coarse%temperature, 1)
-      call fields%pairs%begin(refined, kept_contact(fields%coarse%contact, &
-         fields%coarse%has_mechanics))
+      call begin(refined, simulation, model, clock, previous, fields, error)
+      if (allocated(error)) return
+      call quantities_of_state(simulation%operators, fields%coarse, implicit_scheme, values)
+      step = implicit_step(model%steps(simulation%control%step))
       before = previous
       do k = 1, corrections
-         call smooth(refined, estimate_step, fields)
+         call smooth(refined, step, fields)
          ! The fixed point starts from the last solution; the implicit scheme takes nothing else
          ! of the conductances before.
          before%omega = fields%coarse%omega
          before%omega_before = fields%coarse%omega
-         call correct(refined, operators, loads, model, estimate_step, before, next, fields, error)
+         call correct(refined, simulation%operators, simulation%loads, step, before, fields, error)
          if (allocated(error)) return
       end do
-      call smooth(refined, estimate_step, fields)
+      call smooth(refined, step, fields)
       call measure(refined, fields, change)
       change = change - values
    end subroutine find_change_by_refinement
+
+   !> The step as the estimate takes it, in the equilibrium of heat.
+   pure function implicit_step(step)
+      type(step_type), intent(in) :: step
+      type(step_type) :: implicit_step
+
+      implicit_step = companion_step(step)
+      implicit_step%scheme = implicit_scheme
+   end function implicit_step
+
+   !> Prolongs the solution on the old mesh, brought to the equilibrium of heat.
+   !> Error: it has no solution there.
+   subroutine begin(refined, simulation, model, clock, previous, fields, error)
+      type(refined_model_type), intent(inout) :: refined
+      type(simulation_type), intent(inout) :: simulation
+      type(model_type), intent(in) :: model
+      type(step_clock_type), intent(in) :: clock
+      type(solution_state_type), intent(in) :: previous
+      type(corrected_type), intent(out) :: fields
+      type(error_type), allocatable, intent(out) :: error
+      type(increment_workspace_type) :: workspace
+
+      associate (step => model%steps(simulation%control%step), loads => simulation%loads, &
+         operators => simulation%operators)
+         call refined%assemble(solves_mechanics(step%analysis), solves_heat(step%analysis), &
+            allocated(operators%thermal_load%value))
+         call refined%loads%move_to(clock, refined%model)
+         fields%coarse = simulation%state
+         call find_held_axes(refined%pairs, refined%prolong_set(loads%displacement%active, 2))
+         ! Old pairs move by the solutions on the old mesh alone, which keep their conditions.
+         fields%moves = .not. (refined%prolong_set(loads%displacement%active, 2) .or. &
+            refined%at_old_pair)
+         if (solves_heat(step%analysis)) then
+            fields%warms = .not. refined%prolong_set(loads%temperature%active, 1)
+            fields%film = refined%loads%film_matrix()
+            fields%conduction = refined%conduction_with(fields%film)
+            call operators%set_film(simulation%state%film, model, error)
+            if (allocated(error)) return
+         end if
+         if (solves_heat(step%analysis) .and. has_memory(step%scheme)) then
+            call solve_pairs(operators, loads, implicit_step(step), previous, workspace, &
+               fields%coarse, error)
+            if (allocated(error)) return
+            call recover_fields(operators, loads, implicit_step(step), workspace, previous, &
+               fields%coarse)
+         end if
+      end associate
+      fields%displacement = refined%prolong(fields%coarse%displacement, 2)
+      fields%temperature = refined%prolong(fields%coarse%temperature, 1)
+      call fields%pairs%begin(refined, kept_contact(fields%coarse%contact, &
+         fields%coarse%has_mechanics))
+   end subroutine begin
 
    !> Smooths displacements and temperatures of the new mesh.
    subroutine smooth(refined, step, fields)
@@ -160,33 +182,31 @@ contains
    end function mechanical_load
 
    !> Solves the increment on the old mesh with what is out of balance on the new one.
-   subroutine correct(refined, operators, loads, model, step, previous, next, fields, error)
+   subroutine correct(refined, operators, loads, step, previous, fields, error)
       type(refined_model_type), intent(in) :: refined
       type(interface_operators_type), intent(in) :: operators
       type(loads_type), intent(in) :: loads
-      type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
-      type(solution_state_type), intent(in) :: previous, next
+      type(solution_state_type), intent(in) :: previous
       type(corrected_type), intent(inout) :: fields
       type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: trial
-      type(increment_record_type) :: record
       type(increment_workspace_type) :: workspace
 
       trial = fields%coarse
-      associate (u => fields%displacement(:size(next%displacement)), &
-         t => fields%temperature(:size(next%temperature)))
+      associate (u => fields%displacement(:size(trial%displacement)), &
+         t => fields%temperature(:size(trial%temperature)))
          if (solves_heat(step%analysis)) trial%heat_load = refined%restrict( &
             heat_out_of_balance(refined, fields), 1) + heat_taken(operators, fields%coarse, t)
          ! Contact forces of both meshes do the same work and cancel.
          if (solves_mechanics(step%analysis)) trial%force_load = refined%restrict( &
             mechanical_load(refined, fields) - refined%stiffness%multiply(fields%displacement), &
             2) + operators%mechanical%matrix%multiply(u) - &
-            thermal_forces(operators, t - model%initial_temperature)
+            thermal_forces(operators, t)
       end associate
-      call solve_pairs(operators, loads, model, step, previous, workspace, trial, record, error)
+      call solve_pairs(operators, loads, step, previous, workspace, trial, error)
       if (allocated(error)) return
-      call recover_fields(operators, loads, model, step, workspace, previous, trial)
+      call recover_fields(operators, loads, step, workspace, previous, trial)
       fields%displacement = fields%displacement + refined%prolong(trial%displacement - &
          fields%displacement(:size(trial%displacement)), 2)
       fields%temperature = fields%temperature + refined%prolong(trial%temperature - &

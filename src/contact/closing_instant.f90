@@ -65,6 +65,7 @@ contains
       type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
+      type(closing_law_type) :: laws(size(state%status))
       logical :: holds(size(state%status))
       real(dp) :: change
       integer :: k, pass
@@ -76,8 +77,13 @@ contains
          call solve_contact(system, load, work, state, error)
          if (allocated(error)) return
          holds = state%status /= status_open .or. (holds .and. pass > free_passes)
-         call update_laws(system, previous, state, holds, pass > plain_passes, work, change, error)
+         call find_laws(system, previous, state, holds, work, laws, error)
          if (allocated(error)) return
+         change = maxval([0.0_dp, law_change(work%closing, laws)])
+         if (pass > plain_passes) where (work%closing%acts .and. laws%acts) &
+            laws%fraction = 0.5_dp*(laws%fraction + work%closing%fraction)
+         ! Laws that stay keep the factors.
+         if (change > settled) work%closing = laws
          if (change <= merge(settled, rounding, pass <= free_passes)) then
             do k = 1, size(state%status)
                if (work%closing(k)%acts .and. state%status(k) /= status_open) then
@@ -104,26 +110,25 @@ contains
       end where
    end subroutine drop_rounding
 
-   !> Closing laws of the pairs that are closed now and were open at the start of the increment,
-   !> where they have changed. A pair that has opened again keeps its law, on which nothing depends:
-   !> without it the pair might close, with it open, for ever.
-   subroutine update_laws(system, previous, state, holds, damped, work, change, error)
+   !> Closing laws of the pairs that are closed now and were open at the start of the increment. A
+   !> pair that has opened again keeps its law, on which nothing depends: without it the pair might
+   !> close, with it open, for ever.
+   !> Error: a singular system.
+   subroutine find_laws(system, previous, state, holds, work, laws, error)
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: previous
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: holds(:)
-      logical, intent(in) :: damped
-      type(contact_workspace_type), intent(inout) :: work
-      real(dp), intent(out) :: change
+      type(contact_workspace_type), intent(in) :: work
+      type(closing_law_type), intent(out) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
       type(contact_workspace_type) :: held
       type(contact_state_type) :: held_state
-      type(closing_law_type) :: laws(size(state%status))
       logical :: closes(size(state%status)), alone
       real(dp) :: compliance(2, 2)
       integer :: k
 
-      change = 0.0_dp
+      laws = work%closing
       closes = previous%status == status_open .and. state%status /= status_open .and. &
          system%tangent > 0
       if (.not. any(closes)) return
@@ -133,23 +138,17 @@ contains
       held_state%status = merge(status_stick, status_open, holds)
       call held%factor_set(system, held_state, error)
       if (allocated(error)) return
-      laws = work%closing
       do k = 1, size(closes)
          if (.not. closes(k)) cycle
          call find_compliance(system, held, held_state, k, compliance, alone, error)
          if (allocated(error)) return
          call make_law(compliance, previous, state, k, laws(k))
          if (alone) laws(k)%fraction = 0.0_dp
-         change = max(change, law_change(work%closing(k), laws(k)))
-         if (damped .and. work%closing(k)%acts) laws(k)%fraction = 0.5_dp* &
-            (laws(k)%fraction + work%closing(k)%fraction)
       end do
-      ! Laws that stay keep the factors.
-      if (change > settled) work%closing = laws
-   end subroutine update_laws
+   end subroutine find_laws
 
    !> Relative change from one law to another.
-   pure function law_change(old, new) result(change)
+   elemental function law_change(old, new) result(change)
       type(closing_law_type), intent(in) :: old, new
       real(dp) :: change
 

@@ -23,6 +23,7 @@ module closing_path
    !> A straight piece of the path; columns are values at t = 0 and derivatives by t.
    type :: piece_type
       type(contact_state_type) :: base          !! state at t = 0
+      real(dp), allocatable :: cover(:)         !! (m) d [length]
       real(dp), allocatable :: slip(:, :)       !! (m, 2) slip [length]
       real(dp), allocatable :: slack(:, :, :)   !! (2, m, 2) what must not be negative
    end type piece_type
@@ -39,20 +40,20 @@ contains
       type(error_type), allocatable, intent(out) :: error !! see above
       type(contact_workspace_type) :: path
       type(piece_type) :: piece
-      real(dp) :: cover(size(state%status)), step, t
+      real(dp) :: step, t
       integer :: entering, event, k, n, sense
 
       path = work%another()
       path%hold = work%hold
-      allocate (piece%slip(size(cover), 2), piece%slack(2, size(cover), 2))
-      cover = [(1.0_dp + modulo(k*golden, 1.0_dp), k=1, size(cover))]
+      piece%cover = [(1.0_dp + modulo(k*golden, 1.0_dp), k=1, size(state%status))]
+      allocate (piece%slip(size(piece%cover), 2), piece%slack(2, size(piece%cover), 2))
       state%status = status_open
       state%direction = 0
-      call solve_piece(system, load, cover, work, path, state, piece, error)
+      call solve_piece(system, load, work, path, state, piece, error)
       if (allocated(error)) return
-      t = max(maxval(-piece%base%gap/cover), 0.0_dp)
+      t = max(maxval(-piece%base%gap/piece%cover), 0.0_dp)
       sense = -1
-      do n = 1, pieces_per_pair*max(size(cover), 1)
+      do n = 1, pieces_per_pair*max(size(piece%cover), 1)
          call next_event(piece, t, sense, k, event, step)
          if (sense < 0 .and. step >= t) then
             state = piece%base
@@ -63,7 +64,7 @@ contains
          t = t + sense*step
          call change_condition(system, dot_product([1.0_dp, t], piece%slip(k, :)), event, k, state, &
             entering)
-         call solve_piece(system, load, cover, work, path, state, piece, error)
+         call solve_piece(system, load, work, path, state, piece, error)
          if (allocated(error)) return
          sense = merge(1, -1, piece%slack(entering, k, 2) > 0.0_dp)
       end do
@@ -72,9 +73,9 @@ contains
 
    !> Both ends of a piece, with one factorisation.
    !> Error: as solve_set.
-   subroutine solve_piece(system, load, cover, work, path, state, piece, error)
+   subroutine solve_piece(system, load, work, path, state, piece, error)
       type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: load(:), cover(:)
+      real(dp), intent(in) :: load(:)
       type(contact_workspace_type), intent(in) :: work
       type(contact_workspace_type), intent(inout) :: path
       type(contact_state_type), intent(in) :: state
@@ -91,7 +92,7 @@ contains
       call measure(system, path, piece%base, piece%slip(:, 1), piece%slack(:, :, 1))
       rate = state
       rate%reference = 0.0_dp
-      path%initial_gap = cover
+      path%initial_gap = piece%cover
       path%closing%start = 0.0_dp
       call path%solve_set(system, 0.0_dp*load, rate, error)
       if (allocated(error)) return

@@ -30,18 +30,18 @@ contains
       type(contact_state_type), intent(in) :: state       !! statuses and directions
       type(closing_law_type), intent(in) :: closing(:)    !! (m) laws of closing pairs
       type(contact_rows_type) :: rows
-      logical :: sought(size(system%schur, 1))
-      integer :: k
+      logical :: sought(2, size(state%status))
+      integer :: k, tail
 
-      sought = .false.
-      allocate (rows%partner(size(sought)), source=0)
-      allocate (rows%share(size(sought)), rows%spring(size(sought)), source=0.0_dp)
-      allocate (rows%own(size(sought)), source=1.0_dp)
+      tail = size(system%schur, 1)
+      allocate (rows%partner(tail), source=0)
+      allocate (rows%share(tail), rows%spring(tail), source=0.0_dp)
+      allocate (rows%own(tail), source=1.0_dp)
+      sought(1, :) = state%status == status_open
+      sought(2, :) = system%tangent > 0
       do k = 1, size(state%status)
-         sought(system%normal(k)) = state%status(k) == status_open
          if (system%tangent(k) == 0) cycle
          associate (place => system%tangent(k), law => closing(k), gives => system%compliance(k))
-            sought(place) = .true.
             if (state%status(k) == status_open) then
                cycle
             else if (state%status(k) == status_slip) then
@@ -57,12 +57,12 @@ contains
             else if (gives > 0.0_dp) then
                rows%spring(place) = 1.0_dp/gives
             else
-               sought(place) = .false.
+               sought(2, k) = .false.
             end if
          end associate
       end do
-      sought(system%link) = .true.
-      rows%free = pack([(k, k=1, size(sought))], sought)
+      rows%free = [pack(reshape([(system%normal(k), system%tangent(k), k=1, size(state%status))], &
+         shape(sought)), sought), system%link]
    end function rows_of
 
    !> Forces, or columns of S, as they enter the rows.

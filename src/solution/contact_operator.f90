@@ -20,26 +20,25 @@ module contact_operator
 
 contains
 
-   !> U: conductance in, conductance of the resulting contact state out.
+   !> U: conductance in, workspace%pass%omega, conductance of the resulting contact state out,
+   !> workspace%pass%image.
    !> Errors: as solve_increment; jumps or conductances overflow.
-   subroutine contact_operator_pass(operators, data, omega, workspace, jump, state, image, error)
+   subroutine contact_operator_pass(operators, data, workspace, jump, state, error)
       type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(increment_data_type), intent(in) :: data              !! the increment
-      real(dp), intent(in) :: omega(:)                           !! (m) omega*
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(inout) :: state           !! guess in, solution out
-      real(dp), intent(out) :: image(:)                          !! (m) U(omega*)
       type(error_type), allocatable, intent(out) :: error        !! see above
 
-      call temperature_jumps(operators, data, omega, workspace, jump)
+      call temperature_jumps(operators, data, workspace%pass%omega, workspace, jump)
       call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       if (allocated(error)) return
       call solve_increment(operators%contact, data%previous, &
          condensed_load(operators, data, jump), workspace%contact, state, error)
       if (allocated(error)) return
-      image = law_conductance(operators, state)
-      call check_finite(image, 'conductances', status_no_convergence, error)
+      workspace%pass%image = law_conductance(operators, state)
+      call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
    end subroutine contact_operator_pass
 
    !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first
@@ -55,7 +54,7 @@ contains
       integer :: k
 
       associate (place => operators%jump_place, weight => operators%pairs%weight, &
-         solver => operators%thermal%solver, tail => workspace%tail, work => workspace%work)
+         solver => operators%thermal%solver, tail => workspace%tail, work => workspace%record%work)
          of_pair = contact_diagonal(data%scheme, weight, data%omega_old, omega)
          history = contact_history(data%scheme, weight, data%omega_old, omega, data%jump_old)
          x = workspace%heat%condensed
@@ -136,15 +135,15 @@ contains
       where (kept%gap <= 0.0_dp) kept%status = status_slip
    end function kept_contact
 
-   !> Nodal forces of temperatures over the natural state; none where no temperature strains.
+   !> Nodal forces that temperatures cause; none where no temperature strains.
    pure function thermal_forces(operators, temperature) result(forces)
       type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
-      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
+      real(dp), intent(in) :: temperature(:)                    !! (nodes) [temperature]
       real(dp) :: forces(2*size(temperature))                   !! (2 nodes) [force]
 
       forces = 0.0_dp
       if (allocated(operators%thermal_load%value)) then
-         forces = operators%thermal_load%multiply(temperature)
+         forces = operators%thermal_load%multiply(temperature - operators%initial_temperature)
       end if
    end function thermal_forces
 

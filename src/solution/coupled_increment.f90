@@ -30,27 +30,26 @@ contains
 
    !> Conductances, jumps and contact state of an increment.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
-   subroutine solve_coupled(operators, step, previous, data, workspace, next, record, error)
+   subroutine solve_coupled(operators, step, previous, data, workspace, next, error)
       type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(step_type), intent(in) :: step                        !! the step
       type(solution_state_type), intent(in) :: previous          !! state at the start
       type(increment_data_type), intent(inout) :: data           !! receives graphs and scales
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
       type(solution_state_type), intent(inout) :: next           !! guess in, solution out
-      type(increment_record_type), intent(inout) :: record       !! receives passes
       type(error_type), allocatable, intent(out) :: error        !! see above
 
       data%scales = contact_scales(operators, data)
       data%graph = make_graph(operators, data%scales%length)
       next%omega_before = previous%omega
       if (step%start%kind == start_both) then
-         call solve_from_both(operators, step, previous, data, workspace, next, record, error)
+         call solve_from_both(operators, step, previous, data, workspace, next, error)
       else
          next%omega = starting_conductance(operators, step, step%start%kind, previous, next)
-         call iterate(operators, step%fixed_point, data, workspace, next, record, error)
+         call iterate(operators, step%fixed_point, data, workspace, next, error)
       end if
       if (allocated(error) .or. .not. step%fixed_point%finds_gain) return
-      call judge(operators, data, next, workspace, record)
+      call judge(operators, data, next, workspace)
    end subroutine solve_coupled
 
    !> omega*^0 of a start.
@@ -89,20 +88,18 @@ contains
    !> The increment from the last ones, and from both ends of the conductance: do all lead to one
    !> solution? That of the first start that leads to any is the increment's. It is found last, for
    !> the factors to be its own.
-   subroutine solve_from_both(operators, step, previous, data, workspace, next, record, error)
+   subroutine solve_from_both(operators, step, previous, data, workspace, next, error)
       type(interface_operators_type), intent(in) :: operators
       type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable, intent(out) :: error
       integer, parameter :: kinds(3) = [start_open, start_closed, start_previous]
       character(*), parameter :: names(3) = [character(8) :: 'OPEN', 'CLOSED', 'PREVIOUS']
       type(solution_state_type) :: guess
       type(increment_workspace_type) :: fresh
-      type(increment_record_type) :: other_record
       real(dp) :: omega(size(next%omega), 3)
       logical :: found(3)
       integer :: i
@@ -113,13 +110,12 @@ contains
          call try_start(i)
          found(i) = .not. allocated(error)
          omega(:, i) = next%omega
-         if (allocated(error)) call append(record%notes, 'the start from '//trim(names(i))// &
-            ' finds no solution: '//error%message)
+         if (allocated(error)) call append(fresh%record%notes, 'the start from '// &
+            trim(names(i))//' finds no solution: '//error%message)
       end do
       if (.not. found(3) .and. any(found)) call try_start(findloc(found, .true., dim=1))
-      call move_alloc(other_record%iterations, record%iterations)
-      record%residual_floor = other_record%residual_floor
-      call compare(omega(:, 1), omega(:, 2), omega(:, 3), found, record)
+      if (allocated(fresh%record%notes)) workspace%record%notes = fresh%record%notes
+      call compare(omega(:, 1), omega(:, 2), omega(:, 3), found, workspace%record)
    contains
       subroutine try_start(i)
          integer, intent(in) :: i
@@ -127,8 +123,7 @@ contains
          next = guess
          next%omega = starting_conductance(operators, step, kinds(i), previous, next)
          workspace = fresh
-         other_record = increment_record_type(increment=record%increment)
-         call iterate(operators, step%fixed_point, data, workspace, next, other_record, error)
+         call iterate(operators, step%fixed_point, data, workspace, next, error)
       end subroutine try_start
    end subroutine solve_from_both
 
@@ -159,40 +154,39 @@ contains
    end function differ
 
    !> The gain of the coupling, and what follows from it.
-   subroutine judge(operators, data, next, workspace, record)
+   subroutine judge(operators, data, next, workspace)
       type(interface_operators_type), intent(in) :: operators
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: next
-      type(increment_workspace_type), intent(in) :: workspace
-      type(increment_record_type), intent(inout) :: record
+      type(increment_workspace_type), intent(inout) :: workspace
       real(dp), allocatable :: slope(:, :), body(:)
       type(coupling_gain_type) :: gain
       character(:), allocatable :: at
       logical :: found
 
-      record%coupling_gain = 0.0_dp
-      record%coupling_gain_max = 0.0_dp
+      workspace%record%coupling_gain = 0.0_dp
+      workspace%record%coupling_gain_max = 0.0_dp
       associate (graph => data%graph, opening => workspace%pass%opening)
          if (.not. (any(abs(graph%slope(graph%place_of_opening(opening))) > 0.0_dp) .or. &
             any(next%resting))) return
       end associate
-      record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
-      record%coupling_gain_max = record%coupling_gain
-      at = 'increment '//to_text(record%increment)//': '
+      workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
+      workspace%record%coupling_gain_max = workspace%record%coupling_gain
+      at = 'increment '//to_text(workspace%record%increment)//': '
       call opening_slope(operators, data, workspace, next%jump, next%contact, slope, body)
       if (.not. allocated(slope)) return
       call find_gain(data%graph, workspace%pass%opening, slope, next%resting, gain, found)
       if (.not. found) return
-      record%coupling_gain = gain%largest
-      record%coupling_gain_max = gain%largest_real
-      if (gain%largest_real <= -huge(1.0_dp)) record%coupling_gain_max = &
+      workspace%record%coupling_gain = gain%largest
+      workspace%record%coupling_gain_max = gain%largest_real
+      if (gain%largest_real <= -huge(1.0_dp)) workspace%record%coupling_gain_max = &
          ieee_value(1.0_dp, ieee_quiet_nan)
-      if (gain%largest < -1.0_dp) call append(record%warnings, at//'the coupling gain is '// &
+      if (gain%largest < -1.0_dp) call append(workspace%record%warnings, at//'the coupling gain is '// &
          to_text(gain%largest)//', below -1: plain iteration (4.1) would diverge')
-      if (abs(gain%largest_real - 1.0_dp) <= near_turning_point) call append(record%warnings, at// &
+      if (abs(gain%largest_real - 1.0_dp) <= near_turning_point) call append(workspace%record%warnings, at// &
          'the largest real gain is '//to_text(gain%largest_real)//', near 1: a turning point, '// &
          'where solutions meet and small changes of the load change much')
-      if (gain%is_one_of_several) call append(record%warnings, at//'det(I - U'') is negative: '// &
+      if (gain%is_one_of_several) call append(workspace%record%warnings, at//'det(I - U'') is negative: '// &
          'the branch is unstable, and there are at least two other solutions')
    end subroutine judge
 

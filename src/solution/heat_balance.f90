@@ -8,7 +8,7 @@ module heat_balance
    use loads, only: loads_type
    use model, only: model_type
    use records, only: increment_record_type
-   use solution_state, only: solution_state_type
+   use solution_state, only: carrying_conductance, solution_state_type
    use text, only: append, to_text
    implicit none
    private
@@ -23,19 +23,18 @@ module heat_balance
 contains
 
    !> Heat that enters by loads and prescribed temperatures, and both balances of heat.
-   pure subroutine balance_heat(operators, model, loads, scheme, carrying, previous, next, record)
+   pure subroutine balance_heat(operators, model, loads, scheme, previous, next, record)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
       type(thermal_scheme_type), intent(in) :: scheme         !! coefficients of (3.4)
-      real(dp), intent(in) :: carrying(:)                     !! (m) omega that the flux is of
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(in) :: next           !! state at the end
       type(increment_record_type), intent(inout) :: record    !! receives rates and balances
       real(dp), allocatable :: conducted(:), heat(:), residual(:), pair_heat(:)
       real(dp) :: scale
 
-      pair_heat = operators%pairs%weight*carrying*next%jump
+      pair_heat = operators%pairs%weight*carrying_conductance(next, scheme)*next%jump
       conducted = operators%thermal%matrix%multiply(next%temperature)
       heat = net_heat(next%heat_load, next%film, next%temperature)
       residual = heat_residual(conducted, heat, operators%pairs, pair_heat)

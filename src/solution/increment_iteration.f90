@@ -30,39 +30,38 @@ contains
    !> solves the increment if laws jump, since the others know no pairs at rest; elsewhere it only
    !> tells what the failure means.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
-   subroutine iterate(operators, controls, data, workspace, next, record, error)
+   subroutine iterate(operators, controls, data, workspace, next, error)
       type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(fixed_point_type), intent(in) :: controls             !! *FIXED POINT
       type(increment_data_type), intent(in) :: data              !! the increment
-      type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
+      type(increment_workspace_type), intent(inout) :: workspace !! loads in, passes out
       type(solution_state_type), intent(inout) :: next           !! omega*^0 and guess in
-      type(increment_record_type), intent(inout) :: record       !! receives passes
       type(error_type), allocatable, intent(out) :: error        !! see above
       type(solution_state_type) :: start
 
       start = next
-      allocate (record%iterations(0))
-      call use_method(operators, controls, data, workspace, next, record, error)
-      if (allocated(error) .and. size(record%iterations) == 0) then
+      allocate (workspace%record%iterations(0))
+      call use_method(operators, controls, data, workspace, next, error)
+      if (allocated(error) .and. size(workspace%record%iterations) == 0) then
          ! Not even the contact zones of the start were found: those of the last increment may be.
          next%contact = start%contact
          next%omega = data%omega_old
-         call use_method(operators, controls, data, workspace, next, record, error)
+         call use_method(operators, controls, data, workspace, next, error)
       end if
       if (.not. allocated(error)) return
       if (controls%method == method_newton) then
-         call name_runaway(operators, data, next%jump, record, error)
+         call name_runaway(operators, data, next%jump, workspace%record, error)
       else if (any(data%graph%width > 0.0_dp)) then
          deallocate (error)
-         call append(record%notes, 'a pair whose conductance jumps comes to no state by the '// &
+         call append(workspace%record%notes, 'a pair whose conductance jumps comes to no state by the '// &
             'method of the deck; the increment is handed to NEWTON')
          next = start
-         call use_method(operators, by_newton(controls), data, workspace, next, record, error)
-         if (allocated(error)) call name_runaway(operators, data, next%jump, record, error)
+         call use_method(operators, by_newton(controls), data, workspace, next, error)
+         if (allocated(error)) call name_runaway(operators, data, next%jump, workspace%record, error)
       else if (runs_away(data, next%jump)) then
-         call name_runaway(operators, data, next%jump, record, error)
+         call name_runaway(operators, data, next%jump, workspace%record, error)
       else if (.not. workspace%contact%driven) then
-         call explain_failure(operators, by_newton(controls), data, start, workspace, record, error)
+         call explain_failure(operators, by_newton(controls), data, start, workspace, error)
       end if
    end subroutine iterate
 
@@ -77,26 +76,22 @@ contains
 
    !> Says of an increment in which another method failed what Newton's finds in it: a solution, or
    !> that the heat runs away.
-   subroutine explain_failure(operators, controls, data, start, workspace, record, error)
+   subroutine explain_failure(operators, controls, data, start, workspace, error)
       type(interface_operators_type), intent(in) :: operators
       type(fixed_point_type), intent(in) :: controls
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: start
-      type(increment_workspace_type), intent(in) :: workspace
-      type(increment_record_type), intent(inout) :: record
+      type(increment_workspace_type), intent(inout) :: workspace
       type(error_type), intent(inout) :: error
       type(increment_workspace_type) :: other_workspace
       type(solution_state_type) :: other
-      type(increment_record_type) :: other_record
       type(error_type), allocatable :: other_error
 
       other = start
       other_workspace = workspace
-      other_record%increment = record%increment
-      allocate (other_record%iterations(0))
-      call use_method(operators, controls, data, other_workspace, other, other_record, other_error)
+      call use_method(operators, controls, data, other_workspace, other, other_error)
       if (allocated(other_error)) then
-         call name_runaway(operators, data, other%jump, record, error)
+         call name_runaway(operators, data, other%jump, workspace%record, error)
       else
          error%message = error%message//'; *FIXED POINT, METHOD=NEWTON solves it'
       end if
@@ -132,13 +127,12 @@ contains
    end subroutine name_runaway
 
    !> The iteration by one method.
-   subroutine use_method(operators, controls, data, workspace, next, record, error)
+   subroutine use_method(operators, controls, data, workspace, next, error)
       type(interface_operators_type), intent(in) :: operators
       type(fixed_point_type), intent(in) :: controls
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable, intent(out) :: error
       class(accelerator_type), allocatable :: accelerator
       type(iteration_record_type) :: passes((1 + path_share)*controls%max_iterations)
@@ -147,21 +141,20 @@ contains
       real(dp) :: wanted
       logical :: possible
 
-      before = size(record%iterations)
+      before = size(workspace%record%iterations)
       turns = 0
       away = 0
       wanted = controls%tolerance
       workspace%contact%closing = closing_law_type()
       call make_accelerator(controls, data%graph, accelerator)
-      associate (pass => workspace%pass)
+      associate (pass => workspace%pass, record => workspace%record)
          pass%omega = next%omega
          pass%image = pass%omega
          do i = 1, size(passes)
             if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
             good = next%contact
             pass%iteration = i
-            call contact_operator_pass(operators, data, pass%omega, workspace, next%jump, &
-               next%contact, pass%image, error)
+            call contact_operator_pass(operators, data, workspace, next%jump, next%contact, error)
             passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
                residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
                g_max=maxval(accelerator%g), g_kept=accelerator%kept, &

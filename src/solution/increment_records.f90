@@ -37,12 +37,11 @@ contains
    !> Completes the record of an increment, which has its place in the steps and its passes, with
    !> contact state, fields and balances. What the step does not solve stands as the last step that
    !> did left it; stress and flux with their errors are made where needed.
-   pure subroutine complete_record(operators, model, recovery, loads, step, previous, next, record)
+   pure subroutine complete_record(operators, model, recovery, loads, previous, next, record)
       type(interface_operators_type), intent(in) :: operators !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
       type(recovery_type), intent(in) :: recovery             !! stress and flux with their errors
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
-      type(step_type), intent(in) :: step                     !! the step
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(in) :: next           !! state at the end
       type(increment_record_type), intent(inout) :: record    !! the record
@@ -50,47 +49,49 @@ contains
       logical :: recovers
       integer :: i
 
-      recovers = needs_recovery(record, model)
-      carrying = carrying_conductance(next, step%scheme)
-      allocate (record%contacts(size(operators%interfaces)))
-      do i = 1, size(operators%interfaces)
-         record%contacts(i) = contact_record(operators, solves_heat(step%analysis), i, next, &
-            carrying)
-      end do
-      record%fields%temperature = next%temperature
-      if (solves_mechanics(step%analysis)) then
-         if (recovers) call recovery%recover_stress(model, reshape(next%displacement, [2, &
-            size(next%temperature)]), next%temperature - model%initial_temperature, &
-            record%fields%stress, record%stress_error)
-         call balance_forces(operators, model, loads, next, record)
-      else
-         record%force_imbalance = ieee_value(1.0_dp, ieee_quiet_nan)
-         record%contact_violation = record%force_imbalance
-         if (allocated(next%stress)) record%fields%stress = next%stress
-         record%stress_error = next%stress_error
-         if (next%has_mechanics) record%fields%reaction = next%reaction
-      end if
-      if (next%has_mechanics) then
-         record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
-         record%fields%external_force = record%fields%reaction + reshape(next%force_load, &
-            shape(record%fields%reaction))
-      end if
-      call warn_of_floor(step, record)
-      if (solves_heat(step%analysis)) then
-         if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
-            record%fields%heat_flux, record%heat_flux_error)
-         call balance_heat(operators, model, loads, step%scheme, carrying, previous, next, record)
-         call warn_of_heat(step%scheme, next, record)
-      else
-         record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
-         record%heat_out = record%heat_in
-         record%heat_imbalance = record%heat_in
-         record%heat_imbalance_pointwise = record%heat_in
-         record%contacts%heat_rate = record%heat_in
-      end if
-      if (allocated(step%element_prints)) then
-         record%element_points = points_of_elements(model, step, next, record)
-      end if
+      associate (step => model%steps(record%step))
+         recovers = needs_recovery(record, model)
+         carrying = carrying_conductance(next, step%scheme)
+         allocate (record%contacts(size(operators%interfaces)))
+         do i = 1, size(operators%interfaces)
+            record%contacts(i) = contact_record(operators, solves_heat(step%analysis), i, next, &
+               carrying)
+         end do
+         record%fields%temperature = next%temperature
+         if (solves_mechanics(step%analysis)) then
+            if (recovers) call recovery%recover_stress(model, reshape(next%displacement, [2, &
+               size(next%temperature)]), next%temperature - model%initial_temperature, &
+               record%fields%stress, record%stress_error)
+            call balance_forces(operators, model, loads, next, record)
+         else
+            record%force_imbalance = ieee_value(1.0_dp, ieee_quiet_nan)
+            record%contact_violation = record%force_imbalance
+            if (allocated(next%stress)) record%fields%stress = next%stress
+            record%stress_error = next%stress_error
+            if (next%has_mechanics) record%fields%reaction = next%reaction
+         end if
+         if (next%has_mechanics) then
+            record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
+            record%fields%external_force = record%fields%reaction + reshape(next%force_load, &
+               shape(record%fields%reaction))
+         end if
+         call warn_of_floor(step, record)
+         if (solves_heat(step%analysis)) then
+            if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
+               record%fields%heat_flux, record%heat_flux_error)
+            call balance_heat(operators, model, loads, step%scheme, previous, next, record)
+            call warn_of_heat(step%scheme, next, record)
+         else
+            record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
+            record%heat_out = record%heat_in
+            record%heat_imbalance = record%heat_in
+            record%heat_imbalance_pointwise = record%heat_in
+            record%contacts%heat_rate = record%heat_in
+         end if
+         if (allocated(step%element_prints)) then
+            record%element_points = points_of_elements(model, step, next, record)
+         end if
+      end associate
    end subroutine complete_record
 
    !> Warns where the last places of the displacements change omega by more than the tolerance: the
@@ -194,7 +195,7 @@ contains
          length = max(length, noise*maxval(abs(operators%pairs%initial_gap)))
       end if
       internal = operators%mechanical%matrix%multiply(next%displacement) - &
-         thermal_forces(operators, next%temperature - model%initial_temperature)
+         thermal_forces(operators, next%temperature)
       residual = force_residual(internal, next%force_load, operators%pairs, next%contact)
       associate (held => loads%displacement%active)
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &

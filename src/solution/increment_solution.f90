@@ -18,7 +18,6 @@ module increment_solution
    use kinds, only: dp
    use loads, only: loads_type
    use loose_motions, only: balanced_load, least_drive
-   use model, only: model_type
    use pair_rows, only: held_approach
    use records, only: increment_record_type, iteration_record_type, status_open
    use scheme_properties, only: is_explicit
@@ -36,16 +35,14 @@ contains
    !> belong to welded contacts. A field that the step does not solve stays.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds,
    !> loads that overflow.
-   subroutine solve_pairs(operators, loads, model, step, previous, workspace, next, record, error)
+   subroutine solve_pairs(operators, loads, step, previous, workspace, next, error)
       type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(model_type), intent(in) :: model                      !! the model
       type(step_type), intent(in) :: step                        !! the step
       type(solution_state_type), intent(in) :: previous          !! state at the start
-      type(increment_workspace_type), intent(out) :: workspace   !! of the solution
+      type(increment_workspace_type), intent(inout) :: workspace !! a fresh one
       !> guess and loads at the end in, solution out
       type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record       !! receives passes and work
       type(error_type), allocatable, intent(out) :: error        !! see above
       type(increment_data_type) :: data
 
@@ -55,35 +52,34 @@ contains
       data%jump_old = previous%jump
       next%omega_start = data%omega_old
       next%keeps_imbalance = .false.
-      record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
-      record%coupling_gain_max = record%coupling_gain
+      workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
+      workspace%record%coupling_gain_max = workspace%record%coupling_gain
       if (solves_heat(step%analysis)) then
          call load_heat(operators, loads, previous, data, workspace, next)
          call check_finite([workspace%heat%condensed, next%temperature], &
             'heat and temperatures', status_no_convergence, error)
          if (allocated(error)) return
-         call warn_of_imbalance(operators, loads, data, previous, next, record)
+         call warn_of_imbalance(operators, loads, data, previous, next, workspace%record)
          if (size(next%omega) > 0 .and. .not. operators%is_coupled) then
             call conduct(operators, previous, data, workspace, next)
          end if
       end if
-      record%work = workspace%work
       if (.not. solves_mechanics(step%analysis)) return
       data%displacement_scale = maxval(abs(previous%displacement))
+      data%expansion = operators%largest_expansion
       next%contact%reference = previous%contact%tangential
       if (.not. solves_heat(step%analysis)) call give_temperatures(operators, loads, previous, next)
-      call load_mechanics(operators, loads, model, data, workspace, next)
+      call load_mechanics(operators, loads, next, workspace, data%welded_load)
       call check_finite([workspace%force%rhs(:, 1), data%welded_load], 'forces', &
          status_no_convergence, error)
       if (allocated(error)) return
       if (.not. operators%is_coupled) then
-         call solve_mechanics(operators, step, data, workspace, next, record, error)
+         call solve_mechanics(operators, step, data, workspace, next, error)
       else if (is_explicit(step%scheme)) then
-         call pass_once(operators, previous, data, workspace, next, record, error)
+         call pass_once(operators, previous, data, workspace, next, error)
       else
-         call solve_coupled(operators, step, previous, data, workspace, next, record, error)
+         call solve_coupled(operators, step, previous, data, workspace, next, error)
       end if
-      record%work = workspace%work
       if (.not. allocated(error)) call settle_idle_pairs(operators, workspace%contact%idle, next)
       next%has_mechanics = .true.
    end subroutine solve_pairs
@@ -100,13 +96,12 @@ contains
    end subroutine settle_idle_pairs
 
    !> Contact of an increment whose temperatures do not depend on it.
-   subroutine solve_mechanics(operators, step, data, workspace, next, record, error)
+   subroutine solve_mechanics(operators, step, data, workspace, next, error)
       type(interface_operators_type), intent(in) :: operators
       type(step_type), intent(in) :: step
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable, intent(out) :: error
 
       call solve_increment(operators%contact, data%previous, data%welded_load, workspace%contact, &
@@ -117,9 +112,9 @@ contains
       next%resting = .false.
       if (.not. solves_heat(step%analysis) .or. size(next%omega) == 0) return
       ! U is constant, and so are its fixed point and its derivative, zero.
-      record%coupling_gain = 0.0_dp
-      record%coupling_gain_max = 0.0_dp
-      record%iterations = [only_pass(record, data%previous, next%contact)]
+      workspace%record%coupling_gain = 0.0_dp
+      workspace%record%coupling_gain_max = 0.0_dp
+      workspace%record%iterations = [only_pass(workspace%record, data%previous, next%contact)]
    end subroutine solve_mechanics
 
    !> Temperatures that a step without heat gives, and the jumps between them.
@@ -176,21 +171,21 @@ contains
 
    !> An increment explicit in omega: temperatures by the conductance at its start, then mechanics,
    !> then the conductance at its end. Nothing is iterated.
-   subroutine pass_once(operators, previous, data, workspace, next, record, error)
+   subroutine pass_once(operators, previous, data, workspace, next, error)
       type(interface_operators_type), intent(in) :: operators
       type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable, intent(out) :: error
 
-      call contact_operator_pass(operators, data, previous%omega, workspace, next%jump, &
-         next%contact, next%omega, error)
+      workspace%pass%omega = previous%omega
+      call contact_operator_pass(operators, data, workspace, next%jump, next%contact, error)
       if (allocated(error)) return
+      next%omega = workspace%pass%image
       next%omega_before = previous%omega
       next%resting = .false.
-      record%iterations = [only_pass(record, previous%contact, next%contact)]
+      workspace%record%iterations = [only_pass(workspace%record, previous%contact, next%contact)]
    end subroutine pass_once
 
    !> Record of the only pass of an increment.
@@ -226,46 +221,35 @@ contains
       end associate
    end subroutine load_heat
 
-   !> Mechanical load of the increment, with the temperatures of load_heat or those that stay.
-   subroutine load_mechanics(operators, loads, model, data, workspace, next)
+   !> Mechanical load of the increment, with the temperatures of load_heat or those that stay; and
+   !> what it makes on the contact without jumps.
+   subroutine load_mechanics(operators, loads, next, workspace, welded_load)
       type(interface_operators_type), intent(in) :: operators
       type(loads_type), intent(in) :: loads
-      type(model_type), intent(in) :: model
-      type(increment_data_type), intent(inout) :: data
-      type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(in) :: next
+      type(increment_workspace_type), intent(inout) :: workspace
+      real(dp), allocatable, intent(out) :: welded_load(:)
       real(dp) :: thermal(2*size(next%temperature))
 
-      thermal = thermal_forces(operators, next%temperature - model%initial_temperature)
+      thermal = thermal_forces(operators, next%temperature)
       workspace%force = operators%mechanical%load_of(next%force_load + thermal, &
          loads%displacement%value)
       call operators%mechanical%condense_load(workspace%force)
-      data%expansion = largest_expansion(model)
       workspace%contact = contact_workspace_type(operators%contact, operators%pairs%initial_gap - &
          held_approach(operators%pairs, loads%displacement%value))
       workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       associate (applied => next%force_load, rigid => operators%rigid)
          workspace%contact%least_drive = least_drive(operators%contact%rigid, &
             matmul(abs(applied), abs(rigid)))
-         data%welded_load = balanced_load(workspace%force%condensed, operators%contact%rigid, &
+         welded_load = balanced_load(workspace%force%condensed, operators%contact%rigid, &
             operators%contact%motion, matmul(applied, rigid))
       end associate
    end subroutine load_mechanics
 
-   !> Largest coefficient of expansion of the bodies.
-   pure real(dp) function largest_expansion(model)
-      type(model_type), intent(in) :: model
-      integer :: i
-
-      largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
-         %expansion)), i=1, size(model%sections))])
-   end function largest_expansion
-
    !> Fields of the whole bodies, from the solution on the pairs, and what pairs remember of it.
-   subroutine recover_fields(operators, loads, model, step, workspace, previous, next)
+   subroutine recover_fields(operators, loads, step, workspace, previous, next)
       type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(model_type), intent(in) :: model                      !! the model
       type(step_type), intent(in) :: step                        !! the step
       type(increment_workspace_type), intent(inout) :: workspace !! of the solution
       type(solution_state_type), intent(in) :: previous          !! state at the start
@@ -277,8 +261,8 @@ contains
       if (.not. solves_mechanics(step%analysis)) return
       if (operators%is_coupled) then
          next%temperature = temperatures(operators, workspace%heat, next%jump)
-         workspace%force = operators%mechanical%load_of(next%force_load + thermal_forces( &
-            operators, next%temperature - model%initial_temperature), loads%displacement%value)
+         workspace%force = operators%mechanical%load_of(next%force_load + &
+            thermal_forces(operators, next%temperature), loads%displacement%value)
       end if
       allocate (on_tail(operators%mechanical%map%tail))
       associate (contact => operators%contact)

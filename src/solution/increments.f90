@@ -234,14 +234,15 @@ contains
       type(increment_workspace_type) :: workspace
       real(dp) :: since
 
+      call self%loads%move_to(clock, model)
       record%increment = self%control%increments + 1
       record%step = self%control%step
       record%increment_in_step = self%control%increments_of_step + 1
       record%last_of_step = clock%step_time >= clock%period
       record%cut_backs = self%control%cut_backs
       record%time = clock%total_time
-      call self%loads%move_to(clock, model)
       record%load = self%loads%axis_value(model, record%time)
+      workspace%record = record
       next = self%state
       next%increment_size = clock%step_time - self%control%step_time
       ! (3.4) asks for them at the start of the next increment, whether this one solves heat or not.
@@ -258,8 +259,8 @@ contains
             call measure_factors(operators, self%sizes)
          end if
          since = wall_seconds()
-         call solve_pairs(operators, self%loads, model, step, self%state, workspace, next, &
-            record, error)
+         call solve_pairs(operators, self%loads, step, self%state, workspace, next, error)
+         record = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
             call check_heat(model, operators, self%loads, self%control%step, next, error)
@@ -273,9 +274,8 @@ contains
          if (solves_mechanics(step%analysis)) call warn_of_choices(model, operators, &
             workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
-         call recover_fields(operators, self%loads, model, step, workspace, self%state, next)
-         call complete_record(operators, model, self%recovery, self%loads, step, self%state, next, &
-            record)
+         call recover_fields(operators, self%loads, step, workspace, self%state, next)
+         call complete_record(operators, model, self%recovery, self%loads, self%state, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_values(record, error)
          if (allocated(error)) return

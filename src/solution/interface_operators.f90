@@ -36,6 +36,8 @@ module interface_operators
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       type(contact_system_type) :: contact                    !! the partial solution of (2.4)
+      real(dp), allocatable :: initial_temperature(:)         !! (nodes) [temperature]
+      real(dp) :: largest_expansion = 0.0_dp !! of all bodies [1/temperature]
       real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
       integer, allocatable :: jump_place(:) !! (m) place of the jump on the tail, 0 where held
       !> (mechanical tail, thermal tail) condensed mechanical load per jump; formed where coupled.
@@ -70,6 +72,9 @@ contains
          end do
       end if
       self%pairs = row_of(self%interfaces, model)
+      self%initial_temperature = model%initial_temperature
+      self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
+         %expansion)), i=1, size(model%sections))])
    end subroutine prepare
 
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
