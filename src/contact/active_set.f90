@@ -250,15 +250,13 @@ contains
       type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
       real(dp) :: force
-      real(dp) :: terms(size(load))
-      integer :: k
+      real(dp) :: d(size(load)), terms(size(load))
+      integer :: i
 
+      d = positions(system, work, state)
       terms = abs(load)
-      do k = 1, size(state%status)
-         terms = terms + abs(work%initial_gap(k) - state%gap(k))* &
-            abs(system%schur(:, system%normal(k)))
-         if (system%tangent(k) == 0) cycle
-         terms = terms + abs(state%tangential(k))*abs(system%schur(:, system%tangent(k)))
+      do i = 1, size(d)
+         if (abs(d(i)) > 0.0_dp) terms = terms + abs(d(i))*abs(system%schur(:, i))
       end do
       force = maxval(terms)
    end function largest_term

@@ -189,8 +189,13 @@ contains
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: d(:)
       real(dp) :: forces(size(d))
+      integer :: i
 
-      forces = matmul(system%schur, d)
+      forces = 0.0_dp
+      do i = 1, size(d)
+         ! Many are zero: pairs that touched at the start, without slip.
+         if (abs(d(i)) > 0.0_dp) forces = forces + d(i)*system%schur(:, i)
+      end do
       if (self%hold > 0.0_dp) forces = forces + &
          self%hold*matmul(system%motion, matmul(d, system%motion))
    end function forces

@@ -12,8 +12,8 @@ module tail_factors
    type :: tail_factors_type
       real(dp), allocatable :: diagonal(:) !! (tail) added to the Schur complement
       integer :: first_changed = 1         !! first column that refactor factored again
-      !> Upper triangle by columns: unit upper factor, its diagonal replaced by D.
-      real(dp), allocatable, private :: value(:)
+      !> (tail, tail) unit upper factor, its diagonal replaced by D; nothing below it
+      real(dp), allocatable, private :: value(:, :)
    contains
       procedure :: refactor
       procedure :: solve
@@ -28,7 +28,6 @@ contains
       real(dp), intent(in) :: schur(:, :)             !! (tail, tail), its upper triangle
       real(dp), intent(in) :: diagonal(:)             !! (tail) added to it
       integer :: i, j
-      integer(long) :: column_i, column_j
       real(dp) :: reduced
 
       self%first_changed = 1
@@ -36,23 +35,21 @@ contains
          self%first_changed = findloc(abs(diagonal - self%diagonal) > 0.0_dp, .true., dim=1)
          if (self%first_changed == 0) self%first_changed = size(diagonal) + 1
       else
-         allocate (self%value(size(diagonal, kind=long)*(size(diagonal) + 1)/2))
+         allocate (self%value(size(diagonal), size(diagonal)))
       end if
       self%diagonal = diagonal
       do j = self%first_changed, size(diagonal)
-         column_j = before(j)
-         do i = 1, j - 1
-            column_i = before(i)
-            self%value(column_j + i) = schur(i, j)
-            if (i > 1) self%value(column_j + i) = self%value(column_j + i) - ddot(i - 1, &
-               self%value(column_i + 1:), 1, self%value(column_j + 1:), 1)
-         end do
-         self%value(column_j + j) = schur(j, j) + diagonal(j)
-         do i = 1, j - 1
-            reduced = self%value(column_j + i)
-            self%value(column_j + i) = reduced/self%value(before(i) + i)
-            self%value(column_j + j) = self%value(column_j + j) - self%value(column_j + i)*reduced
-         end do
+         associate (column => self%value(:, j))
+            do i = 1, j - 1
+               column(i) = schur(i, j) - ddot(i - 1, self%value(:, i), 1, column, 1)
+            end do
+            column(j) = schur(j, j) + diagonal(j)
+            do i = 1, j - 1
+               reduced = column(i)
+               column(i) = reduced/self%value(i, i)
+               column(j) = column(j) - column(i)*reduced
+            end do
+         end associate
       end do
    end subroutine refactor
 
@@ -63,22 +60,15 @@ contains
       integer :: j
 
       do j = 2, size(x)
-         x(j) = x(j) - ddot(j - 1, self%value(before(j) + 1:), 1, x, 1)
+         x(j) = x(j) - ddot(j - 1, self%value(:, j), 1, x, 1)
       end do
       do j = 1, size(x)
-         x(j) = x(j)/self%value(before(j) + j)
+         x(j) = x(j)/self%value(j, j)
       end do
       do j = size(x), 2, -1
-         call daxpy(j - 1, -x(j), self%value(before(j) + 1:), 1, x, 1)
+         call daxpy(j - 1, -x(j), self%value(:, j), 1, x, 1)
       end do
    end subroutine solve
-
-   !> Entries of the columns before one.
-   pure integer(long) function before(column)
-      integer, intent(in) :: column
-
-      before = int(column, long)*(column - 1)/2
-   end function before
 
    !> Operations of factoring the columns of a tail from one on.
    pure function tail_flops(tail, first_changed) result(flops)
