@@ -2,14 +2,15 @@
 module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_pairs, only: contact_pairs_type
+   use contact_states, only: status_open
    use controls, only: thermal_scheme_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use pair_tractions, only: pressures, shears
    use records, only: at_edge_contact, at_edge_stick, at_heat_rate, at_normal_force, &
-      at_peak_pressure, at_shear_force, edges_kept, estimated_quantities, status_open
+      at_peak_pressure, at_shear_force, estimated_quantities
    use solution_state, only: carrying_conductance, solution_state_type
-   use zone_edges, only: contact_edges, stick_edges
+   use zone_edges, only: contact_edges, edges_kept, stick_edges
    implicit none
    private
    public :: quantities_of, quantities_of_state, edge_resolution

@@ -2,10 +2,9 @@
 !> and the states that follow from their forces and gaps.
 module refined_pairs
    use conductance_laws, only: conductance
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open, status_slip, status_stick
    use kinds, only: dp
    use pair_rows, only: pair_row_type
-   use records, only: status_open, status_slip, status_stick
    use refined_model, only: refined_model_type
    use linked_relaxation, only: joint_type
    implicit none

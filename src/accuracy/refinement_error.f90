@@ -11,6 +11,7 @@ module refinement_error
    use balances, only: heat_residual
    use companion_steps, only: companion_step
    use contact_operator, only: kept_contact, thermal_forces
+   use contact_states, only: status_open
    use controls, only: implicit_scheme
    use errors, only: error_type
    use films, only: net_heat
@@ -26,7 +27,7 @@ module refinement_error
    use model, only: model_type
    use pair_rows, only: find_held_axes
    use refined_pairs, only: refined_pairs_type
-   use records, only: at_normal_force, at_shear_force, status_open
+   use records, only: at_normal_force, at_shear_force
    use refined_model, only: refined_model_type
    use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type

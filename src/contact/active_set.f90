@@ -9,14 +9,14 @@
 !> the set that is found also holds without that. What drives off through all steps is loose.
 module active_set
    use closing_path, only: follow_closing_path
-   use contact_states, only: condition_code, contact_state_type
+   use contact_states, only: condition_code, contact_state_type, status_open, status_slip, &
+      status_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use friction, only: next_status
    use idle_pairs, only: find_idle_pairs
    use kinds, only: dp
-   use records, only: status_open, status_slip, status_stick
    implicit none
    private
    public :: solve_contact

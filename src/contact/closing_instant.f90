@@ -20,12 +20,11 @@
 !> much friction; of each change half is made in the end.
 module closing_instant
    use active_set, only: solve_contact
-   use contact_states, only: closing_law_type, contact_state_type
+   use contact_states, only: closing_law_type, contact_state_type, status_open, status_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
-   use records, only: status_open, status_stick
    implicit none
    private
    public :: solve_increment

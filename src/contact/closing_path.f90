@@ -7,12 +7,11 @@
 !> whatever the friction is, so that the path, which cannot return to where it began, arrives at
 !> t = 0 (Lemke's method with its geometric covering vector).
 module closing_path
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open, status_slip, status_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
-   use records, only: status_open, status_slip, status_stick
    implicit none
    private
    public :: follow_closing_path

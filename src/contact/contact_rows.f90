@@ -3,10 +3,9 @@
 !> + share lambda_n = 0, that of a pair which closes and sticks (contact_system), divided by f c_t,
 !> own lambda_t + share lambda_n + spring d_t = 0.
 module contact_rows
-   use contact_states, only: closing_law_type, contact_state_type
+   use contact_states, only: closing_law_type, contact_state_type, status_open, status_slip
    use contact_system, only: contact_system_type
    use kinds, only: dp
-   use records, only: status_open, status_slip
    implicit none
    private
    public :: contact_rows_type, rows_of

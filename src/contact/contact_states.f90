@@ -1,10 +1,14 @@
 !> What the pairs do: contact states, and the laws of pairs that close within an increment.
 module contact_states
    use kinds, only: dp
-   use records, only: status_slip
    implicit none
    private
    public :: contact_state_type, closing_law_type, condition_code
+   public :: status_open, status_slip, status_stick
+
+   integer, parameter :: status_open = 0    !! gap, zone I
+   integer, parameter :: status_slip = 1    !! closed, slipping or frictionless, zone II
+   integer, parameter :: status_stick = 2   !! closed and stuck, zone III
 
    !> Contact state of all pairs.
    type :: contact_state_type

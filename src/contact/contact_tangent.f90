@@ -4,11 +4,10 @@
 !>
 !>    dr = (1 - f) dd_t + (f c + (c.lambda - d_t + d_t,i) df/dlambda).dlambda.
 module contact_tangent
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open, status_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use kinds, only: dp
-   use records, only: status_open, status_stick
    implicit none
    private
    public :: contact_response

@@ -3,14 +3,14 @@
 !> second trial takes a workspace of its own.
 module contact_workspace
    use contact_rows, only: contact_rows_type, rows_of
-   use contact_states, only: closing_law_type, condition_code, contact_state_type
+   use contact_states, only: closing_law_type, condition_code, contact_state_type, status_open, &
+      status_slip, status_stick
    use contact_system, only: contact_system_type
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use kinds, only: dp
    use loose_motions, only: free_motions, is_driven
-   use records, only: status_open, status_slip, status_stick
    implicit none
    private
    public :: contact_workspace_type

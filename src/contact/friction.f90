@@ -1,7 +1,7 @@
 !> Coulomb's law for one pair, eq. (1.6), in increments: pure functions of numbers.
 module friction
+   use contact_states, only: status_open, status_slip, status_stick
    use kinds, only: dp
-   use records, only: status_open, status_slip, status_stick
    implicit none
    private
    public :: next_status

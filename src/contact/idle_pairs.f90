@@ -5,12 +5,11 @@
 !> that beside the thermal forces. The load is judged instead: its resultants along the rigid
 !> motions are exact (loose_motions).
 module idle_pairs
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type
    use kinds, only: dp
-   use records, only: status_open
    implicit none
    private
    public :: find_idle_pairs

@@ -16,11 +16,13 @@
 !> turned round. In a ring none is looked for between the last pair and the first.
 module zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use contact_states, only: status_open, status_slip, status_stick
    use kinds, only: dp
-   use records, only: edges_kept, status_open, status_slip, status_stick
    implicit none
    private
-   public :: contact_edges, stick_edges
+   public :: contact_edges, stick_edges, edges_kept
+
+   integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
    integer, parameter :: fitted_pairs = 5   !! pairs of two three-node sides
 

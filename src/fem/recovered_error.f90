@@ -13,7 +13,15 @@ module recovered_error
    use quadrature, only: integration_rule, load_point_count, load_rule, point_count
    implicit none
    private
-   public :: element_error_type, measure_stress, measure_heat_flux, error_points
+   public :: element_error_type, measure_stress, measure_heat_flux, error_points, error_record_type
+
+   !> Estimated discretisation error of stress or of heat flux (Zienkiewicz & Zhu).
+   type :: error_record_type
+      !> (bodies) error in the energy norm, relative to that of the whole; 0 without either
+      real(dp), allocatable :: body(:)
+      !> (elements) root mean square of the difference to the recovered field [stress or flux]
+      real(dp), allocatable :: element(:)
+   end type error_record_type
 
    !> Integrals over an element.
    type :: element_error_type

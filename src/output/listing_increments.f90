@@ -1,13 +1,14 @@
 !> The block of an accepted increment in the listing.
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_states, only: status_open, status_stick
    use kinds, only: dp
    use listing_text, only: column, print_wrapped
-   use records, only: attempt_record_type, contact_record_type, edges_kept, &
-      increment_record_type, status_open, status_stick
+   use records, only: attempt_record_type, contact_record_type, increment_record_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    use zone_diagram, only: zone_counts
+   use zone_edges, only: edges_kept
    implicit none
    private
    public :: print_increment, print_attempts, print_interface, print_balances

@@ -3,8 +3,9 @@ module listing_tables
    use contact_pairs, only: contact_pairs_type
    use listing_text, only: column
    use model, only: verify_type
-   use records, only: contact_record_type, iteration_record_type
+   use records, only: contact_record_type
    use run_summaries, only: or_blank
+   use solution_report, only: iteration_record_type
    use text, only: to_text
    use verification, only: outcome_type
    use zone_diagram, only: zone_numeral

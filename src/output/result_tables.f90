@@ -10,8 +10,10 @@ module result_tables
    use record_values, only: contact_edge_names, contact_heat_names, contact_pair_names, &
       contact_total_names, contact_values, history_body_names, history_body_values, history_names, &
       history_value, name_length
-   use records, only: contact_record_type, edges_kept, estimated_names, estimated_quantities, &
-      increment_record_type, interface_errors_type, iteration_record_type
+   use records, only: contact_record_type, estimated_names, estimated_quantities, &
+      increment_record_type, interface_errors_type
+   use solution_report, only: iteration_record_type
+   use zone_edges, only: edges_kept
    implicit none
    private
    public :: history_results_type, convergence_results_type, contact_results_type

@@ -13,13 +13,14 @@ module results
    use hdf5_helpers, only: close_hdf5, create_group, open_hdf5, write_strings
    use kinds, only: dp, long
    use model, only: model_type
-   use records, only: increment_record_type, iteration_record_type
+   use records, only: increment_record_type
    use result_fields, only: field_results_type
    use result_mesh, only: write_result_mesh
    use result_run, only: write_run
    use result_tables, only: contact_results_type, convergence_results_type, error_results_type, &
       history_results_type
    use run_summaries, only: or_blank, run_summary_type
+   use solution_report, only: iteration_record_type
    use status_files, only: status_file_type
    use steps, only: solves_heat, solves_mechanics
    use clock, only: wall_seconds

@@ -2,10 +2,11 @@
 !> load that acts, large strains.
 module run_judgement
    use contact_pairs, only: contact_pairs_type
+   use contact_states, only: status_open
    use kinds, only: dp
    use mesh, only: extent_of
    use model, only: model_type
-   use records, only: increment_record_type, status_open
+   use records, only: increment_record_type
    use steps, only: solves_heat, solves_mechanics
    use strains, only: largest_strain
    use text, only: append, string_type, to_text

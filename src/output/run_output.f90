@@ -8,11 +8,12 @@ module run_output
    use listing, only: listing_type
    use model, only: model_type
    use progress, only: progress_type
-   use records, only: increment_record_type, iteration_record_type
+   use records, only: increment_record_type
    use results, only: results_type
    use run_judgement, only: run_judgement_type
    use run_summaries, only: or_blank, run_summary_type
    use clock, only: wall_seconds
+   use solution_report, only: iteration_record_type
    use text, only: append, string_type, to_text
    use verification, only: verifier_type
    implicit none

@@ -4,7 +4,8 @@ module status_files
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
    use listing_text, only: column
-   use records, only: increment_record_type, iteration_record_type
+   use records, only: increment_record_type
+   use solution_report, only: iteration_record_type
    implicit none
    private
    public :: status_file_type

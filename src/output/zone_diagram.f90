@@ -2,8 +2,9 @@
 !> (stick).
 module zone_diagram
    use contact_pairs, only: contact_pairs_type
+   use contact_states, only: status_open, status_stick
    use kinds, only: dp
-   use records, only: increment_record_type, status_open, status_stick
+   use records, only: increment_record_type
    use text, only: to_text
    implicit none
    private

@@ -1,11 +1,10 @@
 !> Balances of heat and force that can fail: the reactions of each body alone, on the recovered
 !> fields, against what the reduced system says crosses the contacts.
 module balances
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open, status_slip, status_stick
    use controls, only: thermal_scheme_type
    use kinds, only: dp
    use pair_rows, only: pair_row_type
-   use records, only: status_open, status_slip, status_stick
    implicit none
    private
    public :: heat_residual, scheme_pair_heat, force_residual, imbalance, contact_violation

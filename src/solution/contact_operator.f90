@@ -3,14 +3,13 @@
 module contact_operator
    use closing_instant, only: solve_increment
    use conductance_laws, only: conductance, conductance_slope
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open, status_slip
    use errors, only: error_type, status_no_convergence
    use finite_values, only: check_finite
    use increment_data, only: increment_data_type, increment_workspace_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use pair_tractions, only: pressures
-   use records, only: status_open, status_slip
    use tail_factors, only: tail_flops
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none

@@ -11,8 +11,8 @@ module coupled_increment
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use opening_slopes, only: make_graph, opening_slope
-   use records, only: increment_record_type
    use resting_pairs, only: contact_scales
+   use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
    use steps, only: step_type
    use text, only: append, to_text
@@ -131,7 +131,7 @@ contains
    subroutine compare(from_open, from_closed, from_previous, found, record)
       real(dp), intent(in) :: from_open(:), from_closed(:), from_previous(:)
       logical, intent(in) :: found(:)
-      type(increment_record_type), intent(inout) :: record
+      type(solution_report_type), intent(inout) :: record
 
       if (found(1) .and. found(2) .and. differ(from_open, from_closed)) then
          call append(record%warnings, 'increment '//to_text(record%increment)//': the starts '// &

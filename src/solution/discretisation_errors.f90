@@ -11,9 +11,8 @@ module discretisation_errors
    use patch_recovery, only: patch_recovery_type
    use point_fields, only: most => most_field_points, point_fields_type
    use quadrature, only: recovery_points
-   use records, only: error_record_type
-   use recovered_error, only: element_error_type, error_points, measure_heat_flux, &
-      measure_stress
+   use recovered_error, only: element_error_type, error_points, error_record_type, &
+      measure_heat_flux, measure_stress
    implicit none
    private
    public :: recovery_type

@@ -1,11 +1,11 @@
 !> Where the slip of each pair counts from, at the end of an increment.
 module friction_memory
+   use contact_states, only: status_open
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use pair_rows, only: tangential_position
-   use records, only: status_open
    use solution_state, only: solution_state_type
    implicit none
    private

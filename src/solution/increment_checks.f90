@@ -1,5 +1,6 @@
 !> What a solved increment must satisfy before it is accepted.
 module increment_checks
+   use contact_states, only: status_open
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
@@ -8,7 +9,7 @@ module increment_checks
    use loads, only: loads_type
    use loose_bodies, only: bodies_heated_by_no_pair, bodies_held_by_no_pair
    use model, only: model_type
-   use records, only: increment_record_type, status_open
+   use records, only: increment_record_type
    use solution_state, only: solution_state_type
    use text, only: append, to_text
    use thermal_matrix, only: contact_diagonal

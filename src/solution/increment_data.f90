@@ -7,7 +7,7 @@ module increment_data
    use field_problem, only: field_load_type
    use fixed_point, only: pass_type
    use kinds, only: dp
-   use records, only: increment_record_type
+   use solution_report, only: solution_report_type
    use tail_factors, only: tail_factors_type
    implicit none
    private
@@ -41,7 +41,7 @@ module increment_data
       type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
       type(contact_workspace_type) :: contact        !! laws and factors of the contact
       type(pass_type) :: pass                        !! the last pass
-      type(increment_record_type) :: record          !! what is told of the way to the solution
+      type(solution_report_type) :: record           !! what is told of the way to the solution
    end type increment_workspace_type
 
 end module increment_data

@@ -2,7 +2,7 @@
 module increment_iteration
    use accelerators, only: make_accelerator
    use contact_operator, only: contact_operator_pass, residual_floor
-   use contact_states, only: closing_law_type, contact_state_type
+   use contact_states, only: closing_law_type, contact_state_type, status_open
    use controls, only: fixed_point_type, method_newton
    use errors, only: error_type, set_error, status_no_convergence
    use fixed_point, only: accelerator_type
@@ -11,8 +11,8 @@ module increment_iteration
    use kinds, only: dp
    use newton, only: newton_type
    use opening_slopes, only: opening_slope, openings
-   use records, only: increment_record_type, iteration_record_type, status_open
    use resting_pairs, only: find_residual, settle
+   use solution_report, only: solution_report_type, iteration_record_type
    use solution_state, only: solution_state_type
    use text, only: append, to_text
    implicit none
@@ -111,7 +111,7 @@ contains
       type(interface_operators_type), intent(in) :: operators
       type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: jump(:)
-      type(increment_record_type), intent(inout) :: record
+      type(solution_report_type), intent(inout) :: record
       type(error_type), intent(inout) :: error
       integer :: i, k
 
@@ -206,7 +206,7 @@ contains
 
    !> Keeps the passes, and says so where the last one is not good enough.
    subroutine close_passes(record, passes, last, wanted, error)
-      type(increment_record_type), intent(inout) :: record
+      type(solution_report_type), intent(inout) :: record
       type(iteration_record_type), intent(in) :: passes(:)
       integer, intent(in) :: last   !! the loop's, beyond the last pass where that was not enough
       real(dp), intent(in) :: wanted

@@ -4,7 +4,7 @@ module increment_records
    use balances, only: contact_violation, force_residual, imbalance
    use conductance_laws, only: conductance
    use contact_operator, only: kept_contact, thermal_forces
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open, status_slip, status_stick
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery
    use element_kinds, only: axisymmetric
@@ -16,8 +16,7 @@ module increment_records
    use mesh, only: extent_of
    use model, only: model_type
    use pair_tractions, only: in_contact, pressures, shears
-   use records, only: contact_record_type, increment_record_type, status_open, status_slip, &
-      status_stick
+   use records, only: contact_record_type, increment_record_type
    use solution_state, only: carrying_conductance, solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use text, only: append, to_text

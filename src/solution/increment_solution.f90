@@ -5,7 +5,7 @@ module increment_solution
    use conductance_laws, only: law_jumps
    use contact_operator, only: contact_operator_pass, kept_contact, law_conductance, &
       temperature_jumps, thermal_forces
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, status_no_convergence
    use films, only: film_history
@@ -19,9 +19,9 @@ module increment_solution
    use loads, only: loads_type
    use loose_motions, only: balanced_load, least_drive
    use pair_rows, only: held_approach
-   use records, only: increment_record_type, iteration_record_type, status_open
    use scheme_properties, only: is_explicit
    use scheme_start, only: warn_of_imbalance
+   use solution_report, only: solution_report_type, iteration_record_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use thermal_matrix, only: field_history, scheme_load
@@ -190,12 +190,12 @@ contains
 
    !> Record of the only pass of an increment.
    pure function only_pass(record, before, after) result(pass)
-      type(increment_record_type), intent(in) :: record
+      type(solution_report_type), intent(in) :: record
       type(contact_state_type), intent(in) :: before, after
       type(iteration_record_type) :: pass
 
       pass = iteration_record_type(increment=record%increment, iteration=1, &
-         pairs_changed=count(after%status /= before%status), cut_backs=record%cut_backs)
+         pairs_changed=count(after%status /= before%status))
    end function only_pass
 
    !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.

@@ -242,7 +242,7 @@ contains
       record%cut_backs = self%control%cut_backs
       record%time = clock%total_time
       record%load = self%loads%axis_value(model, record%time)
-      workspace%record = record
+      workspace%record%increment = record%increment
       next = self%state
       next%increment_size = clock%step_time - self%control%step_time
       ! (3.4) asks for them at the start of the next increment, whether this one solves heat or not.
@@ -260,7 +260,7 @@ contains
          end if
          since = wall_seconds()
          call solve_pairs(operators, self%loads, step, self%state, workspace, next, error)
-         record = workspace%record
+         record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
             call check_heat(model, operators, self%loads, self%control%step, next, error)

@@ -2,10 +2,10 @@
 !> a gap conduct as closed ones that carry no pressure.
 module initial_state
    use contact_operator, only: kept_contact, law_conductance
+   use contact_states, only: status_open
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use model, only: model_type
-   use records, only: status_open
    use solution_state, only: solution_state_type
    implicit none
    private

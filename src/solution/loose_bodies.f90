@@ -3,10 +3,10 @@ module loose_bodies
    use bodies, only: bodies_on_axis
    use body_names, only: body_name, reached_bodies
    use conductance_laws, only: law_none
+   use contact_states, only: status_open, status_slip, status_stick
    use kinds, only: dp
    use model, only: model_type
    use pair_rows, only: pair_row_type
-   use records, only: status_open, status_slip, status_stick
    use rigid_motions, only: contact_tie_type, find_free_motions, free_motion_type
    use steps, only: load_film_coefficient
    use text, only: append, string_type, to_text

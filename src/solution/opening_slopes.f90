@@ -12,12 +12,11 @@ module opening_slopes
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: law_jumps
    use contact_operator, only: law_pressure
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open
    use contact_tangent, only: contact_response
    use increment_data, only: increment_data_type, increment_workspace_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
-   use records, only: status_open
    implicit none
    private
    public :: make_graph, openings, opening_slope

@@ -1,23 +1,20 @@
 !> What one accepted increment leaves behind: the only thing that listing, results and verification
 !> see of the solution.
 module records
-   use kinds, only: dp, long
-   use text, only: string_type
+   use kinds, only: dp
+   use recovered_error, only: error_record_type
+   use solution_report, only: solution_report_type, work_record_type
+   use zone_edges, only: edges_kept
    implicit none
    private
    public :: element_points_record_type
-   public :: increment_record_type, contact_record_type, iteration_record_type
-   public :: field_record_type, work_record_type, attempt_record_type, error_record_type
+   public :: increment_record_type, contact_record_type
+   public :: field_record_type, attempt_record_type
    public :: add_attempts, note_failure
    public :: interface_errors_type, estimated_quantities, estimated_names, is_band
    public :: at_normal_force, at_shear_force, at_heat_rate, at_peak_pressure, at_edge_contact, &
       at_edge_stick
-   public :: status_open, status_slip, status_stick, edges_kept
 
-   integer, parameter :: status_open = 0    !! gap, zone I
-   integer, parameter :: status_slip = 1    !! closed, slipping or frictionless, zone II
-   integer, parameter :: status_stick = 2   !! closed and stuck, zone III
-   integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
    integer, parameter :: estimated_quantities = 6   !! quantities with an estimated error
    ! Their places in arrays over them.
@@ -62,18 +59,6 @@ module records
       real(dp) :: edges_stick(edges_kept) = 0.0_dp     !! alike
    end type contact_record_type
 
-   !> One pass of the fixed-point iteration.
-   type :: iteration_record_type
-      integer :: increment = 0           !! running number over all steps
-      integer :: iteration = 0           !! pass, from 1
-      real(dp) :: residual = 0.0_dp      !! max |U(w) - w|/w over the pairs that carry heat
-      real(dp) :: g_min = 1.0_dp         !! smallest g of eq. (4.2) over the pairs
-      real(dp) :: g_max = 1.0_dp         !! largest
-      integer :: g_kept = 0              !! pairs whose g was kept, eq. (4.2) giving none
-      integer :: pairs_changed = 0       !! pairs whose contact status changed in this pass
-      integer :: cut_backs = 0           !! cut-backs of the increment so far
-   end type iteration_record_type
-
    !> Integration points of the elements of a set (*EL PRINT), along x and y or the axes of the
    !> section's orientation.
    type :: element_points_record_type
@@ -85,14 +70,6 @@ module records
       !> (2, points) along 1, 2; unallocated without heat [power/length^2]
       real(dp), allocatable :: heat_flux(:, :)
    end type element_points_record_type
-
-   !> Estimated discretisation error of stress or of heat flux (Zienkiewicz & Zhu).
-   type :: error_record_type
-      !> (bodies) error in the energy norm, relative to that of the whole; 0 without either
-      real(dp), allocatable :: body(:)
-      !> (elements) root mean square of the difference to the recovered field [stress or flux]
-      real(dp), allocatable :: element(:)
-   end type error_record_type
 
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and
    !> section.
@@ -113,14 +90,6 @@ module records
       real(dp), allocatable :: external_heat(:)
    end type field_record_type
 
-   !> Work of the partial re-factorisation of (3.4) in one increment.
-   type :: work_record_type
-      integer :: columns_again = 0           !! columns factored again, over all passes
-      integer :: columns_full = 0            !! columns of as many full factorisations
-      integer(long) :: flops_again = 0       !! operations of the columns factored again
-      integer(long) :: flops_full = 0        !! operations of as many full factorisations
-   end type work_record_type
-
    !> An attempt at an increment that failed.
    type :: attempt_record_type
       real(dp) :: time = 0.0_dp              !! total time at which it would have ended [time]
@@ -129,18 +98,12 @@ module records
    end type attempt_record_type
 
    !> One accepted increment.
-   type :: increment_record_type
-      integer :: increment = 0               !! running number over all steps, from 1
+   type, extends(solution_report_type) :: increment_record_type
       integer :: step = 0                    !! step number, from 1
       integer :: increment_in_step = 0       !! number in the step, from 1
       logical :: last_of_step = .false.      !! whether the step ends here
       real(dp) :: time = 0.0_dp              !! total time [time]
       real(dp) :: load = 0.0_dp              !! value on the load axis
-      !> Floor of the residual: what the last places of the displacements change in omega.
-      real(dp) :: residual_floor = 0.0_dp
-      !> Real part of the eigenvalue of U' largest in modulus; NaN where nothing is iterated.
-      real(dp) :: coupling_gain = 0.0_dp
-      real(dp) :: coupling_gain_max = 0.0_dp !! largest real eigenvalue of U'; NaN likewise
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
       real(dp) :: heat_imbalance = 0.0_dp    !! of (3.4), relative to the largest rate
@@ -153,8 +116,6 @@ module records
       type(contact_record_type), allocatable :: contacts(:)     !! one an interface
       integer :: cut_backs = 0               !! attempts at it that failed before
       type(attempt_record_type), allocatable :: failed(:)       !! these; unallocated for none
-      !> Passes of all attempts in their order; unallocated without coupling.
-      type(iteration_record_type), allocatable :: iterations(:)
       type(field_record_type) :: fields = field_record_type()   !! fields
       !> (interfaces) at the end of a step; else unallocated
       type(interface_errors_type), allocatable :: errors(:)
@@ -164,10 +125,6 @@ module records
       type(error_record_type) :: heat_flux_error = error_record_type()
       !> One an *EL PRINT of the step, empty where its table is not due; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
-      type(work_record_type) :: work = work_record_type()       !! re-factorisation
-      character(:), allocatable :: runaway  !! thermal runaway, in words; else unallocated
-      type(string_type), allocatable :: notes(:)                !! unallocated for none
-      type(string_type), allocatable :: warnings(:)             !! unallocated for none
    end type increment_record_type
 
 contains

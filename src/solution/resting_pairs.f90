@@ -2,12 +2,11 @@
 !> Without them some increments have no solution, (1.8) asking for a law without a jump.
 module resting_pairs
    use conductance_graph, only: conductance_graph_type
-   use contact_states, only: contact_state_type
+   use contact_states, only: contact_state_type, status_open, status_slip
    use fixed_point, only: pair_residual, pass_type
    use increment_data, only: contact_scales_type, increment_data_type
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
-   use records, only: status_open, status_slip
    implicit none
    private
    public :: contact_scales, find_residual, settle

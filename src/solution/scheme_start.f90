@@ -6,8 +6,8 @@ module scheme_start
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
-   use records, only: increment_record_type
    use scheme_properties, only: amplification
+   use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
    use text, only: append, to_text
    implicit none
@@ -28,7 +28,7 @@ contains
       type(increment_data_type), intent(in) :: data           !! scheme, conductance, jumps
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(inout) :: next        !! state at the end
-      type(increment_record_type), intent(inout) :: record    !! receives the warning
+      type(solution_report_type), intent(inout) :: record    !! receives the warning
       real(dp) :: factor, imbalance
 
       factor = amplification(data%scheme)

@@ -3,8 +3,8 @@ module solution_state
    use contact_states, only: contact_state_type
    use controls, only: thermal_scheme_type
    use kinds, only: dp
+   use recovered_error, only: error_record_type
    use scheme_properties, only: is_explicit
-   use records, only: error_record_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private

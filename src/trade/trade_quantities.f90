@@ -3,9 +3,10 @@
 module trade_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use contact_pairs, only: contact_pairs_type
+   use contact_states, only: status_open
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
-   use records, only: contact_record_type, increment_record_type, status_open
+   use records, only: contact_record_type, increment_record_type
    implicit none
    private
    public :: row_values_type, is_there
