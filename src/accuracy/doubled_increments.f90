@@ -69,11 +69,13 @@ contains
       type(increment_workspace_type) :: workspace
 
       if (.not. self%is_led .or. self%is_lost) return
-      if (record%step /= self%step) self%waiting = modulo(planned_increments(model%steps(record%step)), 2)
+      if (record%step /= self%step) self%waiting = &
+         modulo(planned_increments(model%steps(record%step)), 2)
       self%step = record%step
       self%waiting = self%waiting + 1
       if (self%waiting < 2 .and. .not. record%last_of_step) return
-      self%has_doubled = self%has_doubled .or. record%time - self%time > 1.5_dp*accepted%increment_size
+      self%has_doubled = self%has_doubled .or. &
+         record%time - self%time > 1.5_dp*accepted%increment_size
       step = companion_step(model%steps(record%step))
       next = self%state
       before = self%state

@@ -239,7 +239,8 @@ contains
       type(contact_state_type), intent(in) :: state
 
       force_rounding = max(1.0e-12_dp*maxval(abs(state%force)), &
-         1.0e-13_dp*largest_term(system, load, work, state), work%least_force(system)) + tiny(1.0_dp)
+         1.0e-13_dp*largest_term(system, load, work, state), work%least_force(system)) + &
+         tiny(1.0_dp)
    end function force_rounding
 
    !> Largest sum of the terms of which a contact force is made, S d - c, without their signs: what

@@ -61,8 +61,8 @@ contains
          end if
          if (k == 0) exit
          t = t + sense*step
-         call change_condition(system, dot_product([1.0_dp, t], piece%slip(k, :)), event, k, state, &
-            entering)
+         call change_condition(system, dot_product([1.0_dp, t], piece%slip(k, :)), event, k, &
+            state, entering)
          call solve_piece(system, load, work, path, state, piece, error)
          if (allocated(error)) return
          sense = merge(1, -1, piece%slack(entering, k, 2) > 0.0_dp)

@@ -245,8 +245,8 @@ contains
             if (state%status(k) == status_open) way(normal) = d(normal) - self%anchor(normal)
             if (tangent == 0) cycle
             way(tangent) = d(tangent) - self%anchor(tangent)
-            if (state%status(k) == status_slip) &
-               way(tangent) = d(tangent) - start_of_slip(self, state, k)
+            if (state%status(k) /= status_slip) cycle
+            way(tangent) = d(tangent) - start_of_slip(self, state, k)
          end associate
       end do
       associate (free => self%rows%free)

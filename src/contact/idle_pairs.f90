@@ -55,7 +55,8 @@ contains
          end where
          call opened%solve_set(system, load, trial, error)
          if (opened%driven) then
-            idle = idle .and. .not. moved(system, opened%rows%free, abs(matmul(opened%loose, opened%drive)))
+            idle = idle .and. .not. moved(system, opened%rows%free, &
+               abs(matmul(opened%loose, opened%drive)))
          else if (allocated(error) .or. size(opened%loose, 2) == size(work%loose, 2)) then
             idle = .false.
          else

@@ -1,6 +1,6 @@
 !> What the solution asks of a direct solver for a symmetric positive definite matrix whose last
-!> unknowns, the tail, are the contact's: factor the leading block once, after which only the tail is
-!> ever factored again (tail_factors).
+!> unknowns, the tail, are the contact's: factor the leading block once, after which only the tail
+!> is ever factored again (tail_factors).
 module linear_solver
    use errors, only: error_type
    use kinds, only: dp, long

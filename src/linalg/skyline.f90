@@ -1,5 +1,5 @@
-!> Crout's LDL^T of the leading block of a skyline, and its Schur complement on the last columns, the
-!> tail, which tail_factors factors again and again.
+!> Crout's LDL^T of the leading block of a skyline, and its Schur complement on the last columns,
+!> the tail, which tail_factors factors again and again.
 !>
 !> Columns are stored from their first non-zero row to the diagonal, those of the tail to the last
 !> leading row.

@@ -161,7 +161,6 @@ contains
       type(increment_workspace_type), intent(inout) :: workspace
       real(dp), allocatable :: slope(:, :), body(:)
       type(coupling_gain_type) :: gain
-      character(:), allocatable :: at
       logical :: found
 
       workspace%record%coupling_gain = 0.0_dp
@@ -172,7 +171,6 @@ contains
       end associate
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
-      at = 'increment '//to_text(workspace%record%increment)//': '
       call opening_slope(operators, data, workspace, next%jump, next%contact, slope, body)
       if (.not. allocated(slope)) return
       call find_gain(data%graph, workspace%pass%opening, slope, next%resting, gain, found)
@@ -181,13 +179,21 @@ contains
       workspace%record%coupling_gain_max = gain%largest_real
       if (gain%largest_real <= -huge(1.0_dp)) workspace%record%coupling_gain_max = &
          ieee_value(1.0_dp, ieee_quiet_nan)
-      if (gain%largest < -1.0_dp) call append(workspace%record%warnings, at//'the coupling gain is '// &
+      call warn(gain%largest < -1.0_dp, 'the coupling gain is '// &
          to_text(gain%largest)//', below -1: plain iteration (4.1) would diverge')
-      if (abs(gain%largest_real - 1.0_dp) <= near_turning_point) call append(workspace%record%warnings, at// &
+      call warn(abs(gain%largest_real - 1.0_dp) <= near_turning_point, &
          'the largest real gain is '//to_text(gain%largest_real)//', near 1: a turning point, '// &
          'where solutions meet and small changes of the load change much')
-      if (gain%is_one_of_several) call append(workspace%record%warnings, at//'det(I - U'') is negative: '// &
+      call warn(gain%is_one_of_several, 'det(I - U'') is negative: '// &
          'the branch is unstable, and there are at least two other solutions')
+   contains
+      subroutine warn(is_so, words)
+         logical, intent(in) :: is_so
+         character(*), intent(in) :: words
+
+         if (is_so) call append(workspace%record%warnings, 'increment '// &
+            to_text(workspace%record%increment)//': '//words)
+      end subroutine warn
    end subroutine judge
 
 end module coupled_increment

@@ -53,11 +53,13 @@ contains
          call name_runaway(operators, data, next%jump, workspace%record, error)
       else if (any(data%graph%width > 0.0_dp)) then
          deallocate (error)
-         call append(workspace%record%notes, 'a pair whose conductance jumps comes to no state by the '// &
+         call append(workspace%record%notes, &
+            'a pair whose conductance jumps comes to no state by the '// &
             'method of the deck; the increment is handed to NEWTON')
          next = start
          call use_method(operators, by_newton(controls), data, workspace, next, error)
-         if (allocated(error)) call name_runaway(operators, data, next%jump, workspace%record, error)
+         if (allocated(error)) call name_runaway(operators, data, next%jump, workspace%record, &
+            error)
       else if (runs_away(data, next%jump)) then
          call name_runaway(operators, data, next%jump, workspace%record, error)
       else if (.not. workspace%contact%driven) then

@@ -206,7 +206,8 @@ contains
          record%contact_violation = contact_violation(next%displacement, &
             internal - next%force_load, held, operators%pairs, next%contact, &
             operators%contact%tangent > 0, length, scale)
-         record%fields%reaction = reshape(merge(residual, 0.0_dp, held), [2, size(next%temperature)])
+         record%fields%reaction = reshape(merge(residual, 0.0_dp, held), &
+            [2, size(next%temperature)])
       end associate
    end subroutine balance_forces
 

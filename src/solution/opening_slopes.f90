@@ -98,7 +98,8 @@ contains
             associate (j => active(k))
                of_jump(place(j), k) = heat(j)
                call workspace%tail%solve(of_jump(:, k))
-               body(j) = (heat(j)/of_jump(place(j), k) - workspace%tail%diagonal(place(j)))/weight(j)
+               body(j) = (heat(j)/of_jump(place(j), k) - &
+                  workspace%tail%diagonal(place(j)))/weight(j)
             end associate
          end do
          where (body <= 0.0_dp) body = 1.0_dp
