@@ -13,21 +13,38 @@ module pair_tractions
 
 contains
 
-   !> Pairs in contact. A pair of weight 0 under uniform pressure carries no force, so that rounding
-   !> alone says whether it is open: it is not, where it has no gap and the pairs beside it press.
-   pure function in_contact(pairs, closed, gap) result(contact)
+   !> Pairs in contact. The force of a pair of weight 0 is a difference of pressures: 0 where the
+   !> pressure is uniform, and a tension, which opens the pair, where the pressure grows away from
+   !> it. Such a pair is in contact where the pairs beside it press more than it takes to close it.
+   pure function in_contact(pairs, closed, gap, force, stiffness) result(contact)
       type(contact_pairs_type), intent(in) :: pairs  !! pairs of one interface
       logical, intent(in) :: closed(:)               !! (m) as the active set has them
       real(dp), intent(in) :: gap(:)                 !! (m) [length]
+      real(dp), intent(in) :: force(:)               !! (m) nodal forces, 0 at open pairs [force]
+      real(dp), intent(in) :: stiffness(:)           !! (m) of a pair, others held [force/length]
       logical :: contact(size(closed))               !! (m)
+      real(dp) :: lacking, pressure(size(closed))
       integer :: k
 
       contact = closed
+      pressure = over_weight(pairs, force)
       do k = 1, size(closed)
-         if (pairs%weight(k) > 0.0_dp .or. gap(k) > no_gap*pairs%edge(k)) cycle
-         contact(k) = closed(k) .or. any(closed(max(k - 1, 1):min(k + 1, size(closed))))
+         if (pairs%weight(k) > 0.0_dp .or. closed(k)) cycle
+         if (.not. any(closed(max(k - 1, 1):min(k + 1, size(closed))))) cycle
+         lacking = stiffness(k)*max(gap(k) - no_gap*pairs%edge(k), 0.0_dp)
+         contact(k) = lacking <= limit(pairs, pressure, k)*area_beside(pairs, k)
       end do
    end function in_contact
+
+   !> Nodal force at a pair of weight 0 by which its pressure exceeds that at the far ends of its
+   !> sides, over that excess: the integral of N1^2, a thirtieth of the sides. Those of N1 N2 and
+   !> N1 (N1 + N3) vanish, and N2, of the pair in the middle of a side, has two thirds of the side.
+   pure real(dp) function area_beside(pairs, k)
+      type(contact_pairs_type), intent(in) :: pairs
+      integer, intent(in) :: k
+
+      area_beside = sum(pairs%weight(max(k - 1, 1):min(k + 1, size(pairs%weight))))/20
+   end function area_beside
 
    !> Nodal force over weight. A closed pair of weight 0 has the limit of the profile, no further
    !> than 0 where the pairs beside it press; an open one has none.

@@ -128,7 +128,9 @@ contains
             next%resting(first:last))
          record%gap = contact%gap(first:last)
          record%smallest_gap = next%smallest_gap(first:last)
-         closed = in_contact(pairs, record%status /= status_open, record%gap)
+         closed = record%status /= status_open
+         if (next%has_mechanics) closed = in_contact(pairs, closed, record%gap, &
+            contact%force(first:last), operators%contact%alone(first:last))
          touches = closed .and. record%status == status_open
          where (touches)
             record%status = merge(status_stick, status_slip, &
