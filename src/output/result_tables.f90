@@ -53,14 +53,14 @@ module result_tables
 
    integer, parameter :: error_columns = 4   !! value, errors of mesh, increments and iteration
 
-   !> Group `/errors`: one row a step. `sets` holds the times, then for each interface one dataset
-   !> for each of estimated_names.
+   !> Group `/errors`, where errors are estimated: one row a step. `sets` holds the times, then for
+   !> each interface one dataset for each of estimated_names.
    type :: error_results_type
       type(growing_dataset_type), allocatable :: sets(:)
    contains
       procedure :: start => start_errors
       procedure :: append => append_errors
-      procedure, nopass :: create_groups => create_error_groups
+      procedure :: create_groups => create_error_groups
    end type error_results_type
 
 contains
@@ -210,14 +210,15 @@ contains
       call write_array(file, group//'/weight', pairs%weight, error)
    end subroutine write_contact_static
 
-   !> Prepares the datasets; none without an interface.
-   subroutine start_errors(self, pairs, steps)
+   !> Prepares the datasets; none without an interface or without estimates.
+   subroutine start_errors(self, estimated, pairs, steps)
       class(error_results_type), intent(inout) :: self    !! the group
+      logical, intent(in) :: estimated                    !! whether errors are estimated
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: steps                        !! steps of the deck
       integer :: i, q
 
-      if (size(pairs) == 0) then
+      if (size(pairs) == 0 .or. .not. estimated) then
          allocate(self%sets(0))
          return
       end if
@@ -249,13 +250,14 @@ contains
 
    !> Creates the groups.
    !> Error: status_internal, when HDF5 refuses.
-   subroutine create_error_groups(file, pairs, error)
+   subroutine create_error_groups(self, file, pairs, error)
+      class(error_results_type), intent(in) :: self       !! the group, started
       integer(hid_t), intent(in) :: file                  !! the open file
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
 
-      if (size(pairs) == 0) return
+      if (size(self%sets) == 0) return
       call create_group(file, '/errors', error)
       if (allocated(error)) return
       do i = 1, size(pairs)

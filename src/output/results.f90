@@ -85,7 +85,7 @@ contains
          model%steps%analysis) .and. solves_mechanics(model%steps%analysis)), &
          model%mesh%body_count, expected)
       call self%convergence%start(8*expected)
-      call self%errors%start(pairs, size(model%steps))
+      call self%errors%start(model%estimates_errors, pairs, size(model%steps))
       allocate(self%contacts(size(pairs)))
       do i = 1, size(pairs)
          call self%contacts(i)%start(pairs(i), has_heat, expected)
