@@ -1,7 +1,9 @@
 """A run that is killed leaves a file that opens and holds every increment that its .sta names."""
 
+import ctypes
 import os
 import random
+import struct
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -138,3 +140,74 @@ def test_a_killed_run_leaves_every_increment_of_its_sta(reference, tmp_path):
     assert status == 0, said
     assert check_what_is_left(deck, numbers) == len(numbers["history/time"])
     assert not deck.with_suffix(".vtkhdf.tmp").exists()
+
+
+MODIFIED, CLOSED, PUT_IN_PLACE, CREATED = 0x2, 0x8, 0x80, 0x100   # inotify(7)
+BLOCK = """*NODE
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+*ELEMENT, TYPE=CPS4, ELSET=BLOCK
+1, 1, 2, 3, 4
+*MATERIAL, NAME=STEEL
+*ELASTIC
+2e5, 0.3
+*SOLID SECTION, ELSET=BLOCK, MATERIAL=STEEL
+"""
+STEP = """*STEP
+*STATIC
+0.5, 1.
+*BOUNDARY
+1, 1, 2
+2, 2
+3, 2, 2, {0}e-3
+*END STEP
+"""
+
+
+def changes_during(folder, work):
+    """Return what happened to the files of a folder while work was done, in its order, as
+    (event, name)."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    watch = libc.inotify_init1(os.O_NONBLOCK)
+    assert libc.inotify_add_watch(watch, os.fsencode(folder),
+                                  MODIFIED | CLOSED | PUT_IN_PLACE | CREATED) >= 0
+    try:
+        work()
+        found, heard = b"", []
+        with os.fdopen(watch, "rb", buffering=0, closefd=False) as queue:
+            while part := queue.read(65536):
+                found += part
+    finally:
+        os.close(watch)
+    while found:
+        _, event, _, length = struct.unpack_from("iIII", found)
+        heard.append((event, found[16:16 + length].rstrip(b"\0").decode()))
+        found = found[16 + length:]
+    return heard
+
+
+def test_files_change_in_an_order_that_no_kill_can_spoil(tmp_path):
+    """The result file is closed before it is put in place, and not written to there; `.sta` is
+    emptied before the first one is in place, and has its lines behind each. Between two of these
+    changes a kill strikes too seldom to be met by chance."""
+    steps = 4
+    deck = tmp_path / "block.inp"
+    deck.write_text(BLOCK + "".join(STEP.format(k + 1) for k in range(steps)))
+    deck.with_suffix(".sta").write_text("heading\n1\n2\n3\n")
+    heard = changes_during(tmp_path, lambda: run(deck))
+    assert increments_in(deck.with_suffix(".sta")) == list(range(1, 2 * steps + 1))
+    complete, order = False, []
+    for event, name in heard:
+        if name == "block.vtkhdf.tmp":
+            complete = event == CLOSED
+        elif name == "block.vtkhdf":
+            assert event == PUT_IN_PLACE, "written where it is read"
+            assert complete, "put in place before it was closed"
+            order.append("result")
+        elif name == "block.sta" and event == MODIFIED and order[-1:] != ["lines"]:
+            order.append("lines")
+    # What empties .sta is the first change of it.
+    assert order == ["lines", *["result", "lines"] * (len(order) // 2)]
+    assert len(order) // 2 >= steps
