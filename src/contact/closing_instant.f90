@@ -89,25 +89,14 @@ contains
                   state%reference(k) = state%tangential(k) - work%slip(system, state, k)
                end if
             end do
-            call drop_rounding(state)
+            ! An active set satisfies its conditions to rounding.
+            state%gap = max(state%gap, 0.0_dp)
             return
          end if
       end do
       call set_error(error, status_no_convergence, &
          'the instants at which pairs close do not settle')
    end subroutine settle_laws
-
-   !> An active set satisfies its conditions to rounding. A closed pair that pulls by rounding
-   !> carries nothing, and an open one that overlaps by it has no gap.
-   pure subroutine drop_rounding(state)
-      type(contact_state_type), intent(inout) :: state
-
-      state%gap = max(state%gap, 0.0_dp)
-      where (state%force < 0.0_dp)
-         state%force = 0.0_dp
-         state%shear_force = 0.0_dp
-      end where
-   end subroutine drop_rounding
 
    !> Closing laws of the pairs that are closed now and were open at the start of the increment. A
    !> pair that has opened again keeps its law, on which nothing depends: without it the pair might
