@@ -43,7 +43,7 @@ class Outcome:
             balances = [history[name][()] for name in ("heat_imbalance", "force_imbalance")
                         if name in history]
             pivot = float(file["run"].attrs["smallest_pivot"])
-        return [passes, pivot, float(np.nanmax(balances, initial=0.0))]
+        return [passes, pivot, float(np.max(balances, initial=0.0))]
 
 
 def deviation(value, expected, scale=None):

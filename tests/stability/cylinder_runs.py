@@ -53,7 +53,7 @@ def solve(folder, name, method="NEWTON", levels=0, increments=45, cards=(), chan
     assert solved == increments or stopped, process.stderr
     return Run(increments, history["iterations"], history["coupling_gain"],
                history["coupling_gain_max"],
-               max(history["heat_imbalance"].max(), history["force_imbalance"].max()), contact)
+               np.max([history["heat_imbalance"], history["force_imbalance"]]), contact)
 
 
 def difference(one, other):
