@@ -118,6 +118,7 @@ contains
          place = self%trial
          return
       end if
+      change = 0.0_dp
       sound = allocated(slope)
       if (sound .and. self%unit <= 0.0_dp) call set_unit(self, graph, body, opening, slope, sound)
       if (sound) call find_step(self, graph, body, opening, slope, change, tangent, sound)
