@@ -10,7 +10,9 @@ program thercon
    use deck_run, only: base_name, run_deck
    use deck_trade, only: trade_deck
    use errors, only: error_type, status_deck
+   use file_calls, only: check_printed, print_text, survive_file_limits
    use interruption, only: catch_signals
+   use messages, only: print_error
    use version_report, only: print_versions
    implicit none
    type(command_type) :: command
@@ -26,14 +28,15 @@ program thercon
    end interface
 
    status = 0
+   call survive_file_limits()
    call read_command(command, error)
    if (allocated(error)) then
-      write (error_unit, '(2a)') 'thercon: error: ', error%message
+      call print_error('thercon', error%message)
       call c_exit(int(status_deck, c_int))
    end if
    select case (command%action)
    case (command_help)
-      write (output_unit, '(a)') usage
+      call print_text(usage//new_line('a'))
    case (command_version)
       call print_versions(output_unit)
    case (command_check)
@@ -48,7 +51,11 @@ program thercon
          call run_one(command%decks(1)%value, status)
       end if
    end select
-   flush (output_unit)
+   call check_printed(error)
+   if (allocated(error)) then
+      call print_error('thercon', error%message)
+      status = max(status, error%status)
+   end if
    flush (error_unit)
    call c_exit(int(status, c_int))
 

@@ -160,7 +160,8 @@ contains
       if (find_surface == 0) call report_unknown('surface', name, names, place, report)
    end function find_surface
 
-   !> A name stands for a group of the result file: it is used once, and holds no slash.
+   !> A name stands for a group of the result file: it is used once, and is one that HDF5
+   !> takes for a group.
    subroutine check_name(card, contacts, report)
       type(keyword_card_type), intent(in) :: card
       type(contact_definition_type), intent(in) :: contacts(:)
@@ -176,6 +177,9 @@ contains
       end do
       if (scan(contacts(n)%name, '/@') > 0) call report%error(parameter_place(card, 'NAME'), &
          'the name of a contact pair holds no / and no @')
+      if (contacts(n)%name == '.' .or. contacts(n)%name == '..') call report%error( &
+         parameter_place(card, 'NAME'), 'the name of a contact pair is not . or ..: it names a '// &
+         'group of the result file')
    end subroutine check_name
 
 end module deck_builder_contact

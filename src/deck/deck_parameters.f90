@@ -5,10 +5,13 @@ module deck_parameters
    use cards, only: add_note, field_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use text, only: append, nearest_known, string_type, to_upper
+   use text, only: append, nearest_known, string_type, to_text, to_upper
+   use utf8, only: as_utf8
    implicit none
    private
    public :: deck_parameters_type
+
+   integer, parameter :: longest_text = 10000   !! bytes of a field with all its names replaced
 
    !> The parameters of a deck.
    type :: deck_parameters_type
@@ -45,7 +48,7 @@ contains
             cycle
          end if
          call append(self%setting_names, to_upper(trim(settings(i)%value(:equals - 1))))
-         call append(self%setting_values, settings(i)%value(equals + 1:))
+         call append(self%setting_values, as_utf8(settings(i)%value(equals + 1:)))
       end do
    end subroutine take_settings
 
@@ -113,6 +116,11 @@ contains
          end if
          done = done//rest(:left - 1)//self%values(known)%value
          rest = rest(right + 1:)
+         if (len(done) + len(rest) <= longest_text) cycle
+         call report%error(field%place, 'the field has more than '//to_text(longest_text)// &
+            ' characters once its names are replaced')
+         call make_undefined(field)
+         return
       end do
       field%text = done//rest
    end subroutine substitute

@@ -6,11 +6,15 @@ module deck_reader
    use deck_report, only: deck_report_type
    use deck_source, only: place_type, read_lines
    use text, only: append, string_type, to_text
+   use utf8, only: first_byte
    implicit none
    private
    public :: read_deck
 
-   integer, parameter :: deepest_include = 16 !! files that may include each other
+   integer, parameter :: deepest_include = 16   !! files that may include each other
+   integer, parameter :: most_files = 1000      !! of a deck, each counted as often as it is read
+   integer, parameter :: longest_card = 100000  !! bytes of a line that is no comment
+   character(*), parameter :: too_many = 'includes'   !! group of errors that are told once
 
 contains
 
@@ -67,6 +71,7 @@ contains
       integer :: i, file
 
       call read_lines(found, lines, fault)
+      if (len(fault) == 0) fault = length_fault(lines)
       if (len(fault) > 0) return
       call append(report%source%paths, path)
       file = size(report%source%paths)
@@ -83,7 +88,12 @@ contains
             cycle
          else if (size(open_files) == deepest_include) then
             call report%error(place, 'more than '//to_text(deepest_include)// &
-               ' files include each other')
+               ' files include each other', too_many)
+            call report%lose_file()
+            cycle
+         else if (size(report%source%paths) == most_files) then
+            call report%error(place, 'the deck has more than '//to_text(most_files)//' files', &
+               too_many)
             call report%lose_file()
             cycle
          end if
@@ -94,6 +104,21 @@ contains
          call report%lose_file()
       end do
    end subroutine read_file
+
+   !> Why the lines of a file are not taken: one of them is too long; else empty.
+   pure function length_fault(lines) result(fault)
+      type(string_type), intent(in) :: lines(:)
+      character(:), allocatable :: fault
+      integer :: i
+
+      fault = ''
+      do i = 1, size(lines)
+         if (len(lines(i)%value) <= longest_card) cycle
+         if (is_comment(lines(i)%value)) cycle
+         fault = 'line '//to_text(i)//' has more than '//to_text(longest_card)//' characters'
+         return
+      end do
+   end function length_fault
 
    pure logical function is_open(path, open_files)
       character(*), intent(in) :: path
@@ -151,19 +176,5 @@ contains
          end associate
       end do
    end subroutine check_width
-
-   !> First byte of the n-th character of a line in UTF-8; behind the line where it has fewer.
-   pure integer function first_byte(line, n)
-      character(*), intent(in) :: line
-      integer, intent(in) :: n
-      integer :: characters
-
-      characters = 0
-      do first_byte = 1, len(line)
-         if (iachar(line(first_byte:first_byte)) < 128 .or. &
-            iachar(line(first_byte:first_byte)) >= 192) characters = characters + 1
-         if (characters == n) return
-      end do
-   end function first_byte
 
 end module deck_reader

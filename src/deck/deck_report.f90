@@ -2,7 +2,9 @@
 module deck_report
    use deck_source, only: deck_source_type, place_type
    use sorting, only: sort_order
+   use messages, only: print_line
    use text, only: append, string_type, to_text, to_upper
+   use utf8, only: character_count, first_byte, printable
    implicit none
    private
    public :: deck_report_type, severity_error, severity_warning
@@ -10,6 +12,9 @@ module deck_report
    integer, parameter :: severity_error = 1     !! the deck cannot be solved
    integer, parameter :: severity_warning = 2   !! the deck can be solved, perhaps not as meant
    integer, parameter :: most_errors = 50       !! errors that are printed
+   integer, parameter :: longest_echo = 200     !! characters of a card that are printed
+   integer, parameter :: echo_before = 100      !! of these, before the place that is meant
+   character(*), parameter :: gap = '...'       !! where characters are left out
 
    !> One error or warning.
    type :: diagnostic_type
@@ -171,8 +176,8 @@ contains
             call print_diagnostic(self, diagnostic, unit)
          end associate
       end do
-      if (errors > most_errors) write (unit, '(a)') self%path//': error: '// &
-         'errors that are not shown: '//to_text(errors - most_errors)
+      if (errors > most_errors) call print_line(unit, self%path//': error: '// &
+         'errors that are not shown: '//to_text(errors - most_errors))
    end subroutine print_report
 
    subroutine print_diagnostic(self, diagnostic, unit)
@@ -180,13 +185,49 @@ contains
       type(diagnostic_type), intent(in) :: diagnostic
       integer, intent(in) :: unit
 
-      write (unit, '(a)') first_line(self, diagnostic)
+      call print_line(unit, first_line(self, diagnostic))
       if (diagnostic%place%image == 0) return
       associate (image => self%source%images(diagnostic%place%image)%value)
-         write (unit, '(a)') image
-         write (unit, '(a)') caret_line(image, diagnostic%place%column)
+         call print_card(unit, image, min(diagnostic%place%column, len(image) + 1))
       end associate
    end subroutine print_diagnostic
+
+   !> Prints a card, or the part of a long one about a byte, and below it a caret under this byte.
+   !> Each tab is shown as one blank.
+   subroutine print_card(unit, image, column)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: image
+      integer, intent(in) :: column
+      character(:), allocatable :: before, behind
+      integer :: room
+
+      before = shown(image(:column - 1))
+      behind = shown(image(column:))
+      room = longest_echo
+      if (character_count(before) + character_count(behind) > longest_echo) then
+         if (character_count(before) > echo_before) before = gap//before(first_byte(before, &
+            character_count(before) - echo_before + len(gap) + 1):)
+         room = longest_echo - character_count(before)
+         if (character_count(behind) > room) behind = behind(:first_byte(behind, &
+            room - len(gap) + 1) - 1)//gap
+      end if
+      call print_line(unit, before//behind)
+      call print_line(unit, repeat(' ', character_count(before))//'^')
+   end subroutine print_card
+
+   !> Part of a card as it is printed.
+   pure function shown(part) result(string)
+      character(*), intent(in) :: part
+      character(:), allocatable :: string
+      character(len(part)) :: untabbed
+      integer :: i
+
+      untabbed = part
+      do i = 1, len(part)
+         if (part(i:i) == achar(9)) untabbed(i:i) = ' '
+      end do
+      string = printable(untabbed)
+   end function shown
 
    !> `path:line:column: severity: message`, or `path: severity: message` for the deck as a whole.
    function first_line(self, diagnostic) result(line)
@@ -203,37 +244,21 @@ contains
          else
             line = source%paths(source%file(place%image))%value//':'// &
                to_text(source%line(place%image))//':'// &
-               to_text(len(caret_line(source%images(place%image)%value, place%column)))// &
+               to_text(column_of(source%images(place%image)%value, place%column))// &
                ': '//severity//diagnostic%message
          end if
       end associate
       if (diagnostic%places > 1) line = line//' ('//to_text(diagnostic%places)//' such places)'
    end function first_line
 
-   !> A caret under a byte of a line: tabs stay tabs, and a character of several bytes (UTF-8) is
-   !> one column.
-   pure function caret_line(image, column) result(line)
+   !> Column of a byte, which may stand behind the line: a character of several bytes is one column.
+   pure integer function column_of(image, byte)
       character(*), intent(in) :: image
-      integer, intent(in) :: column
-      character(:), allocatable :: line
-      character(column) :: buffer
-      integer :: i, n
+      integer, intent(in) :: byte
 
-      n = 0
-      do i = 1, column - 1
-         if (i > len(image)) then
-            n = n + 1
-            buffer(n:n) = ' '
-         else if (image(i:i) == achar(9)) then
-            n = n + 1
-            buffer(n:n) = achar(9)
-         else if (iachar(image(i:i)) < 128 .or. iachar(image(i:i)) >= 192) then
-            n = n + 1
-            buffer(n:n) = ' '
-         end if
-      end do
-      line = buffer(:n)//'^'
-   end function caret_line
+      column_of = character_count(image(:min(byte - 1, len(image)))) + 1 + &
+         max(0, byte - 1 - len(image))
+   end function column_of
 
    !> The order of the diagnostics by image, then column, then as reported.
    function order_of(self) result(order)

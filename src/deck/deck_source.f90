@@ -1,12 +1,15 @@
 !> The lines of a deck as they stand in its files: the deck itself and, where they are included, the
 !> others.
 module deck_source
+   use file_calls, only: read_file
    use text, only: string_type, to_text
+   use utf8, only: as_utf8
    implicit none
    private
    public :: deck_source_type, place_type, read_lines
 
    integer, parameter :: first_capacity = 1024   !! images before the list grows for the first time
+   integer, parameter :: most_bytes = 1000000000   !! of a file
 
    !> A place in a deck.
    type :: place_type
@@ -94,31 +97,23 @@ contains
       end do
    end subroutine read_lines
 
-   !> A whole file, unless it is no text; its last line has an end even where the file has none.
+   !> A whole file in UTF-8, unless it is no text; its last line has an end even where the file has
+   !> none.
    subroutine read_contents(path, contents, fault)
       character(*), intent(in) :: path
       character(:), allocatable, intent(out) :: contents
       character(:), allocatable, intent(out) :: fault
       character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
-      integer :: unit, length, status
 
+      contents = ''
       fault = path_fault(path)
       if (len(fault) > 0) return
-      fault = 'it cannot be opened'
-      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', &
-         status='old', iostat=status)
-      if (status /= 0) return
-      inquire (unit=unit, size=length)
-      fault = 'it is not a file of text'
-      if (length >= 0) then
-         allocate(character(length) :: contents)
-         read (unit, iostat=status) contents
-         if (status == 0) fault = text_fault(contents)
-      end if
-      close (unit)
-      if (len(fault) > 0 .or. length == 0) return
-      if (contents(length:length) /= new_line('a')) contents = contents//new_line('a')
+      call read_file(path, most_bytes, contents, fault)
+      if (len(fault) == 0) fault = text_fault(contents)
+      if (len(fault) > 0 .or. len(contents) == 0) return
+      if (contents(len(contents):) /= new_line('a')) contents = contents//new_line('a')
       if (index(contents, byte_order_mark) == 1) contents = contents(4:)
+      contents = as_utf8(contents)
    end subroutine read_contents
 
    !> Why there is no file to open at a path; empty where there is one.
@@ -149,14 +144,28 @@ contains
          select case (iachar(contents(i:i)))
          case (10)
             line = line + 1
-         case (0:8, 11:12, 14:31)
-            fault = 'it is not text: control character '//to_text(iachar(contents(i:i)))// &
-               ' in line '//to_text(line)
+         case (13)
+            if (i < len(contents)) then
+               if (contents(i + 1:i + 1) == new_line('a')) cycle
+            else
+               cycle
+            end if
+            fault = control_fault(13, line)
+            return
+         case (0:8, 11:12, 14:31, 127)
+            fault = control_fault(iachar(contents(i:i)), line)
             return
          case default
             cycle
          end select
       end do
    end function text_fault
+
+   pure function control_fault(code, line) result(fault)
+      integer, intent(in) :: code, line
+      character(:), allocatable :: fault
+
+      fault = 'it is not text: control character '//to_text(code)//' in line '//to_text(line)
+   end function control_fault
 
 end module deck_source

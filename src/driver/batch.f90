@@ -11,12 +11,13 @@ module batch
    use deck_run, only: base_name
    use deck_task, only: account_type, deck_task_type
    use errors, only: error_type, status_deck, status_internal, status_interrupted
+   use file_calls, only: make_folder
    use interruption, only: catch_signals, caught_number, caught_signal, caught_times
+   use messages, only: print_error
    use process_ends, only: process_end_type, signal_kill
    use processes, only: collect_process, pause_briefly, send_signal, start_process
    use progress, only: progress_type
    use shared_memory, only: message_file_type, share_memory
-   use system_calls, only: make_folder
    use text, only: to_text
    use kinds, only: dp
    implicit none
@@ -67,14 +68,14 @@ contains
       call catch_signals()
       call prepare(self, command, error)
       if (allocated(error)) then
-         write (error_unit, '(2a)') 'thercon: error: ', error%message
+         call print_error('thercon', error%message)
          status = error%status
          return
       end if
       ! The table of an earlier batch must not be taken for that of this one.
       call write_table(self, error)
       if (allocated(error)) then
-         write (error_unit, '(2a)') 'thercon: error: ', error%message
+         call print_error('thercon', error%message)
          status = error%status
          return
       end if
@@ -93,7 +94,7 @@ contains
       status = maxval(self%outcomes%status)
       call write_table(self, error)
       if (allocated(error)) then
-         write (error_unit, '(2a)') 'thercon: error: ', error%message
+         call print_error('thercon', error%message)
          status = max(status, error%status)
       end if
       if (.not. command%quiet) call print_batch(output_unit, self%outcomes, wall_seconds() - since)
@@ -111,8 +112,8 @@ contains
             if (base_name(command%decks(deck)%value) /= base_name(command%decks(other)%value)) then
                cycle
             end if
-            write (error_unit, '(6a)') 'thercon: error: ', command%decks(other)%value, ' and ', &
-               command%decks(deck)%value, ' would have the same results'
+            call print_error('thercon', command%decks(other)%value//' and '// &
+               command%decks(deck)%value//' would have the same results')
             status = status_deck
          end do
       end do
@@ -198,7 +199,7 @@ contains
          outcome%ending = 'not run'
          outcome%reason = error%message
          call self%progress%clear()
-         write (error_unit, '(3a)') outcome%path, ': error: ', error%message
+         call print_error(outcome%path, error%message)
       end associate
       self%ended = self%ended + 1
       self%failed = self%failed + 1
@@ -277,7 +278,7 @@ contains
          associate (outcome => self%outcomes(i))
             outcome%status = status_interrupted
             outcome%reason = 'not started because of '//caught_signal()
-            write (error_unit, '(3a)') outcome%path, ': error: ', outcome%reason
+            call print_error(outcome%path, outcome%reason)
          end associate
       end do
    end subroutine leave_out_the_rest

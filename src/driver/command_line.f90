@@ -158,6 +158,8 @@ contains
          if (.not. valid .or. command%limit <= 0.0_dp) call set_error(error, status_deck, &
             'option --limit needs a number of seconds above 0, not '//value)
       case ('--out')
+         if (len(value) == 0) call set_error(error, status_deck, &
+            'option --out needs the name of a folder')
          command%folder = value
          if (len(value) > 1 .and. index(value, '/', back=.true.) == len(value)) then
             command%folder = value(:len(value) - 1)

@@ -5,11 +5,13 @@ module deck_check
    use command_line, only: command_type
    use deck_preparation, only: prepare_deck
    use increments, only: simulation_type
+   use messages, only: print_line
    use model, only: model_type
    use model_words, only: closed_law_words, friction_words, material_words, open_law_words
    use run_description, only: describe_run
    use run_summaries, only: run_summary_type
    use text, only: to_text
+   use utf8, only: character_count
    implicit none
    private
    public :: check_deck
@@ -40,7 +42,7 @@ contains
       type(run_summary_type), intent(in) :: run
       integer :: i
 
-      write (output_unit, '(2a)') run%deck_path, ': the deck is sound'
+      call print_line(output_unit, run%deck_path//': the deck is sound')
       call line('modelled', run%modelled)
       call line('bodies', to_text(model%mesh%body_count))
       call line('nodes', to_text(size(model%mesh%node_number)))
@@ -73,7 +75,8 @@ contains
    subroutine line(name, value)
       character(*), intent(in) :: name, value
 
-      write (output_unit, '(3x, 4a)') name, ' ', repeat('.', max(26 - len(name), 2)), ' '//value
+      call print_line(output_unit, '   '//name//' '//repeat('.', &
+         max(26 - character_count(name), 2))//' '//value)
    end subroutine line
 
 end module deck_check

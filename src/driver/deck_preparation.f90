@@ -8,6 +8,7 @@ module deck_preparation
    use deck_report, only: deck_report_type
    use errors, only: error_type, status_deck
    use increments, only: simulation_type
+   use messages, only: print_error
    use model, only: model_type
    use pair_reports, only: pair_all
    use support_checks, only: check_over_constrained, check_supports
@@ -52,7 +53,7 @@ contains
       if (report%has_errors()) status = status_deck
       if (.not. allocated(error)) return
       status = error%status
-      write (error_unit, '(3a)') path, ': error: ', error%message
+      call print_error(path, error%message)
    end subroutine prepare_deck
 
 end module deck_preparation

@@ -1,6 +1,5 @@
 !> One deck to its results.
 module deck_run
-   use, intrinsic :: iso_fortran_env, only: error_unit
    use blas_memory, only: reserve_blas_memory
    use cards, only: cards_type
    use clock, only: wall_seconds
@@ -10,17 +9,18 @@ module deck_run
    use deck_preparation, only: prepare_deck
    use error_estimator, only: error_estimator_type
    use errors, only: error_type, set_error, status_deck, status_interrupted, &
-      status_no_convergence, status_verify
+      status_internal, status_no_convergence, status_verify
+   use file_calls, only: make_folder
    use increment_control, only: increment_control_type
    use increments, only: simulation_type
    use interruption, only: caught_signal
    use kinds, only: dp
    use load_courses, only: step_clock_type
+   use messages, only: print_error
    use model, only: model_type
    use records, only: increment_record_type
    use run_description, only: describe_run
    use run_output, only: run_output_type
-   use system_calls, only: make_folder
    use text, only: string_type, to_text
    implicit none
    private
@@ -45,7 +45,7 @@ contains
       if (any(path(max(len(path) - 3, 1):) == ['.lst', '.sta', '.cvg']) .or. &
          path(max(len(path) - 6, 1):) == '.vtkhdf' .or. &
          path(index(path, '/', back=.true.) + 1:) == table_name) then
-         write (error_unit, '(2a)') path, ': error: a deck cannot have the name of a result file'
+         call print_error(path, 'a deck cannot have the name of a result file')
          outcome%status = status_deck
          return
       end if
@@ -56,29 +56,35 @@ contains
       end if
       call prepare_deck(path, command, cards, model, simulation, outcome%status)
       if (outcome%status == 0) then
-         call simulation%reduce(model, error)
-         if (allocated(error)) call say_when(model, simulation, error)
+         output%run%deck_path = path
+         call make_folder(command%folder)
+         call output%reserve(command%folder//'/'//base_name(path), error)
+         if (.not. allocated(error)) then
+            call simulation%reduce(model, error)
+            if (allocated(error)) call say_when(model, simulation, error)
+         end if
          if (allocated(error)) call report_failure(path, error, outcome)
       end if
       if (outcome%status == 0) then
          output%run%seconds_read = wall_seconds() - since - simulation%seconds%assemble - &
             simulation%seconds%reduce
          call describe_run(path, model, simulation, output%run)
-         call solve_deck(path, command, cards, model, simulation, output, outcome, error)
+         call solve_deck(command%quiet, cards, model, simulation, output, outcome, error)
          if (allocated(error)) call report_failure(path, error, outcome)
-         call report_checks(path, output%failed_checks(model))
+         ! Of a run that could not go on for want of a file or of memory a check says nothing.
+         if (outcome%status /= status_internal) call report_checks(path, output%failed_checks(model))
          outcome%verify_passed = output%run%verify_passed
          outcome%verify_failed = output%run%verify_failed
          if (outcome%status == 0 .and. outcome%verify_failed > 0) outcome%status = status_verify
       end if
+      call output%close()
       call simulation%release()
       outcome%seconds = wall_seconds() - since
    end subroutine run_deck
 
    !> All increments, with their output.
-   subroutine solve_deck(path, command, cards, model, simulation, output, outcome, error)
-      character(*), intent(in) :: path
-      type(command_type), intent(in) :: command
+   subroutine solve_deck(quiet, cards, model, simulation, output, outcome, error)
+      logical, intent(in) :: quiet
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation
@@ -90,9 +96,8 @@ contains
       type(increment_record_type) :: record
 
       associate (pairs => simulation%operators%interfaces, points => simulation%recovery%points)
-         call make_folder(command%folder)
-         call output%start(command%folder//'/'//base_name(path), model, pairs, points%node, &
-            points%element_points, cards%images, command%quiet, error)
+         call output%start(model, pairs, points%node, points%element_points, cards%images, quiet, &
+            error)
          if (allocated(error)) return
          call estimator%start(model, simulation)
          do while (.not. simulation%finished(model))
@@ -113,7 +118,10 @@ contains
             call estimator%end_increment(model, simulation, record)
             call output%accept(record, model, pairs, error)
             call outcome%note(record, output%accepted())
-            if (allocated(error)) return
+            if (allocated(error)) then
+               call output%break_off(error%message)
+               return
+            end if
          end do
          if (allocated(error)) then
             if (error%status == status_deck) then
@@ -126,7 +134,8 @@ contains
             call outcome%note(record, output%accepted())
          end if
          call output%finish(model, pairs, output_error)
-         if (allocated(output_error) .and. .not. allocated(error)) then
+         if (allocated(output_error)) then
+            if (allocated(error)) output_error%message = error%message//'; '//output_error%message
             call move_alloc(output_error, error)
          end if
       end associate
@@ -168,7 +177,7 @@ contains
       integer :: i
 
       do i = 1, size(lines)
-         write (error_unit, '(3a)') path, ': error: ', lines(i)%value
+         call print_error(path, lines(i)%value)
       end do
    end subroutine report_checks
 
@@ -179,17 +188,22 @@ contains
       class(deck_outcome_type), intent(inout) :: outcome
 
       outcome%status = error%status
-      write (error_unit, '(3a)') path, ': error: ', error%message
-      if (error%status == status_no_convergence) write (error_unit, '(2a)') path, &
-         ': error: not converged; the listing has the iteration history'
+      call print_error(path, error%message)
+      if (error%status == status_no_convergence) call print_error(path, &
+         'not converged; the listing has the iteration history')
    end subroutine report_failure
 
-   !> Name of a deck's results: its file name without folder and extension.
+   !> Name of a deck's results: its file name without folder and extension, or stdin where it is read
+   !> from an open file, which has a number only.
    pure function base_name(path) result(name)
       character(*), intent(in) :: path           !! the deck as given
       character(:), allocatable :: name          !! such as b for a/b.inp
       integer :: dot
 
+      if (index(path, '/dev/fd/') == 1 .or. index(path, '/proc/self/fd/') == 1) then
+         name = 'stdin'
+         return
+      end if
       name = path(index(path, '/', back=.true.) + 1:)
       dot = index(name, '.', back=.true.)
       if (dot > 1) name = name(:dot - 1)

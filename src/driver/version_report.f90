@@ -3,6 +3,7 @@ module version_report
    use, intrinsic :: iso_fortran_env, only: compiler_version
    use blas_lapack, only: ilaver
    use hdf5, only: h5close_f, h5get_libversion_f, h5open_f
+   use messages, only: print_line
    use mumps_solver, only: mumps_version
    use text, only: to_text
    use version, only: metis_version, program_version
@@ -23,12 +24,12 @@ contains
       call h5open_f(status)
       call h5get_libversion_f(hdf5(1), hdf5(2), hdf5(3), status)
       call h5close_f(status)
-      write (unit, '(2a)') 'thercon ', program_version
-      write (unit, '(2a)') 'compiler ', compiler_version()
-      write (unit, '(2a)') 'MUMPS ', mumps
-      write (unit, '(2a)') 'METIS ', metis_version
-      write (unit, '(2a)') 'HDF5 ', dotted(hdf5)
-      write (unit, '(2a)') 'LAPACK ', dotted(lapack)
+      call print_line(unit, 'thercon '//program_version)
+      call print_line(unit, 'compiler '//compiler_version())
+      call print_line(unit, 'MUMPS '//mumps)
+      call print_line(unit, 'METIS '//metis_version)
+      call print_line(unit, 'HDF5 '//dotted(hdf5))
+      call print_line(unit, 'LAPACK '//dotted(lapack))
    end subroutine print_versions
 
    pure function dotted(numbers) result(string)

@@ -2,10 +2,12 @@
 module batch_table
    use csv_fields, only: quoted
    use deck_outcomes, only: deck_outcome_type
-   use errors, only: error_type, set_error, status_internal
+   use errors, only: error_type
+   use file_calls, only: create_working_file, remove_file, rename_file, write_file
    use kinds, only: dp
-   use system_calls, only: rename_file
+   use messages, only: print_line
    use text, only: to_text
+   use utf8, only: character_count, printable
    implicit none
    private
    public :: print_batch, write_batch, table_name
@@ -24,29 +26,29 @@ contains
       integer, intent(in) :: unit                          !! unit that is written to
       class(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
       real(dp), intent(in) :: seconds                      !! time that the batch took [s]
+      character(120) :: line
       integer :: width, i
 
       width = len('deck')
       do i = 1, size(outcomes)
-         width = max(width, len(outcomes(i)%path))
+         width = max(width, character_count(printable(outcomes(i)%path)))
       end do
-      write (unit, '(/, 2a, 2x, a18, 2a12, 2a8, 2a10, a9)') 'deck', repeat(' ', width - 4), &
-         'outcome', 'increments', 'iterations', 'passed', 'failed', 'seconds', 'CPU s', 'peak MB'
+      write (line, '(2x, a18, 2a12, 2a8, 2a10, a9)') 'outcome', 'increments', 'iterations', &
+         'passed', 'failed', 'seconds', 'CPU s', 'peak MB'
+      call print_line(unit, '')
+      call print_line(unit, 'deck'//repeat(' ', width - 4)//trim(line))
       do i = 1, size(outcomes)
          associate (deck => outcomes(i))
-            write (unit, '(2a, 2x, a18)', advance='no') deck%path, &
-               repeat(' ', width - len(deck%path)), deck%words()
-            if (deck%has_run) then
-               write (unit, '(2i12, 2i8, 2f10.2, f9.1)') deck%increments, deck%iterations, &
-                  deck%verify_passed, deck%verify_failed, deck%seconds, deck%cpu_seconds, &
-                  deck%peak_bytes/megabyte
-            else
-               write (unit, '(a)') ''
-            end if
+            write (line, '(2x, a18)') deck%words()
+            if (deck%has_run) write (line(21:), '(2i12, 2i8, 2f10.2, f9.1)') deck%increments, &
+               deck%iterations, deck%verify_passed, deck%verify_failed, deck%seconds, &
+               deck%cpu_seconds, deck%peak_bytes/megabyte
+            call print_line(unit, deck%path//repeat(' ', width - &
+               character_count(printable(deck%path)))//trim(line))
          end associate
       end do
-      write (unit, '(a)') to_text(size(outcomes))//' decks in '//decimal(seconds)//' s: '// &
-         counts_of(outcomes)
+      call print_line(unit, to_text(size(outcomes))//' decks in '//decimal(seconds)//' s: '// &
+         counts_of(outcomes))
    end subroutine print_batch
 
    !> How many decks ended in which way, in the order of the first of each.
@@ -78,27 +80,19 @@ contains
       character(*), intent(in) :: folder                   !! folder of the results
       class(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
       type(error_type), allocatable, intent(out) :: error  !! see above
-      character(:), allocatable :: path
-      integer :: unit, status, i
+      character(:), allocatable :: path, working_path, text
+      integer :: i
 
       path = folder//'/'//table_name
-      open (newunit=unit, file=path//'.tmp', status='replace', action='write', iostat=status)
-      if (status == 0) then
-         write (unit, '(a)', iostat=status) columns
-         do i = 1, size(outcomes)
-            if (status == 0) write (unit, '(a)', iostat=status) row_of(outcomes(i))
-         end do
-         if (status == 0) then
-            close (unit, iostat=status)
-         else
-            close (unit)
-         end if
-      end if
-      if (status == 0) then
-         call rename_file(path//'.tmp', path, error)
-      else
-         call set_error(error, status_internal, 'cannot write "'//path//'"')
-      end if
+      call create_working_file(path, working_path, error)
+      if (allocated(error)) return
+      text = columns//new_line('a')
+      do i = 1, size(outcomes)
+         text = text//row_of(outcomes(i))//new_line('a')
+      end do
+      call write_file(working_path, text, error)
+      if (.not. allocated(error)) call rename_file(working_path, path, error)
+      if (allocated(error)) call remove_file(working_path)
    end subroutine write_batch
 
    function row_of(deck) result(line)

@@ -4,6 +4,7 @@ module deck_outcomes
    use errors, only: status_deck, status_internal, status_interrupted, status_no_convergence, &
       status_ok, status_verify
    use kinds, only: dp
+   use messages, only: print_line
    use records, only: increment_record_type
    use text, only: to_text
    implicit none
@@ -74,14 +75,16 @@ contains
    subroutine print_outcome(self, results)
       class(deck_outcome_type), intent(in) :: self    !! the run
       character(*), intent(in) :: results             !! path of its results without extension
+      character(12) :: seconds
 
-      write (output_unit, '(5a, f5.2, a)') self%path, ': ', self%words(), ', ', &
-         to_text(self%increments)//' increments in ', self%seconds, ' s'
-      if (self%verify_passed + self%verify_failed > 0) write (output_unit, '(2x, 4a)') &
-         to_text(self%verify_passed), ' checks passed, ', to_text(self%verify_failed), ' failed'
+      write (seconds, '(f12.2)') self%seconds
+      call print_line(output_unit, self%path//': '//self%words()//', '// &
+         to_text(self%increments)//' increments in '//trim(adjustl(seconds))//' s')
+      if (self%verify_passed + self%verify_failed > 0) call print_line(output_unit, '  '// &
+         to_text(self%verify_passed)//' checks passed, '//to_text(self%verify_failed)//' failed')
       if (self%status == status_deck .or. self%status == status_internal) return
-      write (output_unit, '(2x, 3a)') 'results: ', results, &
-         trim(merge('.vtkhdf, .lst, .sta, .cvg', '.lst, .cvg               ', self%increments > 0))
+      call print_line(output_unit, '  results: '//results// &
+         trim(merge('.vtkhdf, .lst, .sta, .cvg', '.lst, .cvg               ', self%increments > 0)))
    end subroutine print_outcome
 
 end module deck_outcomes

@@ -3,7 +3,8 @@
 module listing
    use contact_pairs, only: contact_pairs_type, never_approached
    use due_output, only: table_is_due
-   use errors, only: error_type, set_error, status_internal
+   use errors, only: error_type
+   use file_calls, only: append_to_file, empty_file, lock_file, unlock_file
    use listing_errors, only: print_body_errors, print_interface_errors
    use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
@@ -11,6 +12,7 @@ module listing
    use listing_tables, only: print_contact_table, print_iterations, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
+   use printed_text, only: printed_text_type
    use records, only: contact_record_type, increment_record_type
    use run_summaries, only: or_blank, run_summary_type
    use text, only: append, string_type, to_text
@@ -23,75 +25,104 @@ module listing
    !> An open listing.
    type :: listing_type
       private
-      integer :: unit = 0                                      !! Fortran unit
-      logical :: is_open = .false.                             !! whether the file is open
+      character(:), allocatable :: path                        !! path of the file
+      integer :: descriptor = -1                               !! of the file while it is locked
+      type(printed_text_type) :: text                          !! what is not yet in the file
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       character(:), allocatable :: failure                     !! why the run ended early
       type(string_type), allocatable :: warnings(:)            !! of increments and of the run
       type(contact_record_type), allocatable :: contacts(:)    !! contact at the last increment
    contains
+      procedure :: reserve
       procedure :: open => open_listing
       procedure :: add
       procedure :: add_failure
+      procedure :: break_off
       procedure :: warn
       procedure :: finish
+      procedure :: close => close_listing
    end type listing_type
 
 contains
 
-   !> Begins a listing: heading, echo of the deck, defaults, what is modelled.
-   !> Error: status_internal, when the file cannot be written.
-   subroutine open_listing(self, path, model, pairs, cards, run, error)
+   !> Locks the file, so that no other run of the same name writes it; its contents stay.
+   !> Error: status_internal, when it cannot be written or another run has it.
+   subroutine reserve(self, path, has_lock, error)
       class(listing_type), intent(inout) :: self          !! the listing
       character(*), intent(in) :: path                    !! path of the file
+      logical, intent(out) :: has_lock                    !! false where there are no locks
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+
+      self%path = path
+      call lock_file(path, self%descriptor, has_lock, error)
+   end subroutine reserve
+
+   !> Begins the reserved listing: heading, echo of the deck, defaults, what is modelled.
+   !> Error: status_internal, when the file cannot be written.
+   subroutine open_listing(self, model, pairs, cards, run, error)
+      class(listing_type), intent(inout) :: self          !! the listing
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(run_summary_type), intent(in) :: run           !! the run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      integer :: status
 
-      open (newunit=self%unit, file=path, status='replace', action='write', iostat=status)
-      if (status /= 0) then
-         call set_error(error, status_internal, 'cannot write "'//path//'"')
-         return
-      end if
-      self%is_open = .true.
+      call empty_file(self%descriptor, self%path, error)
+      if (allocated(error)) return
+      call self%text%open(error)
+      if (allocated(error)) return
       allocate(self%diagrams(size(pairs)), self%warnings(0))
-      call print_heading(self%unit, model, run)
-      call print_deck(self%unit, cards)
-      call print_list(self%unit, 'DEFAULTS AND CARDS NOT NEEDED', model%notes)
-      call print_model(self%unit, model, pairs, run)
-      call print_title(self%unit, 'INCREMENTS')
+      call print_heading(self%text%unit, model, run)
+      call print_deck(self%text%unit, cards)
+      call print_list(self%text%unit, 'DEFAULTS AND CARDS NOT NEEDED', model%notes)
+      call print_model(self%text%unit, model, pairs, run)
+      call print_title(self%text%unit, 'INCREMENTS')
+      call write_text(self, error)
    end subroutine open_listing
 
+   !> Writes what was printed.
+   !> Error: status_internal, when the file cannot be written.
+   subroutine write_text(self, error)
+      class(listing_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: lines
+
+      call self%text%take(lines)
+      call append_to_file(self%descriptor, self%path, lines, error)
+   end subroutine write_text
+
    !> Adds the block of an accepted increment, with its PRINT tables where these are due.
-   subroutine add(self, record, model, pairs)
+   !> Error: status_internal, when the file cannot be written.
+   subroutine add(self, record, model, pairs, error)
       class(listing_type), intent(inout) :: self          !! the listing
       type(increment_record_type), intent(in) :: record   !! the increment
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
 
-      call print_increment(self%unit, record)
+      call print_increment(self%text%unit, record)
       do i = 1, size(pairs)
-         call print_interface(self%unit, pairs(i)%name, record%contacts(i))
+         call print_interface(self%text%unit, pairs(i)%name, record%contacts(i))
          call self%diagrams(i)%add(record, record%contacts(i)%status)
       end do
-      call print_balances(self%unit, record, model%steps(record%step)%analysis)
-      call print_body_errors(self%unit, record)
+      call print_balances(self%text%unit, record, model%steps(record%step)%analysis)
+      call print_body_errors(self%text%unit, record)
       call print_warnings(self, record)
       self%contacts = record%contacts
       if (allocated(record%errors)) then
          do i = 1, size(pairs)
-            call print_interface_errors(self%unit, pairs(i)%name, record%errors(i))
+            call print_interface_errors(self%text%unit, pairs(i)%name, record%errors(i))
          end do
       end if
-      call print_requested(self%unit, record, model)
-      if (.not. table_is_due(model%steps(record%step)%contact_print_frequency, record)) return
-      do i = 1, size(pairs)
-         call print_contact_table(self%unit, pairs(i), record%contacts(i), model%mesh%node_number)
-      end do
+      call print_requested(self%text%unit, record, model)
+      if (table_is_due(model%steps(record%step)%contact_print_frequency, record)) then
+         do i = 1, size(pairs)
+            call print_contact_table(self%text%unit, pairs(i), record%contacts(i), &
+               model%mesh%node_number)
+         end do
+      end if
+      call write_text(self, error)
    end subroutine add
 
    !> Says why the run ended early; prints the attempts at an increment that failed, and the passes
@@ -103,19 +134,32 @@ contains
       integer, intent(in) :: accepted                        !! increments that were accepted
 
       self%failure = reason
-      call print_title(self%unit, 'ENDED EARLY')
-      call print_wrapped(self%unit, '   ', reason)
+      call print_title(self%text%unit, 'ENDED EARLY')
+      call print_wrapped(self%text%unit, '   ', reason)
       if (accepted > 0) then
-         write (self%unit, '(3x, 3a)') 'The results hold the increments up to number ', &
+         write (self%text%unit, '(3x, 3a)') 'The results hold the increments up to number ', &
             to_text(accepted), '.'
       else
-         call print_wrapped(self%unit, '   ', 'No increment was accepted: this run has no '// &
+         call print_wrapped(self%text%unit, '   ', 'No increment was accepted: this run has no '// &
             'result file and no .sta; those of an earlier run, if there are any, were left.')
       end if
-      if (allocated(record%failed)) call print_attempts(self%unit, record%failed)
-      if (allocated(record%iterations)) call print_iterations(self%unit, &
+      if (allocated(record%failed)) call print_attempts(self%text%unit, record%failed)
+      if (allocated(record%iterations)) call print_iterations(self%text%unit, &
          pack(record%iterations, record%iterations%cut_backs == record%cut_backs))
    end subroutine add_failure
+
+   !> Ends the listing, where it is open, with the reason why the run cannot go on; whether there is
+   !> room for that is not asked.
+   subroutine break_off(self, reason)
+      class(listing_type), intent(inout) :: self             !! the listing
+      character(*), intent(in) :: reason                     !! what went wrong
+      type(error_type), allocatable :: ignored
+
+      if (.not. allocated(self%warnings)) return
+      call print_title(self%text%unit, 'ENDED EARLY')
+      call print_wrapped(self%text%unit, '   ', reason)
+      call write_text(self, ignored)
+   end subroutine break_off
 
    !> Takes the warnings of the run as a whole.
    subroutine warn(self, warnings)
@@ -128,7 +172,7 @@ contains
       end do
    end subroutine warn
 
-   !> Ends the listing: verdicts, times, zone diagrams, all warnings again.
+   !> Ends the listing that is open: verdicts, times, zone diagrams, all warnings again.
    !> Error: status_internal, when its end cannot be written.
    subroutine finish(self, model, pairs, outcomes, run, error)
       class(listing_type), intent(inout) :: self          !! the listing
@@ -138,29 +182,35 @@ contains
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: warnings(:)
-      integer :: i, status
+      integer :: i
 
-      if (.not. self%is_open) return
-      if (size(outcomes) > 0) call print_verdicts(self%unit, model%verifications, outcomes)
-      call print_times(self%unit, run)
+      if (size(outcomes) > 0) call print_verdicts(self%text%unit, model%verifications, outcomes)
+      call print_times(self%text%unit, run)
       do i = 1, size(pairs)
-         call self%diagrams(i)%print(self%unit, pairs(i))
+         call self%diagrams(i)%print(self%text%unit, pairs(i))
       end do
       call print_unapproached(self, model%mesh%node_number, pairs)
       warnings = model%warnings
       do i = 1, size(self%warnings)
          call append(warnings, self%warnings(i)%value)
       end do
-      call print_list(self%unit, 'WARNINGS', warnings)
-      if (size(warnings) == 0) write (self%unit, '(/, a)') 'No warnings.'
+      call print_list(self%text%unit, 'WARNINGS', warnings)
+      if (size(warnings) == 0) write (self%text%unit, '(/, a)') 'No warnings.'
       if (allocated(self%failure)) then
-         call print_title(self%unit, 'ENDED EARLY')
-         call print_wrapped(self%unit, '   ', self%failure)
+         call print_title(self%text%unit, 'ENDED EARLY')
+         call print_wrapped(self%text%unit, '   ', self%failure)
       end if
-      close (self%unit, iostat=status)
-      if (status /= 0) call set_error(error, status_internal, 'cannot finish the listing')
-      self%is_open = .false.
+      call write_text(self, error)
    end subroutine finish
+
+   !> Frees the file; one in which nothing was written is removed. Harmless where it is not reserved.
+   subroutine close_listing(self)
+      class(listing_type), intent(inout) :: self          !! the listing
+
+      call self%text%close()
+      if (self%descriptor >= 0) call unlock_file(self%path, self%descriptor)
+      self%descriptor = -1
+   end subroutine close_listing
 
    subroutine print_heading(unit, model, run)
       integer, intent(in) :: unit
@@ -185,12 +235,12 @@ contains
 
       if (allocated(record%notes)) then
          do i = 1, size(record%notes)
-            call print_wrapped(self%unit, '   ', 'note: '//record%notes(i)%value)
+            call print_wrapped(self%text%unit, '   ', 'note: '//record%notes(i)%value)
          end do
       end if
       if (.not. allocated(record%warnings)) return
       do i = 1, size(record%warnings)
-         call print_wrapped(self%unit, '   ', 'warning: '//record%warnings(i)%value)
+         call print_wrapped(self%text%unit, '   ', 'warning: '//record%warnings(i)%value)
          call append(self%warnings, record%warnings(i)%value)
       end do
    end subroutine print_warnings
@@ -211,7 +261,7 @@ contains
             far = pack([(k, k=1, m)], never_approached(pairs(i)%initial_gap, &
                self%contacts(i)%smallest_gap))
             if (size(far) == 0) cycle
-            call print_title(self%unit, 'PAIRS THAT NEVER APPROACHED: '//to_text(size(far))// &
+            call print_title(self%text%unit, 'PAIRS THAT NEVER APPROACHED: '//to_text(size(far))// &
                ' of '//to_text(m)//' of '//pairs(i)%name)
          end associate
          line = 'slave and master nodes'
@@ -220,7 +270,7 @@ contains
                to_text(node_number(pairs(i)%master_node(far(k))))
          end do
          if (size(far) > most) line = line//' and '//to_text(size(far) - most)//' more'
-         call print_wrapped(self%unit, '   ', line)
+         call print_wrapped(self%text%unit, '   ', line)
       end do
    end subroutine print_unapproached
 

@@ -2,9 +2,9 @@
 module progress
    use, intrinsic :: iso_fortran_env, only: error_unit
    use clock, only: wall_seconds
+   use file_calls, only: is_terminal
    use kinds, only: dp
    use records, only: increment_record_type
-   use system_calls, only: is_terminal
    use text, only: to_text
    use zone_diagram, only: zone_counts
    implicit none

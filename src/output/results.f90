@@ -48,6 +48,7 @@ module results
       logical :: is_broken = .false.                          !! whether writing has failed
       integer, public :: accepted = 0                         !! increments appended
    contains
+      procedure :: reserve
       procedure :: open => open_results
       procedure :: append
       procedure :: finish
@@ -55,11 +56,28 @@ module results
 
 contains
 
-   !> Prepares the results of a run; no file is touched yet.
-   !> Error: status_internal, when HDF5 does not start.
-   subroutine open_results(self, path, model, pairs, point_node, element_points, cards, error)
+   !> Names the files and tries whether all of them can be written; they are left as they are.
+   !> Error: status_internal, when one of them cannot.
+   subroutine reserve(self, path, has_lock, error)
       class(results_type), intent(inout) :: self          !! the writer
       character(*), intent(in) :: path                    !! path of the results without extension
+      logical, intent(in) :: has_lock                     !! whether no other run writes them
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+
+      call self%file%start(path//'.vtkhdf')
+      call self%increments%start_increments(path//'.sta')
+      call self%passes%start_iterations(path//'.cvg')
+      call self%increments%reserve(error)
+      if (allocated(error)) return
+      call self%passes%reserve(error)
+      if (allocated(error)) return
+      call self%file%reserve(has_lock, error)
+   end subroutine reserve
+
+   !> Prepares the results of a run, whose files are reserved; none is touched yet.
+   !> Error: status_internal, when HDF5 does not start.
+   subroutine open_results(self, model, pairs, point_node, element_points, cards, error)
+      class(results_type), intent(inout) :: self          !! the writer
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
@@ -73,9 +91,6 @@ contains
       if (allocated(error)) return
       self%element_points = element_points
       self%cards = cards
-      call self%file%start(path//'.vtkhdf')
-      call self%increments%start_increments(path//'.sta')
-      call self%passes%start_iterations(path//'.cvg')
       has_heat = any(solves_heat(model%steps%analysis))
       has_mechanics = any(solves_mechanics(model%steps%analysis))
       expected = expected_increments(model)
@@ -125,6 +140,7 @@ contains
          call publish(self, model, pairs, run, error)
       else if (waiting_bytes(self) > memory_limit) then
          call flush_all(self, model, pairs, error)
+         call self%file%explain(error)
          call self%file%charge(since, ended=.false.)
       end if
       if (allocated(error)) call give_up(self)
@@ -204,10 +220,10 @@ contains
       since = wall_seconds()
       is_first = .not. self%file%in_place
       call flush_all(self, model, pairs, error)
-      if (allocated(error)) return
-      call write_run(self%file%id, run, model, wall_seconds() - since, error)
-      if (allocated(error)) return
-      call self%file%close(error)
+      if (.not. allocated(error)) call write_run(self%file%id, run, model, &
+         wall_seconds() - since, error)
+      if (.not. allocated(error)) call self%file%close(error)
+      call self%file%explain(error)
       if (allocated(error)) return
       if (is_first) then
          call self%increments%empty(error)

@@ -5,6 +5,7 @@ module run_output
    use contact_pairs, only: contact_pairs_type
    use errors, only: error_type
    use kinds, only: dp
+   use messages, only: print_line
    use listing, only: listing_type
    use model, only: model_type
    use progress, only: progress_type
@@ -32,22 +33,40 @@ module run_output
       type(iteration_record_type), allocatable :: failed(:)    !! passes of an increment that failed
       integer, allocatable :: point_node(:)                    !! (points) node index of each point
    contains
+      procedure :: reserve
       procedure :: start
       procedure :: accept
       procedure :: fail
       procedure :: finish
+      procedure :: break_off
+      procedure :: close => close_output
       procedure :: accepted
       procedure :: failed_checks
    end type run_output_type
 
 contains
 
-   !> Begins the output of a run: writes the head of the listing and touches no other file yet.
-   !> `run` is filled in before, but for its times and verdicts.
-   !> Error: status_internal, when the listing cannot be written or HDF5 does not start.
-   subroutine start(self, path, model, pairs, point_node, element_points, cards, quiet, error)
+   !> Tries whether all files of a run can be written, before anything is solved, and locks them
+   !> against other runs of the same name. They are left as they are; close the output in any case.
+   !> Error: status_internal, when one cannot be written, or another run writes them.
+   subroutine reserve(self, path, error)
       class(run_output_type), intent(inout) :: self       !! the output
       character(*), intent(in) :: path                    !! path of the results without extension
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      logical :: has_lock
+
+      call self%listing%reserve(path//'.lst', has_lock, error)
+      if (allocated(error)) return
+      if (.not. has_lock) call print_warnings(self, [string_type('the file system of "'//path// &
+         '.lst" has no locks: a second run of this name at the same time would not be noticed')])
+      call self%results%reserve(path, has_lock, error)
+   end subroutine reserve
+
+   !> Begins the output of a run, whose files are reserved: writes the head of the listing and touches no other file yet.
+   !> `run` is filled in before, but for its times and verdicts.
+   !> Error: status_internal, when the listing cannot be written or HDF5 does not start.
+   subroutine start(self, model, pairs, point_node, element_points, cards, quiet, error)
+      class(run_output_type), intent(inout) :: self       !! the output
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
@@ -62,9 +81,9 @@ contains
       allocate(self%failed(0))
       call self%verifier%start(model)
       call self%progress%start(quiet)
-      call self%listing%open(path//'.lst', model, pairs, cards, self%run, error)
+      call self%listing%open(model, pairs, cards, self%run, error)
       if (allocated(error)) return
-      call self%results%open(path, model, pairs, point_node, element_points, cards, error)
+      call self%results%open(model, pairs, point_node, element_points, cards, error)
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine start
 
@@ -79,12 +98,12 @@ contains
       real(dp) :: since
 
       since = wall_seconds()
-      call self%listing%add(record, model, pairs)
+      call self%listing%add(record, model, pairs, error)
       call self%verifier%judge(record, model, pairs, self%point_node)
       call self%judgement%take(record, model, pairs)
       if (allocated(record%warnings)) call print_warnings(self, record%warnings)
       call self%progress%show(record)
-      call self%results%append(record, model, pairs, self%run, error)
+      if (.not. allocated(error)) call self%results%append(record, model, pairs, self%run, error)
       if (allocated(error)) call self%progress%clear()
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine accept
@@ -97,7 +116,8 @@ contains
 
       call self%progress%clear()
       do i = 1, size(warnings)
-         write (error_unit, '(3a)') or_blank(self%run%deck_path), ': warning: ', warnings(i)%value
+         call print_line(error_unit, or_blank(self%run%deck_path)//': warning: '// &
+            warnings(i)%value)
       end do
    end subroutine print_warnings
 
@@ -120,7 +140,6 @@ contains
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(error_type), allocatable :: listing_error
       type(string_type), allocatable :: warnings(:)
       real(dp) :: since
 
@@ -128,13 +147,32 @@ contains
       self%run%verify_passed = self%verifier%passed_count()
       self%run%verify_failed = self%verifier%failed_count()
       call self%results%finish(model, pairs, self%run, self%failed, error)
+      if (allocated(error)) then
+         call self%break_off(error%message)
+         return
+      end if
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
       warnings = self%judgement%warnings(model, pairs)
       call self%listing%warn(warnings)
-      call self%listing%finish(model, pairs, self%verifier%outcomes, self%run, listing_error)
-      if (allocated(listing_error) .and. .not. allocated(error)) error = listing_error
+      call self%listing%finish(model, pairs, self%verifier%outcomes, self%run, error)
       call print_warnings(self, warnings)
    end subroutine finish
+
+   !> Ends the listing with the reason why the other files could not be written.
+   subroutine break_off(self, reason)
+      class(run_output_type), intent(inout) :: self       !! the output
+      character(*), intent(in) :: reason                  !! what went wrong, one sentence
+
+      call self%progress%clear()
+      call self%listing%break_off(reason)
+   end subroutine break_off
+
+   !> Frees the files.
+   subroutine close_output(self)
+      class(run_output_type), intent(inout) :: self       !! the output
+
+      call self%listing%close()
+   end subroutine close_output
 
    !> One line for each *VERIFY card that failed.
    function failed_checks(self, model) result(lines)

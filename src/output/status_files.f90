@@ -1,7 +1,8 @@
 !> The files `.sta`, one line an accepted increment, and `.cvg`, one line an iteration. Lines wait
 !> here until the result file that holds their increments is in place.
 module status_files
-   use errors, only: error_type, set_error, status_internal
+   use errors, only: error_type
+   use file_calls, only: append_to_file, close_descriptor, open_new_file, try_file
    use kinds, only: dp
    use listing_text, only: column
    use records, only: increment_record_type
@@ -17,8 +18,7 @@ module status_files
       private
       character(:), allocatable :: path               !! path of the file
       character(:), allocatable :: heading            !! first line; begins with no digit
-      integer :: unit = 0                             !! Fortran unit
-      logical :: is_open = .false.                    !! whether the file is open
+      integer :: descriptor = -1                      !! of the file while it is open
       integer :: waiting = 0                          !! lines not yet written
       character(line_length), allocatable :: lines(:) !! these lines
    contains
@@ -26,6 +26,7 @@ module status_files
       procedure :: start_iterations
       procedure :: add_increment
       procedure :: add_iterations
+      procedure :: reserve
       procedure :: empty
       procedure :: write_waiting
       procedure :: close => close_file
@@ -105,18 +106,24 @@ contains
       self%lines(self%waiting) = line
    end subroutine add_line
 
+   !> Tries whether the file can be written, and leaves it as it is.
+   !> Error: status_internal, when it cannot.
+   subroutine reserve(self, error)
+      class(status_file_type), intent(in) :: self         !! the file
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+
+      call try_file(self%path, error)
+   end subroutine reserve
+
    !> Empties the file of an earlier run and leaves it with its heading.
    !> Error: status_internal, when it cannot be written.
    subroutine empty(self, error)
       class(status_file_type), intent(inout) :: self      !! the file
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      integer :: status
 
-      open (newunit=self%unit, file=self%path, status='replace', action='write', iostat=status)
-      self%is_open = status == 0
-      if (status == 0) write (self%unit, '(a)', iostat=status) self%heading
-      if (status == 0) flush (self%unit, iostat=status)
-      if (status /= 0) call set_error(error, status_internal, 'cannot write "'//self%path//'"')
+      call open_new_file(self%path, self%descriptor, error)
+      if (.not. allocated(error)) call append_to_file(self%descriptor, self%path, &
+         self%heading//new_line('a'), error)
    end subroutine empty
 
    !> Writes the lines that wait; the file was emptied before.
@@ -124,16 +131,14 @@ contains
    subroutine write_waiting(self, error)
       class(status_file_type), intent(inout) :: self      !! the file
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      integer :: i, status
+      character(:), allocatable :: text
+      integer :: i
 
+      text = ''
       do i = 1, self%waiting
-         write (self%unit, '(a)', iostat=status) trim(self%lines(i))
-         if (status /= 0) exit
+         text = text//trim(self%lines(i))//new_line('a')
       end do
-      if (self%waiting > 0 .and. status == 0) flush (self%unit, iostat=status)
-      if (self%waiting > 0 .and. status /= 0) then
-         call set_error(error, status_internal, 'cannot write "'//self%path//'"')
-      end if
+      call append_to_file(self%descriptor, self%path, text, error)
       self%waiting = 0
    end subroutine write_waiting
 
@@ -141,8 +146,8 @@ contains
    subroutine close_file(self)
       class(status_file_type), intent(inout) :: self   !! the file
 
-      if (self%is_open) close (self%unit)
-      self%is_open = .false.
+      if (self%descriptor >= 0) call close_descriptor(self%descriptor)
+      self%descriptor = -1
    end subroutine close_file
 
 end module status_files

@@ -2,23 +2,27 @@
 !> closed. So the file in place is always a closed and complete one, whatever ends the program.
 module working_files
    use clock, only: wall_seconds
-   use errors, only: error_type
+   use errors, only: error_type, set_error, status_internal
+   use file_calls, only: cannot_write, copy_file, create_working_file, remove_file, &
+      remove_working_files, rename_file, try_file, try_growth
    use hdf5, only: hid_t
    use hdf5_helpers, only: close_file, create_file, open_file
    use kinds, only: dp
-   use system_calls, only: copy_file, remove_file, rename_file
    implicit none
    private
    public :: working_file_type
 
    real(dp), parameter :: patience = 11.0_dp   !! pause between publishings, in costs of one
    real(dp), parameter :: usual_cost = 0.01_dp   !! what the first one is taken to cost [s]
+   integer, parameter :: tried_bytes = 16384   !! room for these must be had before the run [byte]
+   integer, parameter :: unlike_full = 65536   !! a disk that takes these is not full [byte]
+   character(*), parameter :: extension = '.tmp'   !! of a working copy, as in file_calls.c
 
    !> A file in place and the working copy beside it.
    type :: working_file_type
       private
       character(:), allocatable :: path          !! path of the file in place
-      character(:), allocatable :: working_path  !! path of the working copy
+      character(:), allocatable :: working_path  !! path of the working copy, where there is one
       integer(hid_t), public :: id = -1          !! HDF5's handle while the working copy is open
       logical :: is_open = .false.               !! whether the working copy is open
       logical, public :: in_place = .false.      !! whether this run's file is in place
@@ -27,11 +31,13 @@ module working_files
       real(dp) :: last_end = 0.0_dp              !! when it ended, at first when the run began [s]
    contains
       procedure :: start
+      procedure :: reserve
       procedure :: open => open_working
       procedure :: close => close_working
       procedure :: put_in_place
       procedure :: is_due
       procedure :: charge
+      procedure :: explain
       procedure :: discard
    end type working_file_type
 
@@ -43,12 +49,28 @@ contains
       character(*), intent(in) :: path                 !! path of the file in place
 
       self%path = path
-      self%working_path = path//'.tmp'
       self%last_end = wall_seconds()
    end subroutine start
 
-   !> Opens the working copy: a new one at first (a killed run's leftover is replaced), later a copy
-   !> of the file in place.
+   !> Tries whether both files can be written, and leaves none behind.
+   !> Error: status_internal, when they cannot.
+   subroutine reserve(self, has_lock, error)
+      class(working_file_type), intent(inout) :: self     !! the file, named
+      logical, intent(in) :: has_lock                     !! whether no other run writes it
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      character(:), allocatable :: reason
+
+      if (has_lock) call remove_working_files(self%path)
+      call try_file(self%path, error)
+      if (allocated(error)) return
+      call create_working_file(self%path, self%working_path, error)
+      if (allocated(error)) return
+      call try_growth(self%working_path, tried_bytes, reason)
+      if (len(reason) > 0) call set_error(error, status_internal, cannot_write(self%path, reason))
+      call self%discard()
+   end subroutine reserve
+
+   !> Opens the working copy: a new one at first, later a copy of the file in place.
    !> Error: status_internal, when it cannot be written.
    subroutine open_working(self, is_new, error)
       class(working_file_type), intent(inout) :: self     !! the file
@@ -57,6 +79,8 @@ contains
 
       is_new = .false.
       if (self%is_open) return
+      call create_working_file(self%path, self%working_path, error)
+      if (allocated(error)) return
       if (self%in_place) then
          call copy_file(self%path, self%working_path, error)
          if (allocated(error)) return
@@ -79,13 +103,24 @@ contains
    end subroutine close_working
 
    !> Renames the closed working copy over the file in place.
-   !> Error: status_internal, when the system refuses.
+   !> Error: status_internal, when the system refuses. The copy then stays, under a name that no
+   !> later run takes for a leftover, and the message says where.
    subroutine put_in_place(self, error)
       class(working_file_type), intent(inout) :: self     !! the file
       type(error_type), allocatable, intent(out) :: error !! what went wrong
+      type(error_type), allocatable :: still_there
+      character(:), allocatable :: kept
 
       call rename_file(self%working_path, self%path, error)
-      if (.not. allocated(error)) self%in_place = .true.
+      if (allocated(error)) then
+         kept = self%working_path(:len(self%working_path) - len(extension))
+         call rename_file(self%working_path, kept, still_there)
+         if (allocated(still_there)) kept = self%working_path
+         error%message = error%message//'; the results are in "'//kept//'"'
+      else
+         self%in_place = .true.
+      end if
+      deallocate (self%working_path)
    end subroutine put_in_place
 
    !> Whether publishing now keeps the cost of it below a tenth of the run time.
@@ -109,13 +144,27 @@ contains
       self%last_end = wall_seconds()
    end subroutine charge
 
-   !> Drops the working copy.
+   !> Gives the system's reason to an error of HDF5, which tells none.
+   subroutine explain(self, error)
+      class(working_file_type), intent(in) :: self                    !! the file
+      type(error_type), allocatable, intent(inout) :: error           !! the error, if there is one
+      character(:), allocatable :: reason
+
+      if (.not. (allocated(error) .and. allocated(self%working_path))) return
+      call try_growth(self%working_path, unlike_full, reason)
+      if (len(reason) == 0) reason = error%message
+      error%message = cannot_write(self%path, reason)
+   end subroutine explain
+
+   !> Drops the working copy, where there is one.
    subroutine discard(self)
       class(working_file_type), intent(inout) :: self  !! the file
       type(error_type), allocatable :: ignored
 
       if (self%is_open) call self%close(ignored)
+      if (.not. allocated(self%working_path)) return
       call remove_file(self%working_path)
+      deallocate (self%working_path)
    end subroutine discard
 
 end module working_files

@@ -6,13 +6,15 @@ module deck_trade
    use deck_preparation, only: prepare_deck
    use deck_run, only: base_name
    use element_kinds, only: element_corner_count
-   use errors, only: error_type
+   use errors, only: error_type, status_deck
+   use file_calls, only: is_stream, make_folder, print_text, try_file
    use increments, only: simulation_type
    use kinds, only: dp
+   use messages, only: print_error, print_line
    use model, only: model_type
+   use printed_text, only: printed_text_type
    use recommendation, only: judge_rows
    use sorting, only: unique_sorted
-   use system_calls, only: make_folder
    use trade_errors, only: state_errors
    use trade_file, only: write_trade
    use trade_instants, only: common_instants
@@ -46,6 +48,11 @@ contains
       character(:), allocatable :: results
       integer :: i
 
+      status = status_deck
+      if (is_stream(path)) then
+         call print_error(path, 'trade reads the deck more than once, which only a file allows')
+         return
+      end if
       call prepare_deck(path, command, cards, model, simulation, status, &
          variation_type(order=2, levels=0))
       call simulation%release()
@@ -53,7 +60,8 @@ contains
       call make_folder(command%folder)
       results = command%folder//'/'//base_name(path)//'.trade'
       trade%instants = common_instants(model, longest_factor)
-      call measure(path, command, results, model, trade, error)
+      call try_file(results//'.csv', error)
+      if (.not. allocated(error)) call measure(path, command, results, model, trade, error)
       if (.not. allocated(error)) then
          call find_reference(trade, reference)
          call state_errors(reference, model%initial_temperature, trade)
@@ -62,19 +70,38 @@ contains
       end if
       if (allocated(error)) then
          status = error%status
-         write (error_unit, '(3a)') path, ': error: ', error%message
+         call print_error(path, error%message)
          return
       end if
       if (.not. command%quiet) then
-         call print_trade(output_unit, path, trade)
-         write (output_unit, '(/, 3a)') 'table: ', results, '.csv'
+         call print_table(path, results, trade)
       end if
       call print_imbalances(error_unit, path, trade)
       i = findloc(trade%rows(:trade%count)%is_default, .true., dim=1)
       status = trade%rows(i)%status
-      if (status /= 0) write (error_unit, '(3a)') path, ': error: the deck as it is written '// &
-         'fails: ', trade%rows(i)%reason
+      if (status /= 0) call print_error(path, 'the deck as it is written fails: '// &
+         trade%rows(i)%reason)
    end subroutine trade_deck
+
+   !> Prints the table on stdout, where it may find no room.
+   subroutine print_table(path, results, trade)
+      character(*), intent(in) :: path, results
+      type(trade_type), intent(in) :: trade
+      type(printed_text_type) :: text
+      type(error_type), allocatable :: error
+      character(:), allocatable :: lines
+
+      call text%open(error)
+      if (allocated(error)) then
+         call print_error(path, error%message)
+         return
+      end if
+      call print_trade(text%unit, path, trade)
+      call text%take(lines)
+      call text%close()
+      call print_text(lines)
+      call print_line(output_unit, 'table: '//results//'.csv')
+   end subroutine print_table
 
    !> Runs the grid level by level, as long as that is affordable, then the single variations.
    subroutine measure(path, command, results, model, trade, error)

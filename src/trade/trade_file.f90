@@ -1,7 +1,8 @@
 !> The table of a trade as a CSV file.
 module trade_file
    use csv_fields, only: quoted
-   use errors, only: error_type, set_error, status_internal
+   use errors, only: error_type
+   use file_calls, only: write_file
    use kinds, only: dp
    use text, only: to_text
    use trade_quantities, only: is_there, quantity_count, quantity_names
@@ -24,23 +25,14 @@ contains
       character(*), intent(in) :: path                     !! the file
       type(trade_type), intent(in) :: trade                !! the trade
       type(error_type), allocatable, intent(out) :: error  !! see above
-      integer :: unit, status, i
+      character(:), allocatable :: text
+      integer :: i
 
-      open (newunit=unit, file=path, status='replace', action='write', iostat=status)
-      if (status == 0) then
-         write (unit, '(a)', iostat=status) heading()
-         do i = 1, trade%count
-            if (status /= 0) exit
-            write (unit, '(a)', iostat=status) row_text(i, trade%rows(i), trade)
-         end do
-         if (status == 0) write (unit, '(a)', iostat=status) reference_text(trade)
-         if (status == 0) then
-            close (unit, iostat=status)
-         else
-            close (unit)
-         end if
-      end if
-      if (status /= 0) call set_error(error, status_internal, 'cannot write "'//path//'"')
+      text = heading()//new_line('a')
+      do i = 1, trade%count
+         text = text//row_text(i, trade%rows(i), trade)//new_line('a')
+      end do
+      call write_file(path, text//reference_text(trade)//new_line('a'), error)
    end subroutine write_trade
 
    pure function heading() result(line)

@@ -4,12 +4,12 @@ module trade_measurement
    use command_line, only: command_type
    use errors, only: error_type, set_error, status_deck, status_internal, status_interrupted
    use interruption, only: caught_signal
+   use file_calls, only: remove_file
    use kinds, only: dp
    use process_ends, only: describe_end, process_end_type
    use processes, only: collect_process, kill_process, pause_briefly, start_process
    use progress, only: progress_type
    use row_task, only: row_task_type
-   use system_calls, only: remove_file
    use text, only: to_text
    use trade_rows, only: trade_row_type, trade_type
    implicit none

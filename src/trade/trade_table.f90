@@ -2,6 +2,7 @@
 module trade_table
    use heat_balance, only: sound_imbalance
    use kinds, only: dp
+   use messages, only: print_line
    use text, only: to_text
    use trade_quantities, only: is_there, quantity_count, quantity_heads
    use trade_rows, only: trade_row_type, trade_type, wish_count, wishes
@@ -63,9 +64,9 @@ contains
                comma(row%varied)//')'
          end associate
       end do
-      if (len(rows) > 0) write (unit, '(5a)') name, ': warning: at the end of an increment ', &
-         'heat is out of balance by more than 1 % of the largest rate ', &
-         '(heat_imbalance_pointwise), left by the thermal scheme: ', rows(3:)
+      if (len(rows) > 0) call print_line(unit, name//': warning: at the end of an increment '// &
+         'heat is out of balance by more than 1 % of the largest rate '// &
+         '(heat_imbalance_pointwise), left by the thermal scheme: '//rows(3:))
    end subroutine print_imbalances
 
    subroutine print_row(unit, number, row)

@@ -1,0 +1,295 @@
+/* What the program asks of the file system beyond Fortran's own statements. Functions return 0 or the
+   system's error number; src/core/file_calls.f90 describes them. */
+#define _GNU_SOURCE
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { locked_by_another = -1, not_lockable = -2, too_long = -3, block_size = 1 << 20 };
+
+/* Number of the first error on standard output. */
+static int standard_output_error = 0;
+
+/* Text of an error number, cut to the buffer. */
+void file_reason(int number, char *text, int length)
+{
+   snprintf(text, (size_t)length, "%s", strerror(number));
+}
+
+int file_rename(const char *from, const char *to)
+{
+   return rename(from, to) == 0 ? 0 : errno;
+}
+
+int file_remove(const char *path)
+{
+   return unlink(path) == 0 ? 0 : errno;
+}
+
+int file_make_folder(const char *path)
+{
+   return mkdir(path, 0777) == 0 ? 0 : errno;
+}
+
+int file_is_terminal(int descriptor)
+{
+   return isatty(descriptor);
+}
+
+/* Writes all of the bytes. */
+static int write_all(int descriptor, const char *bytes, size_t count)
+{
+   while (count > 0) {
+      ssize_t written = write(descriptor, bytes, count);
+      if (written < 0 && errno == EINTR)
+         continue;
+      if (written < 0)
+         return errno;
+      bytes += written;
+      count -= (size_t)written;
+   }
+   return 0;
+}
+
+/* Prints text on standard output at once; that it finds no room is remembered. */
+void file_print(const char *text, long count)
+{
+   int number = write_all(STDOUT_FILENO, text, (size_t)count);
+
+   if (standard_output_error == 0)
+      standard_output_error = number;
+}
+
+int file_print_error(void)
+{
+   return standard_output_error;
+}
+
+/* Whether a file can be read once only, as a pipe. */
+int file_is_stream(const char *path)
+{
+   struct stat status;
+
+   return stat(path, &status) == 0 && (S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode)
+      || S_ISCHR(status.st_mode));
+}
+
+/* Whether a file can be written: 0 or the reason why not. It is left as it was. */
+int file_try(const char *path)
+{
+   int is_new = access(path, F_OK) != 0;
+   int descriptor = open(path, O_WRONLY | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666);
+
+   if (descriptor < 0)
+      return errno;
+   close(descriptor);
+   if (is_new)
+      unlink(path);
+   return 0;
+}
+
+/* Whether a file, which is there, takes so many more bytes: 0 or the reason why not. */
+int file_try_growth(const char *path, long count)
+{
+   int number = 0, descriptor = open(path, O_WRONLY | O_APPEND | O_CLOEXEC);
+   char *bytes = calloc(1, (size_t)count);
+
+   if (descriptor < 0 || !bytes)
+      number = errno;
+   else
+      number = write_all(descriptor, bytes, (size_t)count);
+   if (descriptor >= 0 && close(descriptor) != 0 && number == 0)
+      number = errno;
+   free(bytes);
+   return number;
+}
+
+/* Makes a new file `stem.<process>.tmp`, where such a file is not there yet, else with the next free
+   number; its path goes to `path`, which has room for it. */
+int file_create_working(const char *stem, char *path, int length)
+{
+   for (long number = (long)getpid();; number++) {
+      int descriptor;
+
+      snprintf(path, (size_t)length, "%s.%ld.tmp", stem, number);
+      descriptor = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor >= 0)
+         return close(descriptor) == 0 ? 0 : errno;
+      if (errno != EEXIST)
+         return errno;
+   }
+}
+
+/* Removes the files `stem.<number>.tmp`, which runs left that were killed. */
+void file_remove_working(const char *stem)
+{
+   const char *slash = strrchr(stem, '/');
+   const char *name = slash ? slash + 1 : stem;
+   size_t length = strlen(name);
+   char *folder = slash ? strndup(stem, (size_t)(slash - stem + 1)) : strdup("./");
+   DIR *entries = folder ? opendir(folder) : NULL;
+   struct dirent *entry;
+
+   while (entries && (entry = readdir(entries))) {
+      const char *rest = entry->d_name + length + 1;
+
+      if (strncmp(entry->d_name, name, length) != 0 || entry->d_name[length] != '.')
+         continue;
+      if (strspn(rest, "0123456789") > 0 && strcmp(rest + strspn(rest, "0123456789"), ".tmp") == 0)
+         unlinkat(dirfd(entries), entry->d_name, 0);
+   }
+   if (entries)
+      closedir(entries);
+   free(folder);
+}
+
+/* Makes a file anew, to write at its end. */
+int file_open_new(const char *path, int *descriptor)
+{
+   *descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+   return *descriptor < 0 ? errno : 0;
+}
+
+/* Opens a file to write at its end, which is made where it is missing and otherwise left as it is, and
+   locks it until its descriptor is closed or the process ends. Where the file system has no locks the
+   file is open all the same. */
+int file_lock(const char *path, int *descriptor)
+{
+   struct stat status;
+
+   do {
+      *descriptor = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+      if (*descriptor < 0)
+         return errno;
+      if (flock(*descriptor, LOCK_EX | LOCK_NB) != 0) {
+         int number = errno;
+
+         if (number == EOPNOTSUPP || number == ENOLCK || number == ENOSYS)
+            return not_lockable;
+         close(*descriptor);
+         *descriptor = -1;
+         return number == EWOULDBLOCK ? locked_by_another : number;
+      }
+      /* Another run may have removed the file since it was opened. */
+      if (fstat(*descriptor, &status) == 0 && status.st_nlink > 0)
+         return 0;
+      close(*descriptor);
+   } while (1);
+}
+
+/* Ends a lock; a file in which nothing was written is removed. */
+void file_unlock(const char *path, int descriptor)
+{
+   struct stat status;
+
+   if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_size == 0)
+      unlink(path);
+   close(descriptor);
+}
+
+/* A file in memory; Fortran opens it as /proc/self/fd/<descriptor>. */
+int file_in_memory(int *descriptor)
+{
+   *descriptor = memfd_create("thercon", MFD_CLOEXEC);
+   return *descriptor < 0 ? errno : 0;
+}
+
+int file_append(int descriptor, const char *text, long count)
+{
+   return write_all(descriptor, text, (size_t)count);
+}
+
+int file_empty(int descriptor)
+{
+   /* What is no regular file, such as a device, has nothing to be cut off. */
+   return ftruncate(descriptor, 0) == 0 || errno == EINVAL ? 0 : errno;
+}
+
+int file_close(int descriptor)
+{
+   return close(descriptor) == 0 ? 0 : errno;
+}
+
+/* Copies a file over another one. */
+int file_copy(const char *from, const char *to, int *is_source)
+{
+   int source = open(from, O_RDONLY | O_CLOEXEC), target, number = 0;
+   char *block = malloc(block_size);
+   ssize_t count = 0;
+
+   *is_source = source < 0 || !block;
+   target = *is_source ? -1 : open(to, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+   if (*is_source || target < 0)
+      number = errno;
+   while (number == 0 && (count = read(source, block, block_size)) > 0)
+      number = write_all(target, block, (size_t)count);
+   if (count < 0) {
+      number = errno;
+      *is_source = 1;
+   }
+   if (target >= 0 && close(target) != 0 && number == 0)
+      number = errno;
+   if (source >= 0)
+      close(source);
+   free(block);
+   return number;
+}
+
+/* Reads a file, which may be a pipe, to its end; the caller frees the contents. */
+int file_read(const char *path, long most, char **contents, long *count)
+{
+   int number = 0, descriptor = open(path, O_RDONLY | O_CLOEXEC);
+   size_t room = block_size;
+   ssize_t portion;
+
+   *count = 0;
+   *contents = malloc(room);
+   if (descriptor < 0 || !*contents)
+      number = errno;
+   while (number == 0) {
+      portion = read(descriptor, *contents + *count, room - (size_t)*count);
+      if (portion < 0 && errno == EINTR)
+         continue;
+      if (portion < 0)
+         number = errno;
+      if (portion <= 0)
+         break;
+      *count += portion;
+      if (*count > most)
+         number = too_long;
+      else if ((size_t)*count == room) {
+         char *more = realloc(*contents, room *= 2);
+
+         if (!more)
+            number = errno;
+         else
+            *contents = more;
+      }
+   }
+   if (descriptor >= 0)
+      close(descriptor);
+   if (number != 0) {
+      free(*contents);
+      *contents = NULL;
+   }
+   return number;
+}
+
+void file_free(char *contents)
+{
+   free(contents);
+}
+
+/* A file that would grow past the limit of the process is an error like others, no reason to die. */
+void file_survive_limits(void)
+{
+   signal(SIGXFSZ, SIG_IGN);
+}

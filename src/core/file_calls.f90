@@ -1,0 +1,465 @@
+!> What the program asks of the file system beyond Fortran's own statements, with the system's reason
+!> where it refuses. The calls themselves are in file_calls.c.
+module file_calls
+   use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_long, c_null_char, c_ptr
+   use errors, only: error_type, set_error, status_internal
+   use kinds, only: long
+   use text, only: to_text
+   implicit none
+   private
+   public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file
+   public :: try_file, try_growth, create_working_file, remove_working_files, survive_file_limits
+   public :: write_file, open_new_file, lock_file, unlock_file, append_to_file, empty_file, close_descriptor
+   public :: open_in_memory, cannot_write, print_text, check_printed
+
+   integer(c_int), parameter :: locked_by_another = -1_c_int   !! as in file_calls.c
+   integer(c_int), parameter :: not_lockable = -2_c_int        !! alike
+   integer(c_int), parameter :: too_long = -3_c_int            !! alike
+   integer, parameter :: reason_length = 200
+   integer, parameter :: number_length = 24   !! of what a working file's name adds, at most
+
+   interface
+      subroutine c_reason(number, text, length) bind(c, name='file_reason')
+         import :: c_char, c_int
+         integer(c_int), value :: number
+         character(kind=c_char), intent(out) :: text(*)
+         integer(c_int), value :: length
+      end subroutine c_reason
+
+      function c_rename(from, to) bind(c, name='file_rename') result(number)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: from(*)
+         character(kind=c_char), intent(in) :: to(*)
+         integer(c_int) :: number
+      end function c_rename
+
+      function c_remove(path) bind(c, name='file_remove') result(number)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: number
+      end function c_remove
+
+      function c_make_folder(path) bind(c, name='file_make_folder') result(number)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: number
+      end function c_make_folder
+
+      function c_is_terminal(descriptor) bind(c, name='file_is_terminal') result(answer)
+         import :: c_int
+         integer(c_int), value :: descriptor
+         integer(c_int) :: answer
+      end function c_is_terminal
+
+      subroutine c_print(text, count) bind(c, name='file_print')
+         import :: c_char, c_long
+         character(kind=c_char), intent(in) :: text(*)
+         integer(c_long), value :: count
+      end subroutine c_print
+
+      function c_print_error() bind(c, name='file_print_error') result(number)
+         import :: c_int
+         integer(c_int) :: number
+      end function c_print_error
+
+      function c_is_stream(path) bind(c, name='file_is_stream') result(answer)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: answer
+      end function c_is_stream
+
+      function c_try(path) bind(c, name='file_try') result(number)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: number
+      end function c_try
+
+      function c_try_growth(path, count) bind(c, name='file_try_growth') result(number)
+         import :: c_char, c_int, c_long
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_long), value :: count
+         integer(c_int) :: number
+      end function c_try_growth
+
+      function c_create_working(stem, path, length) bind(c, name='file_create_working') &
+         result(number)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: stem(*)
+         character(kind=c_char), intent(out) :: path(*)
+         integer(c_int), value :: length
+         integer(c_int) :: number
+      end function c_create_working
+
+      subroutine c_remove_working(stem) bind(c, name='file_remove_working')
+         import :: c_char
+         character(kind=c_char), intent(in) :: stem(*)
+      end subroutine c_remove_working
+
+      function c_open_new(path, descriptor) bind(c, name='file_open_new') result(number)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), intent(out) :: descriptor
+         integer(c_int) :: number
+      end function c_open_new
+
+      function c_lock(path, descriptor) bind(c, name='file_lock') result(number)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), intent(out) :: descriptor
+         integer(c_int) :: number
+      end function c_lock
+
+      subroutine c_unlock(path, descriptor) bind(c, name='file_unlock')
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), value :: descriptor
+      end subroutine c_unlock
+
+      function c_in_memory(descriptor) bind(c, name='file_in_memory') result(number)
+         import :: c_int
+         integer(c_int), intent(out) :: descriptor
+         integer(c_int) :: number
+      end function c_in_memory
+
+      function c_append(descriptor, text, count) bind(c, name='file_append') result(number)
+         import :: c_char, c_int, c_long
+         integer(c_int), value :: descriptor
+         character(kind=c_char), intent(in) :: text(*)
+         integer(c_long), value :: count
+         integer(c_int) :: number
+      end function c_append
+
+      function c_empty(descriptor) bind(c, name='file_empty') result(number)
+         import :: c_int
+         integer(c_int), value :: descriptor
+         integer(c_int) :: number
+      end function c_empty
+
+      function c_close(descriptor) bind(c, name='file_close') result(number)
+         import :: c_int
+         integer(c_int), value :: descriptor
+         integer(c_int) :: number
+      end function c_close
+
+      function c_copy(from, to, is_source) bind(c, name='file_copy') result(number)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: from(*)
+         character(kind=c_char), intent(in) :: to(*)
+         integer(c_int), intent(out) :: is_source
+         integer(c_int) :: number
+      end function c_copy
+
+      function c_read(path, most, contents, count) bind(c, name='file_read') result(number)
+         import :: c_char, c_int, c_long, c_ptr
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_long), value :: most
+         type(c_ptr), intent(out) :: contents
+         integer(c_long), intent(out) :: count
+         integer(c_int) :: number
+      end function c_read
+
+      subroutine c_free(contents) bind(c, name='file_free')
+         import :: c_ptr
+         type(c_ptr), value :: contents
+      end subroutine c_free
+
+      !> From now on a file that would grow past the limit of the process is an error like others.
+      subroutine survive_file_limits() bind(c, name='file_survive_limits')
+      end subroutine survive_file_limits
+   end interface
+
+contains
+
+   !> The message on a file that cannot be written.
+   pure function cannot_write(path, reason) result(message)
+      character(*), intent(in) :: path          !! the file
+      character(*), intent(in) :: reason        !! the system's words, such as from iomsg=
+      character(:), allocatable :: message      !! without an end of line
+
+      message = 'cannot write "'//path//'": '//trim(reason)
+   end function cannot_write
+
+   !> Gives a file another name; a file that had that name is replaced in one instant.
+   !> Error: status_internal, when the system refuses.
+   subroutine rename_file(from, to, error)
+      character(*), intent(in) :: from                     !! present path
+      character(*), intent(in) :: to                       !! new path, in the same file system
+      type(error_type), allocatable, intent(out) :: error  !! what went wrong
+      integer(c_int) :: number
+
+      number = c_rename(from//c_null_char, to//c_null_char)
+      if (number /= 0) call set_error(error, status_internal, cannot_write(to, reason_of(number)))
+   end subroutine rename_file
+
+   !> Makes a folder and those above it; one that is there already is left as it is. Whether it can
+   !> be written to shows when a file is opened in it.
+   subroutine make_folder(path)
+      character(*), intent(in) :: path   !! the folder
+      integer :: i
+      integer(c_int) :: ignored
+
+      do i = 2, len(path)
+         if (path(i:i) == '/') ignored = c_make_folder(path(:i - 1)//c_null_char)
+      end do
+      ignored = c_make_folder(path//c_null_char)
+   end subroutine make_folder
+
+   !> Copies a file; a file that stands at the target is overwritten.
+   !> Error: status_internal, when either file cannot be read or written.
+   subroutine copy_file(from, to, error)
+      character(*), intent(in) :: from                     !! path that is read
+      character(*), intent(in) :: to                       !! path that is written
+      type(error_type), allocatable, intent(out) :: error  !! what went wrong
+      integer(c_int) :: number, is_source
+
+      number = c_copy(from//c_null_char, to//c_null_char, is_source)
+      if (number == 0) return
+      if (is_source == 0) then
+         call set_error(error, status_internal, cannot_write(to, reason_of(number)))
+      else
+         call set_error(error, status_internal, 'cannot read "'//from//'": '//reason_of(number))
+      end if
+   end subroutine copy_file
+
+   !> Removes a file; that it is not there is no error.
+   subroutine remove_file(path)
+      character(*), intent(in) :: path   !! the file
+      integer(c_int) :: ignored
+
+      ignored = c_remove(path//c_null_char)
+   end subroutine remove_file
+
+   !> Whether a person looks at what is written there.
+   function is_terminal(descriptor) result(answer)
+      integer, intent(in) :: descriptor   !! 1 standard output, 2 standard error
+      logical :: answer                   !! true for a terminal
+
+      answer = c_is_terminal(int(descriptor, c_int)) == 1
+   end function is_terminal
+
+   !> Prints text on standard output. Fortran's own statements do not tell where it finds no room.
+   subroutine print_text(string)
+      character(*), intent(in) :: string   !! the text, with its ends of line
+
+      call c_print(string, len(string, kind=c_long))
+   end subroutine print_text
+
+   !> Error: status_internal, when something that was printed on standard output found no room.
+   subroutine check_printed(error)
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+      integer(c_int) :: number
+
+      number = c_print_error()
+      if (number /= 0) call set_error(error, status_internal, &
+         'cannot write to standard output: '//reason_of(number))
+   end subroutine check_printed
+
+   !> Whether a file can be read once only, as a pipe.
+   function is_stream(path) result(answer)
+      character(*), intent(in) :: path    !! the file
+      logical :: answer                   !! false where it is missing
+
+      answer = c_is_stream(path//c_null_char) /= 0
+   end function is_stream
+
+   !> Tries whether a file can be written, and leaves it as it was.
+   !> Error: status_internal, when it cannot.
+   subroutine try_file(path, error)
+      character(*), intent(in) :: path                     !! the file, which may be missing
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+      integer(c_int) :: number
+
+      number = c_try(path//c_null_char)
+      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+   end subroutine try_file
+
+   !> Tries whether a file has room for more bytes, which are zero and stay in it.
+   subroutine try_growth(path, bytes, reason)
+      character(*), intent(in) :: path                        !! the file
+      integer, intent(in) :: bytes                            !! their number
+      character(:), allocatable, intent(out) :: reason        !! why it has none; else empty
+      integer(c_int) :: number
+
+      reason = ''
+      number = c_try_growth(path//c_null_char, int(bytes, c_long))
+      if (number /= 0) reason = reason_of(number)
+   end subroutine try_growth
+
+   !> Makes a new, empty file beside another one, `<path>.<number>.tmp`. No other run has it.
+   !> Error: status_internal, when it cannot be made.
+   subroutine create_working_file(path, working_path, error)
+      character(*), intent(in) :: path                         !! the file that it is to become
+      character(:), allocatable, intent(out) :: working_path   !! its own path
+      type(error_type), allocatable, intent(out) :: error      !! with the system's reason
+      character(len(path) + number_length, kind=c_char) :: buffer
+      integer(c_int) :: number
+
+      buffer = ''
+      number = c_create_working(path//c_null_char, buffer, len(buffer, kind=c_int))
+      working_path = without_end(buffer)
+      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+   end subroutine create_working_file
+
+   !> Removes what killed runs have left beside a file. Call it with the lock of its run only.
+   subroutine remove_working_files(path)
+      character(*), intent(in) :: path   !! as create_working_file had it
+
+      call c_remove_working(path//c_null_char)
+   end subroutine remove_working_files
+
+   !> Makes a file anew, to write at its end.
+   !> Error: status_internal, when the system refuses.
+   subroutine open_new_file(path, descriptor, error)
+      character(*), intent(in) :: path                     !! the file
+      integer, intent(out) :: descriptor                   !! the open file, -1 after an error
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+      integer(c_int) :: number, opened
+
+      number = c_open_new(path//c_null_char, opened)
+      descriptor = int(opened)
+      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+   end subroutine open_new_file
+
+   !> Makes a file of a text.
+   !> Error: status_internal, when the system refuses.
+   subroutine write_file(path, string, error)
+      character(*), intent(in) :: path                     !! the file
+      character(*), intent(in) :: string                   !! the text, with its ends of line
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+      integer :: descriptor
+
+      call open_new_file(path, descriptor, error)
+      if (allocated(error)) return
+      call append_to_file(descriptor, path, string, error)
+      call close_descriptor(descriptor)
+   end subroutine write_file
+
+   !> Opens a file to write at its end, and locks it: the system frees the lock with the descriptor,
+   !> at the latest when the process ends, however it ends.
+   !> Errors, status_internal: the file cannot be written; another run has the lock.
+   subroutine lock_file(path, descriptor, has_lock, error)
+      character(*), intent(in) :: path                     !! the file; made if it is missing
+      integer, intent(out) :: descriptor                   !! the open file, -1 after an error
+      logical, intent(out) :: has_lock                     !! false where there are no locks
+      type(error_type), allocatable, intent(out) :: error  !! see above
+      integer(c_int) :: number, opened
+
+      number = c_lock(path//c_null_char, opened)
+      descriptor = int(opened)
+      has_lock = number == 0
+      select case (number)
+      case (0, not_lockable)
+         return
+      case (locked_by_another)
+         call set_error(error, status_internal, cannot_write(path, 'another run writes here'))
+      case default
+         call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+      end select
+   end subroutine lock_file
+
+   !> Closes a locked file; one in which nothing was written is removed.
+   subroutine unlock_file(path, descriptor)
+      character(*), intent(in) :: path      !! the file
+      integer, intent(in) :: descriptor     !! as from lock_file
+
+      call c_unlock(path//c_null_char, int(descriptor, c_int))
+   end subroutine unlock_file
+
+   !> Opens a file in memory, whose end comes with that of its descriptor.
+   !> Error: status_internal, when the system opens none.
+   subroutine open_in_memory(descriptor, path, error)
+      integer, intent(out) :: descriptor                   !! of the file
+      character(:), allocatable, intent(out) :: path       !! by which it can be opened
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+      integer(c_int) :: number, opened
+
+      number = c_in_memory(opened)
+      descriptor = int(opened)
+      path = '/proc/self/fd/'//to_text(descriptor)
+      if (number /= 0) call set_error(error, status_internal, &
+         'cannot open a file in memory: '//reason_of(number))
+   end subroutine open_in_memory
+
+   !> Writes text at the end of an open file.
+   !> Error: status_internal, when the system refuses.
+   subroutine append_to_file(descriptor, path, string, error)
+      integer, intent(in) :: descriptor                    !! the open file
+      character(*), intent(in) :: path                     !! its path, for the message
+      character(*), intent(in) :: string                   !! what is written
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+      integer(c_int) :: number
+
+      number = c_append(int(descriptor, c_int), string, len(string, kind=c_long))
+      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+   end subroutine append_to_file
+
+   !> Empties an open file.
+   !> Error: status_internal, when the system refuses.
+   subroutine empty_file(descriptor, path, error)
+      integer, intent(in) :: descriptor                    !! the open file
+      character(*), intent(in) :: path                     !! its path, for the message
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+      integer(c_int) :: number
+
+      number = c_empty(int(descriptor, c_int))
+      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+   end subroutine empty_file
+
+   !> Closes what was opened here.
+   subroutine close_descriptor(descriptor)
+      integer, intent(in) :: descriptor   !! the open file
+      integer(c_int) :: ignored
+
+      ignored = c_close(int(descriptor, c_int))
+   end subroutine close_descriptor
+
+   !> Reads a file, which may be a pipe, to its end.
+   subroutine read_file(path, most, contents, reason)
+      character(*), intent(in) :: path                         !! the file
+      integer, intent(in) :: most                              !! bytes that it may have
+      character(:), allocatable, intent(out) :: contents       !! all its bytes
+      character(:), allocatable, intent(out) :: reason         !! why it is not read; else empty
+      character(kind=c_char), pointer :: bytes(:)
+      type(c_ptr) :: address
+      integer(c_long) :: count
+      integer(c_int) :: number
+      integer(long) :: i
+
+      contents = ''
+      reason = ''
+      number = c_read(path//c_null_char, int(most, c_long), address, count)
+      if (number == too_long) then
+         reason = 'it has more than '//to_text(most/1000000)//' MB'
+      else if (number /= 0) then
+         reason = reason_of(number)
+      end if
+      if (number /= 0) return
+      call c_f_pointer(address, bytes, [count])
+      deallocate (contents)
+      allocate (character(count) :: contents)
+      do i = 1, count
+         contents(i:i) = bytes(i)
+      end do
+      call c_free(address)
+   end subroutine read_file
+
+   !> The system's words on an error number.
+   function reason_of(number) result(reason)
+      integer(c_int), intent(in) :: number
+      character(:), allocatable :: reason
+      character(reason_length, kind=c_char) :: buffer
+
+      buffer = ''
+      call c_reason(number, buffer, int(reason_length, c_int))
+      reason = without_end(buffer)
+   end function reason_of
+
+   !> A string of C as one of Fortran.
+   pure function without_end(buffer) result(string)
+      character(*, kind=c_char), intent(in) :: buffer   !! with a null character at its end
+      character(:), allocatable :: string               !! what stands before it
+
+      string = buffer(:index(buffer//c_null_char, c_null_char) - 1)
+   end function without_end
+
+end module file_calls

@@ -1,0 +1,34 @@
+!> Lines for a person at a terminal. All that the program prints goes through here: text of decks,
+!> file names and options may hold control characters, which a terminal would obey.
+module messages
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use file_calls, only: print_text
+   use utf8, only: printable
+   implicit none
+   private
+   public :: print_line, print_error
+
+contains
+
+   !> Prints one line with its control characters made visible.
+   subroutine print_line(unit, line)
+      integer, intent(in) :: unit           !! open for formatted output, or output_unit
+      character(*), intent(in) :: line      !! the line, without its end
+      integer :: ignored
+
+      if (unit == output_unit) then
+         call print_text(printable(line)//new_line('a'))
+      else
+         write (unit, '(a)', iostat=ignored) printable(line)
+      end if
+   end subroutine print_line
+
+   !> Prints an error on stderr as `subject: error: message`.
+   subroutine print_error(subject, message)
+      character(*), intent(in) :: subject   !! the deck as given, or the program
+      character(*), intent(in) :: message   !! what went wrong
+
+      call print_line(error_unit, subject//': error: '//message)
+   end subroutine print_error
+
+end module messages
