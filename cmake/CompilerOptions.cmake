@@ -22,21 +22,24 @@ endif()
 # assignment, hence -Wno-uninitialized; memory that is never set is looked for at run time.
 add_library(thercon_language INTERFACE)
 target_compile_options(thercon_language INTERFACE
-   $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-std=f2008> $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-fimplicit-none>
-   $<$<COMPILE_LANGUAGE:C>:-std=c11>)
+   $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-std=f2008>
+   $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-fimplicit-none>
+   $<$<COMPILE_LANGUAGE:C>:-std=c11> $<$<COMPILE_LANGUAGE:C>:-Wall> $<$<COMPILE_LANGUAGE:C>:-Wextra>)
 if(THERCON_WARNINGS)
    target_compile_options(thercon_language INTERFACE
-      -Werror -pedantic -Wall -Wextra -Wconversion
-      $<$<COMPILE_LANGUAGE:Fortran>:-Wimplicit-interface> $<$<COMPILE_LANGUAGE:Fortran>:-Wimplicit-procedure>
-      $<$<COMPILE_LANGUAGE:Fortran>:-Wcharacter-truncation> $<$<COMPILE_LANGUAGE:Fortran>:-Wuse-without-only>
-      $<$<COMPILE_LANGUAGE:Fortran>:-Wundefined-do-loop>
-      $<$<COMPILE_LANGUAGE:Fortran>:-Wno-uninitialized> $<$<COMPILE_LANGUAGE:Fortran>:-Wno-maybe-uninitialized>)
+      -Werror -pedantic -Wall -Wextra -Wconversion)
+   foreach(option IN ITEMS -Wimplicit-interface -Wimplicit-procedure -Wcharacter-truncation
+      -Wuse-without-only -Wundefined-do-loop -Wno-uninitialized -Wno-maybe-uninitialized)
+      target_compile_options(thercon_language INTERFACE $<$<COMPILE_LANGUAGE:Fortran>:${option}>)
+   endforeach()
 endif()
 
 add_library(thercon_checks INTERFACE)
 if(THERCON_CHECKS)
-   target_compile_options(thercon_checks INTERFACE
-      "$<$<COMPILE_LANGUAGE:Fortran>:-fcheck=all,no-array-temps;-fbacktrace;-ffpe-trap=invalid,zero,overflow;-finit-real=snan;-finit-derived>")
+   foreach(option IN ITEMS -fcheck=all,no-array-temps -fbacktrace
+      -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived)
+      target_compile_options(thercon_checks INTERFACE $<$<COMPILE_LANGUAGE:Fortran>:${option}>)
+   endforeach()
 endif()
 if(THERCON_SANITIZERS)
    # gfortran 12 works out the size of an array that is not allocated when its holder is copied:

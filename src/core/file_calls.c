@@ -1,5 +1,5 @@
-/* What the program asks of the file system beyond Fortran's own statements. Functions return 0 or the
-   system's error number; src/core/file_calls.f90 describes them. */
+/* What the program asks of the file system beyond Fortran's own statements. Functions return 0 or
+   the system's error number; src/core/file_calls.f90 describes them. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <errno.h>
@@ -112,8 +112,8 @@ int file_try_growth(const char *path, long count)
    return number;
 }
 
-/* Makes a new file `stem.<process>.tmp`, where such a file is not there yet, else with the next free
-   number; its path goes to `path`, which has room for it. */
+/* Makes a new file `stem.<process>.tmp`, where such a file is not there yet, else with the next
+   free number; its path goes to `path`, which has room for it. */
 int file_create_working(const char *stem, char *path, int length)
 {
    for (long number = (long)getpid();; number++) {
@@ -158,9 +158,9 @@ int file_open_new(const char *path, int *descriptor)
    return *descriptor < 0 ? errno : 0;
 }
 
-/* Opens a file to write at its end, which is made where it is missing and otherwise left as it is, and
-   locks it until its descriptor is closed or the process ends. Where the file system has no locks the
-   file is open all the same. */
+/* Opens a file to write at its end, which is made where it is missing and otherwise left as it is,
+   and locks it until its descriptor is closed or the process ends. Where the file system has no
+   locks the file is open all the same. */
 int file_lock(const char *path, int *descriptor)
 {
    struct stat status;

@@ -1,5 +1,5 @@
-!> What the program asks of the file system beyond Fortran's own statements, with the system's reason
-!> where it refuses. The calls themselves are in file_calls.c.
+!> What the program asks of the file system beyond Fortran's own statements, with the system's
+!> reason where it refuses. The calls themselves are in file_calls.c.
 module file_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_long, c_null_char, c_ptr
    use errors, only: error_type, set_error, status_internal
@@ -9,8 +9,8 @@ module file_calls
    private
    public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file
    public :: try_file, try_growth, create_working_file, remove_working_files, survive_file_limits
-   public :: write_file, open_new_file, lock_file, unlock_file, append_to_file, empty_file, close_descriptor
-   public :: open_in_memory, cannot_write, print_text, check_printed
+   public :: write_file, open_new_file, lock_file, unlock_file, append_to_file, empty_file
+   public :: close_descriptor, open_in_memory, cannot_write, print_text, check_printed
 
    integer(c_int), parameter :: locked_by_another = -1_c_int   !! as in file_calls.c
    integer(c_int), parameter :: not_lockable = -2_c_int        !! alike
@@ -22,8 +22,8 @@ module file_calls
       subroutine c_reason(number, text, length) bind(c, name='file_reason')
          import :: c_char, c_int
          integer(c_int), value :: number
-         character(kind=c_char), intent(out) :: text(*)
          integer(c_int), value :: length
+         character(kind=c_char), intent(out) :: text(length)
       end subroutine c_reason
 
       function c_rename(from, to) bind(c, name='file_rename') result(number)
@@ -85,8 +85,8 @@ module file_calls
          result(number)
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: stem(*)
-         character(kind=c_char), intent(out) :: path(*)
          integer(c_int), value :: length
+         character(kind=c_char), intent(out) :: path(length)
          integer(c_int) :: number
       end function c_create_working
 

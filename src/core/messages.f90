@@ -14,12 +14,13 @@ contains
    subroutine print_line(unit, line)
       integer, intent(in) :: unit           !! open for formatted output, or output_unit
       character(*), intent(in) :: line      !! the line, without its end
-      integer :: ignored
+      integer :: status
 
       if (unit == output_unit) then
          call print_text(printable(line)//new_line('a'))
       else
-         write (unit, '(a)', iostat=ignored) printable(line)
+         write (unit, '(a)', iostat=status) printable(line)
+         if (status /= 0) return   ! there is nobody left to tell
       end if
    end subroutine print_line
 

@@ -24,8 +24,11 @@ module deck_builder
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
+   use errors, only: error_type
    use load_checks, only: first_heat
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
+   use memory_calls, only: check_memory
+   use memory_needs, only: memory_needed
    use mesh, only: set_type
    use model, only: model_type
    use refinement, only: refine
@@ -40,10 +43,12 @@ module deck_builder
 contains
 
    !> Builds the model that a deck describes; it is usable only if the report then has no errors.
-   subroutine build_model(cards, model, report, variation)
+   !> Error: status_internal, when a run would need more memory than there is.
+   subroutine build_model(cards, model, report, error, variation)
       type(cards_type), intent(in) :: cards               !! the cards, as read_deck left them
       type(model_type), intent(out) :: model              !! the model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
+      type(error_type), allocatable, intent(out) :: error !! see above
       !> What is to be other than the cards say, once they are found sound
       type(variation_type), intent(in), optional :: variation
       type(deck_context_type) :: context
@@ -92,6 +97,9 @@ contains
          call apply_loads(context, model, report)
          deck_nodes = size(model%mesh%node_number)
          call apply_temperatures(context, deck_nodes, .true., model)
+         model%memory_needed = memory_needed(model, context%levels, context%order)
+         call check_memory(model%memory_needed, error)
+         if (allocated(error)) return
          call refine(model, context%levels)
          call apply_temperatures(context, deck_nodes, .false., model)
          call apply_boundaries(context, model)

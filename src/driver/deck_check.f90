@@ -5,6 +5,7 @@ module deck_check
    use command_line, only: command_type
    use deck_preparation, only: prepare_deck
    use increments, only: simulation_type
+   use kinds, only: dp
    use messages, only: print_line
    use model, only: model_type
    use model_words, only: closed_law_words, friction_words, material_words, open_law_words
@@ -51,6 +52,7 @@ contains
       call line('unknown temperatures', to_text(run%equations_thermal))
       call line('unknown displacements', to_text(run%equations_mechanical))
       call line('contact unknowns', to_text(run%contact_unknowns))
+      call line('memory of a run', to_text(nint(model%memory_needed/1.0e6_dp))//' MB (estimate)')
       do i = 1, size(model%materials)
          call line('material '//model%materials(i)%name, material_words(model%materials(i)))
       end do

@@ -34,11 +34,11 @@ contains
 
       status = 0
       call read_deck(path, command%width, command%settings, cards, report)
-      call build_model(cards, model, report, variation)
-      if (.not. report%has_errors()) then
+      call build_model(cards, model, report, error, variation)
+      if (.not. (report%has_errors() .or. allocated(error))) then
          call pair_all(model, simulation%operators%interfaces, report)
       end if
-      if (.not. report%has_errors()) then
+      if (.not. (report%has_errors() .or. allocated(error))) then
          call simulation%start(model, error)
          if (allocated(error)) then
             call check_over_constrained(model, simulation, report)

@@ -72,7 +72,9 @@ contains
          call solve_deck(command%quiet, cards, model, simulation, output, outcome, error)
          if (allocated(error)) call report_failure(path, error, outcome)
          ! Of a run that could not go on for want of a file or of memory a check says nothing.
-         if (outcome%status /= status_internal) call report_checks(path, output%failed_checks(model))
+         if (outcome%status /= status_internal) then
+            call report_checks(path, output%failed_checks(model))
+         end if
          outcome%verify_passed = output%run%verify_passed
          outcome%verify_failed = output%run%verify_failed
          if (outcome%status == 0 .and. outcome%verify_failed > 0) outcome%status = status_verify
@@ -193,8 +195,8 @@ contains
          'not converged; the listing has the iteration history')
    end subroutine report_failure
 
-   !> Name of a deck's results: its file name without folder and extension, or stdin where it is read
-   !> from an open file, which has a number only.
+   !> Name of a deck's results: its file name without folder and extension, or stdin where it is
+   !> read from an open file, which has a number only.
    pure function base_name(path) result(name)
       character(*), intent(in) :: path           !! the deck as given
       character(:), allocatable :: name          !! such as b for a/b.inp

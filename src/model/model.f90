@@ -52,6 +52,7 @@ module model
       type(unit_labels_type) :: units                            !! labels of units
       integer :: solver = solver_skyline                         !! solver_skyline or solver_mumps
       logical :: estimates_errors = .true.                       !! ERRORS= of *OPTIONS
+      real(dp) :: memory_needed = 0.0_dp                         !! estimate for a run [byte]
       integer :: refinement_levels = 0                           !! *REFINE, already applied
       integer :: element_order = 2                               !! *OPTIONS, ORDER=, applied
       integer :: written_levels = 0                              !! *REFINE, where it was varied

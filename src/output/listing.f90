@@ -203,7 +203,7 @@ contains
       call write_text(self, error)
    end subroutine finish
 
-   !> Frees the file; one in which nothing was written is removed. Harmless where it is not reserved.
+   !> Frees the file; one in which nothing was written is removed. One that is not reserved stays.
    subroutine close_listing(self)
       class(listing_type), intent(inout) :: self          !! the listing
 

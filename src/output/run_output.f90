@@ -62,8 +62,8 @@ contains
       call self%results%reserve(path, has_lock, error)
    end subroutine reserve
 
-   !> Begins the output of a run, whose files are reserved: writes the head of the listing and touches no other file yet.
-   !> `run` is filled in before, but for its times and verdicts.
+   !> Begins the output of a run, whose files are reserved: writes the head of the listing and
+   !> touches no other file yet. `run` is filled in before, but for its times and verdicts.
    !> Error: status_internal, when the listing cannot be written or HDF5 does not start.
    subroutine start(self, model, pairs, point_node, element_points, cards, quiet, error)
       class(run_output_type), intent(inout) :: self       !! the output

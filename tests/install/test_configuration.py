@@ -23,7 +23,8 @@ def default(tmp_path_factory):
 
 def test_flags_of_the_release_are_those_named(default, tmp_path):
     assert "FLAGS = -O3 -g1 -ffp-contract=off" in default
-    named = configure(tmp_path, "-DCMAKE_Fortran_FLAGS_RELEASE=-O1 -g")
+    named = configure(tmp_path, "-DCMAKE_Fortran_FLAGS_RELEASE=-O1 -g",
+                      "-DCMAKE_C_FLAGS_RELEASE=-O1")
     assert "FLAGS = -O1 -g " in named
     assert "-O3" not in named
     assert "-ffp-contract" not in named

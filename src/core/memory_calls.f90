@@ -1,0 +1,55 @@
+!> How much memory the system lets the process have.
+module memory_calls
+   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_null_char
+   use errors, only: error_type, set_error, status_internal
+   use kinds, only: dp
+   use text, only: to_text
+   implicit none
+   private
+   public :: check_memory
+
+   integer, parameter :: source_length = 100
+   real(dp), parameter :: megabyte = 1.0e6_dp   !! [byte]
+
+   interface
+      !> Least of the limits on resident memory [byte]: of the process (address space, less what of
+      !> it is not resident), of its control groups, of the machine.
+      function c_limit(source, length) bind(c, name='memory_limit') result(bytes)
+         import :: c_char, c_double, c_int
+         integer(c_int), value :: length
+         character(kind=c_char), intent(out) :: source(length)
+         real(c_double) :: bytes
+      end function c_limit
+   end interface
+
+contains
+
+   !> Compares the memory that a run needs with what it may have.
+   !> Error: status_internal, when it needs more.
+   subroutine check_memory(needed, error)
+      real(dp), intent(in) :: needed                       !! resident, at its largest [byte]
+      type(error_type), allocatable, intent(out) :: error  !! see above
+      character(source_length, kind=c_char) :: source
+      real(dp) :: limit
+
+      source = c_null_char
+      limit = c_limit(source, int(source_length, c_int))
+      if (needed > limit) call set_error(error, status_internal, &
+         'memory ran out before the run: it needs about '//megabytes(needed)// &
+         ' MB, and may have '//megabytes(limit)//' MB ('// &
+         source(:index(source, c_null_char) - 1)//')')
+   end subroutine check_memory
+
+   !> Whole megabytes, of any number of them.
+   pure function megabytes(bytes) result(string)
+      real(dp), intent(in) :: bytes
+      character(:), allocatable :: string
+
+      if (bytes/megabyte < 1.0e9_dp) then
+         string = to_text(nint(bytes/megabyte))
+      else
+         string = to_text(bytes/megabyte)
+      end if
+   end function megabytes
+
+end module memory_calls

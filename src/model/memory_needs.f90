@@ -1,0 +1,138 @@
+!> The memory that a run will need, before its mesh is refined and anything is factored.
+!>
+!> The entries of matrices and factors follow from the mesh: the profile of the skyline is that of
+!> the unrefined mesh in its profile order, and grows eightfold with each refinement; factors in
+!> nested dissection have 31/4 n log2 n entries (A. George, Nested dissection of a regular finite
+!> element mesh, 1973). How often entries are held at a time was measured, docs/theory.md.
+module memory_needs
+   use controls, only: solver_mumps
+   use element_kinds, only: element_node_count, linear_kind
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use model, only: model_type
+   use ordering, only: adjacency, permuted_lower, profile_length, profile_order
+   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use steps, only: solves_heat, solves_mechanics
+   implicit none
+   private
+   public :: memory_needed
+
+   real(dp), parameter :: real_bytes = 8.0_dp          !! of a number
+   real(dp), parameter :: base = 30.0e6_dp             !! of the program and its libraries [byte]
+   real(dp), parameter :: per_entry = 30.0_dp          !! of an entry of element matrices [byte]
+   real(dp), parameter :: per_fine_entry = 23.0_dp     !! of one on the mesh of the estimates [byte]
+   real(dp), parameter :: mumps_factor = 2.0_dp        !! MUMPS's memory in that of its factors
+   real(dp), parameter :: waiting = 70.0e6_dp          !! most of results that wait [byte]
+   real(dp), parameter :: field_values = 25.0_dp       !! of a node and an increment that wait
+   real(dp), parameter :: dense_matrices = 12.0_dp     !! of the contact unknowns, held at a time
+
+contains
+
+   !> The largest memory that a run holds at a time, estimated on the mesh before it is refined.
+   function memory_needed(model, levels, order) result(bytes)
+      type(model_type), intent(in) :: model   !! the model, unrefined and with all nodes
+      integer, intent(in) :: levels           !! refinements that are to come
+      integer, intent(in) :: order            !! 1 where midside nodes are to be dropped, else 2
+      real(dp) :: bytes                       !! [byte]
+      real(dp) :: entries, increments, nodes, pairs
+      integer, allocatable :: kinds(:)
+      logical :: heat, mechanics
+
+      heat = any(solves_heat(model%steps%analysis))
+      mechanics = any(solves_mechanics(model%steps%analysis))
+      kinds = model%mesh%element_kind
+      if (order == 1) kinds = linear_kind(kinds)
+      nodes = size(model%mesh%node_number)*4.0_dp**levels
+      pairs = pair_count(model)*2.0_dp**levels
+      entries = entries_of(kinds, heat, mechanics)*4.0_dp**levels
+      increments = sum(min(model%steps%period/model%steps%first_increment, &
+         real(model%steps%max_increments, dp)))
+      bytes = base + per_entry*entries + min(waiting, real_bytes*field_values*nodes*increments) + &
+         dense_matrices*real_bytes*(3*pairs)**2
+      if (model%estimates_errors .and. size(model%contacts) > 0) bytes = bytes + &
+         4*per_fine_entry*entries
+      if (model%solver == solver_mumps) then
+         bytes = bytes + mumps_factor*real_bytes*(dissected(2*nodes, mechanics) + &
+            dissected(nodes, heat))
+      else
+         bytes = bytes + real_bytes*(merge(4, 0, mechanics) + merge(1, 0, heat))* &
+            profile(model, kinds, pairs, levels)
+      end if
+   end function memory_needed
+
+   !> Entries of the matrices of all elements.
+   pure real(dp) function entries_of(kinds, heat, mechanics)
+      integer, intent(in) :: kinds(:)
+      logical, intent(in) :: heat, mechanics
+      integer :: of_a_pair
+
+      of_a_pair = merge(1, 0, heat) + merge(4, 0, mechanics) + merge(2, 0, heat .and. mechanics)
+      entries_of = of_a_pair*sum(real(element_node_count(kinds), dp)**2)
+   end function entries_of
+
+   !> Entries of factors in nested dissection; 0 where a field is not solved.
+   pure real(dp) function dissected(unknowns, is_solved)
+      real(dp), intent(in) :: unknowns
+      logical, intent(in) :: is_solved
+
+      dissected = 0.0_dp
+      if (is_solved) dissected = 7.75_dp*unknowns*log(max(unknowns, 2.0_dp))/log(2.0_dp)
+   end function dissected
+
+   !> Slave nodes of all interfaces.
+   pure real(dp) function pair_count(model)
+      type(model_type), intent(in) :: model
+      integer :: i
+
+      pair_count = 0.0_dp
+      do i = 1, size(model%contacts)
+         pair_count = pair_count + 2*size(model%mesh%surfaces(model%contacts(i)%slave)%faces, 2) + 1
+      end do
+   end function pair_count
+
+   !> Entries of the skyline of one unknown a node, with the columns of the pairs, after refinement.
+   function profile(model, kinds, pairs, levels) result(entries)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: kinds(:), levels
+      real(dp), intent(in) :: pairs
+      real(dp) :: entries
+      type(sparse_matrix_type) :: lower
+      integer, allocatable :: order(:), place(:)
+      integer :: i
+
+      lower = node_graph(model, kinds)
+      allocate (order(lower%row_count), place(lower%row_count))
+      order(:) = profile_order(adjacency(lower, lower%row_count))
+      do i = 1, size(order)
+         place(order(i)) = i
+      end do
+      entries = profile_length(permuted_lower(lower, place))*8.0_dp**levels
+      entries = entries + pairs*size(order)*4.0_dp**levels
+   end function profile
+
+   !> Nodes that are joined by an element, lower triangle with its diagonal.
+   function node_graph(model, kinds) result(lower)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: kinds(:)
+      type(sparse_matrix_type) :: lower
+      type(triplet_list_type) :: list
+      integer :: e, i, j, n
+
+      n = size(model%mesh%node_number)
+      call list%reserve(n + sum(element_node_count(kinds)**2))
+      do i = 1, n
+         call list%add(i, i, 1.0_dp)
+      end do
+      do e = 1, size(kinds)
+         associate (nodes => model%mesh%element_nodes(:element_node_count(kinds(e)), e))
+            do i = 1, size(nodes)
+               do j = 1, size(nodes)
+                  if (nodes(j) < nodes(i)) call list%add(nodes(i), nodes(j), 1.0_dp)
+               end do
+            end do
+         end associate
+      end do
+      lower = list%compress(n, n)
+   end function node_graph
+
+end module memory_needs

@@ -1,0 +1,114 @@
+"""The memory of a run is estimated before it is solved, and refused where there is less."""
+
+import csv
+import os
+import re
+import resource
+import subprocess
+
+import pytest
+from deck_runs import COUPLED, CYLINDER, INPUT, PROGRAM, copy_deck, run
+
+MEGABYTE = 1e6
+
+
+def estimate(deck):
+    """Return what `check` says of the memory of a run [byte]."""
+    said = run("check", deck)
+    assert said.returncode == 0, said.stderr
+    return MEGABYTE * float(re.search(r"memory of a run \.+ (\d+) MB", said.stdout)[1])
+
+
+def peak(deck):
+    """Return the largest resident memory of a run, as the table of a batch has it [byte]."""
+    process = run("run", "--quiet", "--jobs", 1, deck, "--out", deck.parent)
+    assert process.returncode == 0, process.stderr
+    with open(deck.parent / "thercon-batch.csv") as file:
+        (row,) = csv.DictReader(file)
+    return MEGABYTE * float(row["peak_megabytes"])
+
+
+@pytest.mark.parametrize(("source", "cards"), [
+    (CYLINDER, ["*REFINE, LEVELS=0"]),
+    (CYLINDER, ["*REFINE, LEVELS=1"]),
+    (CYLINDER, ["*REFINE, LEVELS=2"]),
+    (CYLINDER, ["*REFINE, LEVELS=2", "*SOLVER, TYPE=MUMPS"]),
+    (COUPLED, ["*REFINE, LEVELS=1", "*SOLVER, TYPE=MUMPS"]),
+    (INPUT / "examples" / "cracked_plate.inp", ["*REFINE, LEVELS=1"]),
+])
+def test_the_estimate_is_not_under_the_peak_nor_twice_as_much(tmp_path, source, cards):
+    for mesh in source.parent.glob("*.mesh"):
+        (tmp_path / mesh.name).symlink_to(mesh)
+    deck = tmp_path / "deck.inp"
+    if not [card for card in cards if card.startswith("*SOLVER")]:
+        copy_deck(source, deck, cards)
+    else:
+        text = re.sub(r"^\*SOLVER.*\n", "", source.read_text(), flags=re.M)
+        (tmp_path / "source.inp").write_text(text)
+        copy_deck(tmp_path / "source.inp", deck, cards)
+    deck.write_text(re.sub(r"(?ms)^\*VERIFY.*?(?=^\*(?!VERIFY|\*)|\Z)", "", deck.read_text()))
+    assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_what_no_machine_has_is_refused_before_it_is_refined(tmp_path, command):
+    deck = copy_deck(CYLINDER, tmp_path / "large.inp", ["*REFINE, LEVELS=6"])
+    process = run(command, deck, folder=tmp_path, seconds=20)
+    if process.returncode == 0:
+        pytest.skip("this machine has the memory")
+    assert process.returncode == 3
+    message = re.search(r": error: memory ran out before the run: it needs about (\d+) MB, and may "
+                        r"have (\d+) MB \(.+\)\n", process.stderr)
+    assert process.stderr.count("\n") == 1
+    assert int(message[1]) > int(message[2])
+    assert not list(tmp_path.glob("large.[!i]*"))
+
+
+@pytest.mark.parametrize("megabytes", [*range(100, 400, 30), 1000])
+def test_a_limit_of_the_process_ends_the_run_with_one_line(tmp_path, megabytes):
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*REFINE, LEVELS=1"])
+    deck.write_text(re.sub(r"(?ms)^\*VERIFY.*?(?=^\*(?!VERIFY|\*)|\Z)", "", deck.read_text()))
+    limit = int(megabytes * MEGABYTE)
+    process = subprocess.run(
+        [PROGRAM, "run", "--quiet", deck, "--out", tmp_path], capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)), check=False)
+    if process.returncode == 0:
+        assert process.stderr == ""
+        return
+    assert process.returncode == 3, process.stderr
+    assert re.fullmatch(r"\S+: error: memory ran out.* \d+ MB.*\n", process.stderr)
+
+
+def groups():
+    """Return a folder in which groups of processes with limits of memory can be made, or nothing."""
+    for folder, name in (("/sys/fs/cgroup", "memory.max"),
+                         ("/sys/fs/cgroup/memory", "memory.limit_in_bytes")):
+        if os.access(folder, os.W_OK) and os.path.exists(f"{folder}/cgroup.procs"):
+            return folder, name
+    return None
+
+
+def test_a_limit_of_the_control_group_counts(tmp_path):
+    found = groups()
+    if not found:
+        pytest.skip("no control group can be made here")
+    folder = f"{found[0]}/thercon_test_{os.getpid()}"
+    try:
+        os.mkdir(folder)
+        with open(f"{folder}/{found[1]}", "w") as file:
+            file.write("100000000")
+    except OSError:
+        pytest.skip("no limit can be set here")
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*REFINE, LEVELS=2"])
+
+    def enter():
+        with open(f"{folder}/cgroup.procs", "w") as file:
+            file.write(str(os.getpid()))
+
+    try:
+        process = subprocess.run([PROGRAM, "run", "--quiet", deck, "--out", tmp_path], text=True,
+                                 capture_output=True, preexec_fn=enter, check=False)
+    finally:
+        os.rmdir(folder)
+    assert process.returncode == 3, process.stderr
+    assert f"may have 100 MB ({found[1]})" in process.stderr
