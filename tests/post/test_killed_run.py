@@ -207,7 +207,9 @@ def test_files_change_in_an_order_that_no_kill_can_spoil(tmp_path):
         if name.startswith("block.vtkhdf.") and name.endswith(".tmp"):
             complete = event == CLOSED
         elif name == "block.vtkhdf":
-            assert event == PUT_IN_PLACE, "written where it is read"
+            if event != PUT_IN_PLACE:   # tried before anything is solved
+                assert "result" not in order, "written where it is read"
+                continue
             assert complete, "put in place before it was closed"
             order.append("result")
         elif name == "block.sta" and event == MODIFIED and order[-1:] != ["lines"]:
