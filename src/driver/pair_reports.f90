@@ -7,13 +7,14 @@ module pair_reports
    use errors, only: error_type
    use kinds, only: dp
    use model, only: model_type
-   use pair_rings, only: first_repeated
    use pair_rows, only: pair_surfaces
    use pair_warnings, only: offset_warning, overlap_warning
    use text, only: to_text
    implicit none
    private
-   public :: pair_all
+   public :: pair_all, first_repeated
+
+   real(dp), parameter :: parallel = 0.99_dp   !! cosine between normals that count as one
 
 contains
 
@@ -63,6 +64,25 @@ contains
          call report%error(place_type(image=card), error%message)
       end subroutine report_once
    end subroutine pair_all
+
+   !> The first contact point that stands among those before it already: the same two nodes, and
+   !> normals along one line; 0 where there is none.
+   pure integer function first_repeated(slave, master, normal)
+      integer, intent(in) :: slave(:)            !! (m) slave nodes
+      integer, intent(in) :: master(:)           !! (m) master nodes
+      real(dp), intent(in) :: normal(:, :)       !! (2, m) unit vectors
+      integer :: i, k
+
+      do k = 1, size(slave)
+         do i = 1, k - 1
+            if (slave(i) + master(i) /= slave(k) + master(k)) cycle
+            if (slave(i) /= slave(k) .and. slave(i) /= master(k)) cycle
+            first_repeated = k
+            if (abs(dot_product(normal(:, i), normal(:, k))) > parallel) return
+         end do
+      end do
+      first_repeated = 0
+   end function first_repeated
 
    subroutine warn_of_pairs(model, i, pairs, report)
       type(model_type), intent(in) :: model

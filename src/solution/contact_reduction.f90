@@ -1,11 +1,12 @@
 !> The contact system of the reduced bodies: the Schur complement of equilibrium on the pairs.
 module contact_reduction
+   use contact_constraints, only: in_ring, ring_give, stiffness_alone
    use contact_system, only: contact_system_type
    use dense, only: column_space
    use field_problem, only: field_problem_type
    use kinds, only: dp
+   use linear_constraints, only: node_stiffness
    use pair_rows, only: pair_row_type
-   use ring_links, only: node_stiffness, ring_give, stiffness_alone
    implicit none
    private
    public :: contact_system_of
@@ -23,8 +24,8 @@ contains
       m = size(pairs%slave)
       allocate (contact%normal(m), contact%tangent(m))
       associate (map => mechanical%map)
-         contact%normal(:) = map%tail_index(map%relative(1, :))
-         contact%tangent(:) = map%tail_index(map%relative(2, :))
+         contact%normal(:) = map%tail_index(map%introduced(1::2))
+         contact%tangent(:) = map%tail_index(map%introduced(2::2))
       end associate
       contact%schur = mechanical%solver%schur
       contact%friction = pairs%friction
@@ -68,13 +69,13 @@ contains
       type(contact_system_type), intent(inout) :: contact
       integer :: k, nodes(2)
 
-      associate (map => mechanical%map)
-         contact%link = map%tail_index(map%links%force)
+      associate (map => mechanical%map, ring => in_ring(mechanical%map, size(pairs%slave)))
+         contact%link = map%tail_index(map%link_force)
          allocate (contact%compliance(size(pairs%slave)), source=0.0_dp)
          contact%alone = [(contact%schur(contact%normal(k), contact%normal(k)), &
             k=1, size(pairs%slave))]
          do k = 1, size(pairs%slave)
-            if (.not. map%in_ring(k)) cycle
+            if (.not. ring(k)) cycle
             nodes = [pairs%slave(k), pairs%master(k)]
             contact%compliance(k) = ring_give/node_stiffness(mechanical%matrix, nodes, 2)
             contact%alone(k) = stiffness_alone(contact%alone(k), mechanical%matrix, nodes, 2)

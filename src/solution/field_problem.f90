@@ -1,10 +1,10 @@
 !> A linear field problem, thermal or mechanical, reduced once to its contact unknowns.
 module field_problem
    use controls, only: solver_mumps
-   use equation_map, only: equation_map_type
    use errors, only: error_type, status_deck
    use finite_values, only: check_finite
    use kinds, only: dp
+   use linear_constraints, only: linear_constraints_type
    use linear_solver, only: linear_solver_type
    use mumps_solver, only: mumps_solver_type
    use skyline_solver, only: skyline_solver_type
@@ -25,7 +25,7 @@ module field_problem
       type(sparse_matrix_type) :: matrix !! (dofs, dofs) bodies alone, both triangles
       !> (dofs, dofs) what is added to it, such as films; without values where there is nothing.
       type(sparse_matrix_type) :: added
-      type(equation_map_type) :: map                          !! numbering of the unknowns
+      type(linear_constraints_type) :: map                    !! u = T v + B g, and the unknowns v
       class(linear_solver_type), allocatable :: solver        !! factors
    contains
       procedure :: reduce
@@ -72,11 +72,10 @@ contains
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
       real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
       type(field_load_type) :: load                       !! not condensed
-      real(dp) :: zero(self%map%equations), supported(size(given))
+      real(dp) :: supported(size(given))
 
-      zero = 0.0_dp
       load%given = given
-      supported = self%map%expand(zero, given)
+      supported = self%map%supported(given)
       allocate (load%rhs(self%map%equations, 1))
       load%rhs(:, 1) = self%map%restrict(forces - self%matrix%multiply(supported)) + &
          self%map%support_load(given)

@@ -3,11 +3,12 @@
 module interface_operators
    use bodies, only: bodies_on_axis
    use body_names, only: cold_bodies
+   use contact_constraints, only: constrain_displacements, constrain_temperatures, in_ring, &
+      stiffness_alone
    use contact_pairs, only: contact_pairs_type
    use contact_reduction, only: contact_system_of
    use contact_system, only: contact_system_type
    use element_kinds, only: element_node_count
-   use equation_numbering, only: make_map
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
@@ -16,7 +17,6 @@ module interface_operators
    use model, only: model_type
    use pair_rows, only: find_held_axes, pair_row_type, pair_surfaces, row_of
    use rigid_motions, only: unsupported_motions
-   use ring_links, only: stiffness_alone
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
@@ -87,8 +87,6 @@ contains
       logical, intent(in) :: mechanics                       !! whether displacements are numbered
       logical, intent(in) :: heat                            !! whether temperatures are numbered
       type(error_type), allocatable, intent(out) :: error    !! see above
-      real(dp) :: frame(2, 2, size(self%pairs%slave)), scalar(1, 1, size(self%pairs%slave))
-      logical :: on_tail(2, size(self%pairs%slave))
 
       if (mechanics) then
          call find_held_axes(self%pairs, held)
@@ -96,16 +94,11 @@ contains
             bodies_on_axis(model%mesh), held, self%rigid)
       end if
       associate (pairs => self%pairs, used => model%mesh%node_body > 0)
-         frame(:, 1, :) = pairs%normal
-         frame(:, 2, :) = pairs%tangent
-         on_tail(1, :) = .true.
-         on_tail(2, :) = pairs%friction > 0.0_dp
-         if (mechanics) call make_map(used, held, pairs%slave, pairs%master, frame, on_tail, &
-            self%mechanical%map, error, slave_is_stiffer(model, pairs, .true.))
+         if (mechanics) call constrain_displacements(used, held, pairs, &
+            slave_is_stiffer(model, pairs, .true.), self%mechanical%map, error)
          if (allocated(error) .or. .not. heat) return
-         scalar = 1.0_dp
-         call make_map(used, held_temperature, pairs%slave, pairs%master, scalar, on_tail(:1, :), &
-            self%thermal%map, error, slave_is_stiffer(model, pairs, .false.))
+         call constrain_temperatures(used, held_temperature, pairs, &
+            slave_is_stiffer(model, pairs, .false.), self%thermal%map)
       end associate
    end subroutine number
 
@@ -172,7 +165,7 @@ contains
          return
       end if
       associate (map => self%thermal%map)
-         self%jump_place = map%tail_index(map%relative(1, :))
+         self%jump_place = map%tail_index(map%introduced)
       end associate
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       if (self%is_coupled) call form_jump_load(self)
@@ -186,8 +179,9 @@ contains
       type(error_type), intent(inout) :: error
       logical :: warm(size(model%mesh%node_body))
       character(:), allocatable :: words
+      integer :: i
 
-      warm = self%thermal%map%base(:size(warm)) > 0
+      warm = self%thermal%map%is_given([(i, i=1, size(warm))])
       if (allocated(self%thermal%added%value)) then
          warm(pack(self%thermal%added%column, self%thermal%added%value > 0.0_dp)) = .true.
       end if
@@ -279,13 +273,15 @@ contains
    pure function conductors(self) result(conductance)
       class(interface_operators_type), intent(in) :: self  !! the reduced bodies
       real(dp) :: conductance(size(self%pairs%slave))      !! (m) [power/temperature]
+      logical :: ring(size(conductance))
       integer :: k
 
       conductance = 0.0_dp
+      ring = in_ring(self%thermal%map, size(ring))
       do k = 1, size(conductance)
          if (self%jump_place(k) == 0) cycle
          conductance(k) = self%thermal%solver%schur(self%jump_place(k), self%jump_place(k))
-         if (.not. self%thermal%map%in_ring(k)) cycle
+         if (.not. ring(k)) cycle
          conductance(k) = stiffness_alone(conductance(k), self%thermal%matrix, &
             [self%pairs%slave(k), self%pairs%master(k)], 1)
       end do

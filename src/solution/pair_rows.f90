@@ -2,7 +2,6 @@
 module pair_rows
    use conductance_laws, only: conductance_law_type
    use contact_pairs, only: contact_pairs_type, make_pairs
-   use equation_numbering, only: least_slant
    use errors, only: error_type
    use kinds, only: dp
    use model, only: model_type
@@ -10,6 +9,10 @@ module pair_rows
    private
    public :: pair_row_type, pair_surfaces, row_of
    public :: find_held_axes, over_constrained, held_approach, tangential_position
+
+   !> Component of a normal along the only free axis that is rounding: the normal motion of such a
+   !> pair is prescribed.
+   real(dp), parameter :: least_slant = 1.0e-9_dp
 
    !> The pairs of all interfaces in one row.
    type :: pair_row_type

@@ -1,0 +1,148 @@
+!> Linear constraints of supports and contact points.
+!>
+!> At a contact point the slave's values are the master's plus its relative values in its own frame:
+!> along normal and tangent; one jump of temperature. Where supports hold both nodes along an axis,
+!> only the other axis has a row: the relative value along the normal is the part of it that the
+!> motion along that axis makes. Contact points that form rings, as where a block stands in an inner
+!> corner, end with one whose rows follow from those of the others: they become links.
+!>
+!> Contact points of a ring that all stick share their friction in a way that statics leaves open,
+!> and their relations depend on each other. They therefore give by a small part of what the bodies
+!> give.
+module contact_constraints
+   use constraint_elimination, only: constraint_rows_type, eliminate
+   use errors, only: error_type, set_error, status_deck
+   use kinds, only: dp
+   use linear_constraints, only: linear_constraints_type, node_stiffness
+   use pair_rows, only: over_constrained, pair_row_type
+   use sparse_matrix, only: sparse_matrix_type
+   implicit none
+   private
+   public :: constrain_displacements, constrain_temperatures, in_ring, stiffness_alone, ring_give
+
+   !> Part of the bodies' compliance at its nodes by which a stuck contact point of a ring gives.
+   real(dp), parameter :: ring_give = 1.0e-8_dp
+
+   !> Part of the bodies' stiffness at its nodes below which a contact point's own is rounding.
+   real(dp), parameter :: held_by_others = 1.0e-6_dp
+
+contains
+
+   !> Constraints of the displacements; the normal ones, and with friction the tangential ones, are
+   !> on the tail.
+   !> Error: a contact point whose normal motion is prescribed on both nodes.
+   subroutine constrain_displacements(used, held, points, slave_leads, constraints, error)
+      logical, intent(in) :: used(:)                !! (nodes) whether elements have them
+      logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
+      type(pair_row_type), intent(in) :: points     !! contact points, their held axes found
+      !> (m) whether the slave is to lead where neither node is prescribed; else the master does
+      logical, intent(in) :: slave_leads(:)
+      type(linear_constraints_type), intent(out) :: constraints
+      type(error_type), allocatable, intent(out) :: error
+      type(constraint_rows_type) :: rows
+      integer :: axis, c, k
+
+      if (any(over_constrained(points, held))) then
+         call set_error(error, status_deck, &
+            'a contact pair whose normal motion is prescribed on both nodes')
+         return
+      end if
+      call begin_rows(held, 2, size(points%slave), rows)
+      do k = 1, size(points%slave)
+         rows%on_tail(2*k - 1:2*k) = [.true., points%friction(k) > 0.0_dp]
+         axis = points%held_axis(k)
+         do c = 1, 2
+            if (c == axis) cycle
+            if (axis > 0) then
+               call relate(points, k, c, slave_leads, [1.0_dp/points%normal(c, k)], rows)
+            else
+               call relate(points, k, c, slave_leads, [points%normal(c, k), &
+                  points%tangent(c, k)], rows)
+            end if
+         end do
+      end do
+      call eliminate(rows, reshape(spread(used, 1, 2), [size(held)]), constraints)
+   end subroutine constrain_displacements
+
+   !> Constraints of the temperatures; all jumps are on the tail.
+   pure subroutine constrain_temperatures(used, held, points, slave_leads, constraints)
+      logical, intent(in) :: used(:)                !! (nodes) whether elements have them
+      logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
+      type(pair_row_type), intent(in) :: points     !! contact points
+      logical, intent(in) :: slave_leads(:)         !! (m) as above
+      type(linear_constraints_type), intent(out) :: constraints
+      type(constraint_rows_type) :: rows
+      integer :: k
+
+      call begin_rows(held, 1, size(points%slave), rows)
+      rows%on_tail = .true.
+      do k = 1, size(points%slave)
+         if (held(points%slave(k)) .and. held(points%master(k))) cycle
+         call relate(points, k, 1, slave_leads, [1.0_dp], rows)
+      end do
+      call eliminate(rows, used, constraints)
+   end subroutine constrain_temperatures
+
+   !> The rows of the supports, u - g = 0.
+   pure subroutine begin_rows(held, components, points, rows)
+      logical, intent(in) :: held(:)
+      integer, intent(in) :: components, points
+      type(constraint_rows_type), intent(out) :: rows
+      integer :: dof
+
+      rows%components = components
+      rows%dofs = size(held)
+      allocate (rows%on_tail(components*points))
+      associate (most => count(held) + components*points)
+         call rows%reserve(most, 2*count(held) + (2 + components)*components*points)
+         allocate (rows%constraint(most))
+      end associate
+      do dof = 1, size(held)
+         if (.not. held(dof)) cycle
+         call rows%add([dof, size(held) + components*points + dof], [1.0_dp, -1.0_dp])
+         rows%constraint(rows%count) = dof
+      end do
+   end subroutine begin_rows
+
+   !> Adds the row of one component of a contact point: master + direction*relative - slave = 0.
+   pure subroutine relate(points, k, component, slave_leads, direction, rows)
+      type(pair_row_type), intent(in) :: points
+      integer, intent(in) :: k, component
+      logical, intent(in) :: slave_leads(:)
+      real(dp), intent(in) :: direction(:)
+      type(constraint_rows_type), intent(inout) :: rows
+      integer :: dof(2), i
+      real(dp) :: sign
+
+      dof = rows%components*([points%slave(k), points%master(k)] - 1) + component
+      sign = merge(1.0_dp, -1.0_dp, slave_leads(k))
+      if (slave_leads(k)) dof = dof([2, 1])
+      call rows%add([dof, (rows%dofs + rows%components*(k - 1) + i, i=1, size(direction))], &
+         [sign, -sign, direction])
+      rows%constraint(rows%count) = rows%dofs + k
+   end subroutine relate
+
+   !> Contact points that are part of a ring.
+   pure function in_ring(constraints, points) result(ring)
+      type(linear_constraints_type), intent(in) :: constraints
+      integer, intent(in) :: points                 !! m, their number
+      logical :: ring(points)                       !! (m)
+
+      ring = any(reshape(constraints%is_linked(constraints%introduced), &
+         [constraints%components, points]), dim=1)
+   end function in_ring
+
+   !> Stiffness, or conductance, of a contact point of a ring alone. That of the one that closes the
+   !> ring, which only the others hold, is the bodies' at its nodes.
+   pure function stiffness_alone(own, matrix, nodes, components) result(stiffness)
+      real(dp), intent(in) :: own                         !! diagonal entry on the tail
+      type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) of the bodies
+      integer, intent(in) :: nodes(2)                     !! slave and master
+      integer, intent(in) :: components                   !! degrees of freedom of a node
+      real(dp) :: stiffness                               !! in the unit of the matrix
+
+      stiffness = node_stiffness(matrix, nodes, components)
+      if (own >= held_by_others*stiffness) stiffness = own
+   end function stiffness_alone
+
+end module contact_constraints

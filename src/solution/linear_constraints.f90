@@ -1,0 +1,230 @@
+!> Linear constraints u = T v + B g of a field problem, T and B sparse and local.
+!>
+!> u are the degrees of freedom, g their prescribed values, v the unknowns: the degrees of freedom
+!> that no constraint writes by others, the values that constraints introduce, such as relative
+!> displacements of contact points, and the forces of links. A link is a constraint that says
+!> nothing new of the degrees of freedom, as where contact points form a ring; it relates
+!> introduced values to each other, G v + H g = 0. An unknown force, a Lagrange multiplier mu, keeps
+!> it: rows k G v = -k H g, columns k G^T mu. k is the stiffness of the bodies there, so that k mu is
+!> the force and mu compares with displacements.
+!>
+!> The last unknowns, the tail, are those that contact acts on, and the forces. With the former zero
+!> the bodies are welded; the reduced problem on the tail is eq. (2.4) solved partially.
+!> constraint_elimination makes these matrices from rows of any origin.
+module linear_constraints
+   use kinds, only: dp
+   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use sum_lists, only: sum_list_type
+   implicit none
+   private
+   public :: linear_constraints_type, node_stiffness
+
+   !> The constraints, solved for the degrees of freedom.
+   type :: linear_constraints_type
+      integer :: equations = 0                      !! unknowns v
+      integer :: tail = 0                           !! how many of them, the last, are the tail
+      integer :: components = 1                     !! degrees of freedom of a node
+      integer, allocatable :: introduced(:) !! unknowns of introduced values, 0 where none has them
+      type(sum_list_type) :: by_unknowns            !! (dofs, equations) T
+      type(sum_list_type) :: by_given               !! (dofs, dofs) B
+      type(sum_list_type) :: link_unknowns          !! (links, equations) G
+      type(sum_list_type) :: link_given             !! (links, dofs) H
+      type(sum_list_type) :: link_dofs              !! (links, dofs) what the rows say of u itself
+      integer, allocatable :: link_force(:)         !! (links) unknowns mu
+      real(dp), allocatable :: link_stiffness(:)    !! (links) k, in the unit of the matrix
+   contains
+      procedure :: expand
+      procedure :: supported
+      procedure :: restrict
+      procedure :: support_load
+      procedure :: stiffen_links
+      procedure :: transform
+      procedure :: tail_index
+      procedure :: is_linked
+      procedure :: is_given
+   end type linear_constraints_type
+
+contains
+
+   !> Values of all degrees of freedom, T v + B g.
+   pure function expand(self, unknowns, given) result(values)
+      class(linear_constraints_type), intent(in) :: self
+      real(dp), intent(in) :: unknowns(:)           !! (equations) v
+      real(dp), intent(in) :: given(:)              !! (dofs) prescribed values, others not used
+      real(dp) :: values(size(given))               !! (dofs)
+      integer :: dof, t
+
+      values = self%supported(given)
+      associate (by => self%by_unknowns)
+         do dof = 1, size(given)
+            do t = by%start(dof), by%start(dof + 1) - 1
+               values(dof) = values(dof) + by%coefficient(t)*unknowns(by%value(t))
+            end do
+         end do
+      end associate
+   end function expand
+
+   !> What prescribed values alone make of the degrees of freedom, B g.
+   pure function supported(self, given) result(values)
+      class(linear_constraints_type), intent(in) :: self
+      real(dp), intent(in) :: given(:)              !! (dofs) prescribed values, others not used
+      real(dp) :: values(size(given))               !! (dofs)
+      integer :: dof, t
+
+      associate (by => self%by_given)
+         do dof = 1, size(given)
+            values(dof) = 0.0_dp
+            do t = by%start(dof), by%start(dof + 1) - 1
+               values(dof) = values(dof) + by%coefficient(t)*given(by%value(t))
+            end do
+         end do
+      end associate
+   end function supported
+
+   !> Forces on the unknowns from forces on the degrees of freedom, T^T f.
+   pure function restrict(self, forces) result(rhs)
+      class(linear_constraints_type), intent(in) :: self
+      real(dp), intent(in) :: forces(:)             !! (dofs)
+      real(dp) :: rhs(self%equations)               !! (equations)
+      integer :: dof, t
+
+      rhs = 0.0_dp
+      associate (by => self%by_unknowns)
+         do dof = 1, size(forces)
+            do t = by%start(dof), by%start(dof + 1) - 1
+               rhs(by%value(t)) = rhs(by%value(t)) + by%coefficient(t)*forces(dof)
+            end do
+         end do
+      end associate
+   end function restrict
+
+   !> Right-hand side of the links, which prescribed values may stretch.
+   pure function support_load(self, given) result(rhs)
+      class(linear_constraints_type), intent(in) :: self
+      real(dp), intent(in) :: given(:)              !! (dofs) prescribed values, others not used
+      real(dp) :: rhs(self%equations)               !! (equations)
+      integer :: i, t
+
+      rhs = 0.0_dp
+      associate (stretch => self%link_given)
+         do i = 1, stretch%count
+            do t = stretch%start(i), stretch%start(i + 1) - 1
+               rhs(self%link_force(i)) = rhs(self%link_force(i)) - &
+                  self%link_stiffness(i)*stretch%coefficient(t)*given(stretch%value(t))
+            end do
+         end do
+      end associate
+   end function support_load
+
+   !> Scales the links by the stiffness of the bodies: the smallest one of the nodes that they join.
+   pure subroutine stiffen_links(self, matrix)
+      class(linear_constraints_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, dofs) of the bodies
+      integer :: i
+
+      do i = 1, size(self%link_stiffness)
+         associate (rows => self%link_dofs)
+            self%link_stiffness(i) = node_stiffness(matrix, (rows%value(rows%start(i): &
+               rows%start(i + 1) - 1) - 1)/self%components + 1, self%components)
+         end associate
+      end do
+   end subroutine stiffen_links
+
+   !> Stiffness of the bodies at some nodes: the smallest one's largest diagonal entry.
+   pure function node_stiffness(matrix, nodes, components) result(stiffness)
+      type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) of the bodies
+      integer, intent(in) :: nodes(:)                     !! the nodes
+      integer, intent(in) :: components                   !! degrees of freedom of a node
+      real(dp) :: stiffness                               !! in the unit of the matrix
+      real(dp) :: at_node(size(nodes))
+      integer :: k, n, row
+
+      at_node = 0.0_dp
+      do n = 1, size(nodes)
+         do row = components*(nodes(n) - 1) + 1, components*nodes(n)
+            do k = matrix%row_start(row), matrix%row_start(row + 1) - 1
+               if (matrix%column(k) == row) at_node(n) = max(at_node(n), matrix%value(k))
+            end do
+         end do
+      end do
+      stiffness = minval(at_node)
+   end function node_stiffness
+
+   !> Lower triangle of the matrix on the unknowns: T^T K T, with the links.
+   pure function transform(self, matrix) result(lower)
+      class(linear_constraints_type), intent(in) :: self
+      type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, dofs) K, symmetric, both triangles
+      type(sparse_matrix_type) :: lower               !! (equations, equations) by rows
+      type(triplet_list_type) :: list
+      integer :: i, j, k, s, t, pass, entries
+
+      entries = 0
+      associate (by => self%by_unknowns)
+         do pass = 1, 2
+            if (pass == 2) call list%reserve(entries + size(self%link_unknowns%value))
+            do i = 1, matrix%row_count
+               do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+                  j = matrix%column(k)
+                  do s = by%start(i), by%start(i + 1) - 1
+                     do t = by%start(j), by%start(j + 1) - 1
+                        if (by%value(t) > by%value(s)) cycle
+                        if (pass == 1) then
+                           entries = entries + 1
+                        else
+                           call list%add(by%value(s), by%value(t), &
+                              by%coefficient(s)*by%coefficient(t)*matrix%value(k))
+                        end if
+                     end do
+                  end do
+               end do
+            end do
+         end do
+      end associate
+      call add_links(self, list)
+      lower = list%compress(self%equations, self%equations)
+   end function transform
+
+   !> Adds the links to the lower triangle of the matrix on the unknowns.
+   pure subroutine add_links(self, list)
+      type(linear_constraints_type), intent(in) :: self
+      type(triplet_list_type), intent(inout) :: list
+      integer :: i, k
+
+      do i = 1, size(self%link_force)
+         associate (rows => self%link_unknowns, force => self%link_force(i))
+            do k = rows%start(i), rows%start(i + 1) - 1
+               call list%add(max(force, rows%value(k)), min(force, rows%value(k)), &
+                  self%link_stiffness(i)*rows%coefficient(k))
+            end do
+         end associate
+      end do
+   end subroutine add_links
+
+   !> Place of an unknown on the tail, 0 where it is not there.
+   elemental function tail_index(self, unknown) result(place)
+      class(linear_constraints_type), intent(in) :: self
+      integer, intent(in) :: unknown                !! an unknown, or 0
+      integer :: place                              !! 1..tail or 0
+
+      place = max(unknown - (self%equations - self%tail), 0)
+   end function tail_index
+
+   !> Whether a link acts on an unknown.
+   elemental function is_linked(self, unknown) result(linked)
+      class(linear_constraints_type), intent(in) :: self
+      integer, intent(in) :: unknown                !! an unknown, or 0
+      logical :: linked
+
+      linked = any(self%link_unknowns%value == unknown)
+   end function is_linked
+
+   !> Whether a prescribed value is part of a degree of freedom.
+   elemental function is_given(self, dof) result(given)
+      class(linear_constraints_type), intent(in) :: self
+      integer, intent(in) :: dof                    !! a degree of freedom
+      logical :: given
+
+      given = self%by_given%start(dof + 1) > self%by_given%start(dof)
+   end function is_given
+
+end module linear_constraints

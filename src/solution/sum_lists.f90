@@ -1,0 +1,80 @@
+!> Sums of coefficient*value, one after another, each of any length. Values are told by numbers.
+module sum_lists
+   use kinds, only: dp
+   implicit none
+   private
+   public :: sum_list_type
+
+   !> The sums.
+   type :: sum_list_type
+      integer :: count = 0                      !! number of sums
+      integer, allocatable :: start(:)          !! (count + 1) first term of each
+      integer, allocatable :: value(:)          !! (terms) values
+      real(dp), allocatable :: coefficient(:)   !! (terms) their coefficients
+   contains
+      procedure :: reserve
+      procedure :: add
+      procedure :: renumbered
+   end type sum_list_type
+
+contains
+
+   !> Makes room, for no more than an estimate; what the list held is dropped.
+   pure subroutine reserve(self, sums, terms)
+      class(sum_list_type), intent(inout) :: self
+      integer, intent(in) :: sums      !! sums expected
+      integer, intent(in) :: terms     !! terms expected in all of them
+
+      self%count = 0
+      if (allocated(self%start)) deallocate (self%start, self%value, self%coefficient)
+      allocate (self%start(sums + 1), self%value(terms), self%coefficient(terms))
+      self%start(1) = 1
+   end subroutine reserve
+
+   !> Adds a sum, without the terms whose coefficient is zero.
+   pure subroutine add(self, values, coefficients)
+      class(sum_list_type), intent(inout) :: self
+      integer, intent(in) :: values(:)          !! (n) each once
+      real(dp), intent(in) :: coefficients(:)   !! (n)
+      integer :: i, term
+
+      term = self%start(self%count + 1)
+      if (self%count + 2 > size(self%start)) self%start = [self%start, self%start]
+      if (term + size(values) > size(self%value) + 1) then
+         self%value = [self%value, self%value, values]
+         self%coefficient = [self%coefficient, self%coefficient, coefficients]
+      end if
+      do i = 1, size(values)
+         if (abs(coefficients(i)) <= 0.0_dp) cycle
+         self%value(term) = values(i)
+         self%coefficient(term) = coefficients(i)
+         term = term + 1
+      end do
+      self%count = self%count + 1
+      self%start(self%count + 1) = term
+   end subroutine add
+
+   !> The sums with values of other numbers, without the terms whose value has none.
+   pure function renumbered(self, number) result(sums)
+      class(sum_list_type), intent(in) :: self
+      integer, intent(in) :: number(:)          !! (values) new number of each value, 0 for none
+      type(sum_list_type) :: sums
+      integer :: i, k, term
+
+      associate (terms => self%start(self%count + 1) - 1)
+         call sums%reserve(self%count, count(number(self%value(:terms)) > 0))
+      end associate
+      sums%count = self%count
+      term = 1
+      do i = 1, self%count
+         do k = self%start(i), self%start(i + 1) - 1
+            if (number(self%value(k)) == 0) cycle
+            sums%value(term) = number(self%value(k))
+            sums%coefficient(term) = self%coefficient(k)
+            term = term + 1
+         end do
+         sums%start(i + 1) = term
+      end do
+   end function renumbered
+
+end module sum_lists
