@@ -6,12 +6,17 @@ module deck_preparation
    use deck_builder, only: build_model
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use errors, only: error_type, status_deck
    use increments, only: simulation_type
+   use loads, only: loads_type
    use messages, only: print_error
    use model, only: model_type
    use pair_reports, only: pair_all
-   use support_checks, only: check_over_constrained, check_supports
+   use pair_rows, only: over_constrained
+   use steps, only: solves_heat, solves_mechanics
+   use text, only: string_type, to_text
+   use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
    use variations, only: variation_type
    use verify_places, only: check_arc_lengths
    implicit none
@@ -40,13 +45,10 @@ contains
       end if
       if (.not. (report%has_errors() .or. allocated(error))) then
          call simulation%start(model, error)
-         if (allocated(error)) then
-            call check_over_constrained(model, simulation, report)
-            if (report%has_errors()) deallocate (error)
-         else
-            call check_arc_lengths(model, simulation%operators%interfaces, report)
-            call check_supports(cards%last, model, simulation, report)
-         end if
+         if (.not. allocated(error)) call check_arc_lengths(model, &
+            simulation%operators%interfaces, report)
+         call check_supports(cards%last, model, simulation, report)
+         if (report%has_errors() .and. allocated(error)) deallocate (error)
       end if
       model%warnings = report%warnings()
       call report%print(error_unit)
@@ -55,5 +57,81 @@ contains
       status = error%status
       call print_error(path, error%message)
    end subroutine prepare_deck
+
+   !> Reports what supports hold too much, and what they and the contact leave unconstrained or
+   !> without a temperature, for the first step that has such.
+   subroutine check_supports(last, model, simulation, report)
+      type(place_type), intent(in) :: last
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(deck_report_type), intent(inout) :: report
+      type(loads_type) :: loads
+      integer :: step
+
+      loads = simulation%loads
+      do step = 1, size(model%steps)
+         call loads%begin_step(model%steps(step), simulation%state%displacement, &
+            simulation%state%temperature)
+         call check_step(last, model, simulation, loads, step, report)
+         if (report%has_errors()) return
+      end do
+   end subroutine check_supports
+
+   subroutine check_step(last, model, simulation, loads, step, report)
+      type(place_type), intent(in) :: last
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(loads_type), intent(in) :: loads
+      integer, intent(in) :: step
+      type(deck_report_type), intent(inout) :: report
+      type(string_type), allocatable :: messages(:)
+
+      associate (analysis => model%steps(step)%analysis, points => simulation%operators%pairs)
+         if (solves_mechanics(analysis)) then
+            call report_over_constrained(model, simulation, loads%displacement%active, step, report)
+            call unconstrained_in_step(model, points, loads%displacement%active, messages)
+            call report_all()
+         end if
+         if (solves_heat(analysis)) then
+            call undetermined_in_step(model, points, loads%temperature%active, step, messages)
+            call report_all()
+         end if
+      end associate
+   contains
+      subroutine report_all()
+         integer :: i
+
+         do i = 1, size(messages)
+            call report%error(last, 'step '//to_text(step)//': '//messages(i)%value)
+         end do
+      end subroutine report_all
+   end subroutine check_step
+
+   !> Reports the first contact point of each interface whose relative motion is prescribed along
+   !> the normal, because that of both nodes is.
+   subroutine report_over_constrained(model, simulation, held, step, report)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: held(:)
+      integer, intent(in) :: step
+      type(deck_report_type), intent(inout) :: report
+      logical :: too_much(size(simulation%operators%pairs%slave))
+      integer :: i, k
+
+      too_much = over_constrained(simulation%operators%pairs, held)
+      do i = 1, size(model%contacts)
+         associate (pairs => simulation%operators%interfaces(i), number => model%mesh%node_number, &
+            start => simulation%operators%pairs%interface_start)
+            k = findloc(too_much(start(i):start(i + 1) - 1), .true., dim=1)
+            if (k == 0) cycle
+            call report%error(place_type(image=model%contacts(i)%card), 'step '// &
+               to_text(step)//': contact pair '//pairs%name//': *BOUNDARY prescribes the '// &
+               'motion of slave node '//to_text(number(pairs%slave_node(k)))// &
+               ' and master node '//to_text(number(pairs%master_node(k)))//' towards each '// &
+               'other, so that their contact force is undetermined; free one of the two '// &
+               'nodes along the normal of the faces')
+         end associate
+      end do
+   end subroutine report_over_constrained
 
 end module deck_preparation

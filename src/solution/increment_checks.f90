@@ -7,12 +7,12 @@ module increment_checks
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
-   use loose_bodies, only: bodies_heated_by_no_pair, bodies_held_by_no_pair
    use model, only: model_type
    use records, only: increment_record_type
    use solution_state, only: solution_state_type
    use text, only: append, to_text
    use thermal_matrix, only: contact_diagonal
+   use unconstrained_bodies, only: unconstrained_now, undetermined_now
    implicit none
    private
    public :: check_balance, check_heat, check_values, check_violation, warn_of_choices
@@ -99,7 +99,7 @@ contains
       character(:), allocatable :: words
 
       associate (pairs => operators%pairs)
-         words = bodies_heated_by_no_pair(model, pairs, loads%temperature%active, step, &
+         words = undetermined_now(model, pairs, loads%temperature%active, step, &
             contact_diagonal(model%steps(step)%scheme, pairs%weight, next%omega_start, &
             next%omega) > 0.0_dp)
       end associate
@@ -124,7 +124,7 @@ contains
       if (contact%several) words = &
          'with so much friction other contact states satisfy all conditions, too'
       if (size(contact%loose, 2) > 0 .or. any(next%idle)) then
-         free = bodies_held_by_no_pair(model, operators%pairs, loads%displacement%active, &
+         free = unconstrained_now(model, operators%pairs, loads%displacement%active, &
             merge(status_open, next%contact%status, next%idle .or. next%resting))
          if (len(free) > 0) words = &
             'the least motion is taken where nothing drives or holds one'//free

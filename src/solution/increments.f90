@@ -16,7 +16,6 @@ module increments
    use kinds, only: dp
    use load_courses, only: step_clock_type
    use loads, only: loads_type
-   use loose_bodies, only: bodies_held_by_no_pair
    use model, only: model_type
    use records, only: add_attempts, increment_record_type, note_failure
    use run_measures, only: run_seconds_type, run_size_type
@@ -25,6 +24,7 @@ module increments
    use step_reduction, only: measure_factors, measure_steps, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: append, to_text
+   use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
    public :: simulation_type
@@ -267,7 +267,7 @@ contains
          end if
          if (allocated(error)) then
             if (workspace%contact%driven) error%message = error%message// &
-               bodies_held_by_no_pair(model, operators%pairs, self%loads%displacement%active, &
+               unconstrained_now(model, operators%pairs, self%loads%displacement%active, &
                next%contact%status)
             return
          end if

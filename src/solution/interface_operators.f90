@@ -1,8 +1,6 @@
 !> The bodies reduced once to their contact unknowns: everything that the fixed-point iteration
 !> needs, on the pairs alone.
 module interface_operators
-   use bodies, only: bodies_on_axis
-   use body_names, only: cold_bodies
    use contact_constraints, only: constrain_displacements, constrain_temperatures, in_ring, &
       stiffness_alone
    use contact_pairs, only: contact_pairs_type
@@ -20,6 +18,7 @@ module interface_operators
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
+   use unconstrained_bodies, only: undetermined_beside
    implicit none
    private
    public :: interface_operators_type
@@ -90,8 +89,7 @@ contains
 
       if (mechanics) then
          call find_held_axes(self%pairs, held)
-         call unsupported_motions(model%mesh%coordinates, model%mesh%node_body, &
-            bodies_on_axis(model%mesh), held, self%rigid)
+         call unsupported_motions(model%mesh, held, self%rigid)
       end if
       associate (pairs => self%pairs, used => model%mesh%node_body > 0)
          if (mechanics) call constrain_displacements(used, held, pairs, &
@@ -185,7 +183,7 @@ contains
       if (allocated(self%thermal%added%value)) then
          warm(pack(self%thermal%added%column, self%thermal%added%value > 0.0_dp)) = .true.
       end if
-      words = cold_bodies(model, warm, self%pairs%slave, self%pairs%master)
+      words = undetermined_beside(model, self%pairs, warm)
       if (len(words) > 0) error%message = words//': no *BOUNDARY on dof 11 and no *FILM with a '// &
          'coefficient above 0 at this time fixes it'
    end subroutine name_cold_bodies

@@ -2,21 +2,24 @@
 !>
 !> A body of a plane model shifts along x and y and turns about the middle of its nodes; one of an
 !> axisymmetric model shifts along the axis y. Every support and every direction in which a contact
-!> holds is one linear condition on these few unknowns; the motions that are free span the null
-!> space of all conditions. It comes from a singular value decomposition and is brought to echelon
-!> form, so that a motion names as few bodies as possible. Turns count by the displacement that they
-!> give at the farthest node of the body.
+!> point holds is one linear condition on these few unknowns; the motions that are free span the
+!> null space of all conditions. It comes from a singular value decomposition and is brought to
+!> echelon form, so that a motion names as few bodies as possible. Turns count by the displacement
+!> that they give at the farthest node of the body.
 module rigid_motions
+   use bodies, only: bodies_on_axis
    use dense, only: null_space
    use kinds, only: dp
+   use mesh, only: mesh_type
    use text, only: to_text
    implicit none
    private
    public :: contact_tie_type, free_motion_type, find_free_motions, unsupported_motions
 
    real(dp), parameter :: nothing = 1.0e-6_dp        !! component of a motion that counts as none
+   real(dp), parameter :: unit(2, 2) = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
 
-   !> What a contact holds: two nodes have one displacement along a direction.
+   !> What a contact point holds: two nodes have one displacement along a direction.
    type :: contact_tie_type
       integer :: slave = 0                      !! node index
       integer :: master = 0                     !! node index
@@ -39,67 +42,86 @@ module rigid_motions
 
 contains
 
-   !> The free motions of all bodies, ordered by their first body.
-   subroutine find_free_motions(coordinates, node_body, on_axis, held, ties, motions)
-      real(dp), intent(in) :: coordinates(:, :)       !! (2, nodes) x and y [length]
-      integer, intent(in) :: node_body(:)             !! (nodes) body, or 0
-      logical, intent(in) :: on_axis(:)               !! (bodies) axisymmetric: along y only
+   !> The free motions of all bodies, ordered by their first body; none where all is held.
+   subroutine find_free_motions(mesh, held, ties, motions)
+      type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: held(:)                  !! (2 nodes) prescribed displacements
-      type(contact_tie_type), intent(in) :: ties(:)   !! what the contacts hold
-      type(free_motion_type), allocatable, intent(out) :: motions(:) !! none where all is held
+      type(contact_tie_type), intent(in) :: ties(:)   !! what the contact points hold
+      type(free_motion_type), allocatable, intent(out) :: motions(:)
       type(rigid_bodies_type) :: bodies
       real(dp), allocatable :: basis(:, :)
       integer :: i
 
-      bodies = measure(coordinates, node_body, size(on_axis))
-      basis = null_space(conditions(bodies, coordinates, node_body, on_axis, held, ties))
-      call bring_to_echelon(basis)
+      bodies = measure(mesh)
+      basis = free_basis(mesh, bodies, held, ties)
       allocate (motions(size(basis, 2)))
       do i = 1, size(motions)
-         motions(i) = motion_of(bodies, reshape(basis(:, i), [3, size(on_axis)]))
+         motions(i) = motion_of(bodies, reshape(basis(:, i), [3, mesh%body_count]))
       end do
    end subroutine find_free_motions
 
    !> Displacements of the nodes in the motions that the supports alone leave free, each motion of
    !> one body.
-   subroutine unsupported_motions(coordinates, node_body, on_axis, held, fields)
-      real(dp), intent(in) :: coordinates(:, :)       !! (2, nodes) x and y [length]
-      integer, intent(in) :: node_body(:)             !! (nodes) body, or 0
-      logical, intent(in) :: on_axis(:)               !! (bodies) axisymmetric: along y only
-      logical, intent(in) :: held(:)                  !! (2 nodes) prescribed displacements
+   pure subroutine unsupported_motions(mesh, held, fields)
+      type(mesh_type), intent(in) :: mesh
+      logical, intent(in) :: held(:)                       !! (2 nodes) prescribed displacements
       real(dp), allocatable, intent(out) :: fields(:, :)   !! (2 nodes, motions)
       type(contact_tie_type) :: no_ties(0)
       type(rigid_bodies_type) :: bodies
       real(dp), allocatable :: basis(:, :)
       integer :: c, node
 
-      bodies = measure(coordinates, node_body, size(on_axis))
-      basis = null_space(conditions(bodies, coordinates, node_body, on_axis, held, no_ties))
-      call bring_to_echelon(basis)
+      bodies = measure(mesh)
+      basis = free_basis(mesh, bodies, held, no_ties)
       allocate (fields(size(held), size(basis, 2)), source=0.0_dp)
-      do node = 1, size(node_body)
-         if (node_body(node) == 0) cycle
-         associate (b => node_body(node))
+      do node = 1, size(mesh%node_body)
+         if (mesh%node_body(node) == 0) cycle
+         associate (b => mesh%node_body(node))
             do c = 1, 2
-               fields(2*(node - 1) + c, :) = matmul(at_point(bodies, b, coordinates(:, node), &
-                  axis(c)), basis(3*b - 2:3*b, :))
+               fields(2*(node - 1) + c, :) = matmul(at_point(bodies, b, &
+                  mesh%coordinates(:, node), unit(:, c)), basis(3*b - 2:3*b, :))
             end do
          end associate
       end do
    end subroutine unsupported_motions
 
-   !> Supports, axes and ties as conditions on the rigid motions, a row each.
-   pure function conditions(bodies, coordinates, node_body, on_axis, held, ties) result(rows)
+   !> Basis of the free motions in reduced echelon form: each has a leading component of its own, 1,
+   !> that the others do not have.
+   pure function free_basis(mesh, bodies, held, ties) result(basis)
+      type(mesh_type), intent(in) :: mesh
       type(rigid_bodies_type), intent(in) :: bodies
-      real(dp), intent(in) :: coordinates(:, :)
-      integer, intent(in) :: node_body(:)
-      logical, intent(in) :: on_axis(:)
       logical, intent(in) :: held(:)
       type(contact_tie_type), intent(in) :: ties(:)
-      real(dp) :: rows(count(held) + size(ties) + 2*count(on_axis), 3*size(on_axis))
+      real(dp), allocatable :: basis(:, :)           !! (3 bodies, motions)
+      integer :: column, i, k, pivot
+
+      basis = null_space(conditions(mesh, bodies, held, ties))
+      column = 1
+      do i = 1, size(basis, 1)
+         if (column > size(basis, 2)) exit
+         pivot = column - 1 + maxloc(abs(basis(i, column:)), dim=1)
+         if (abs(basis(i, pivot)) <= nothing) cycle
+         basis(:, [column, pivot]) = basis(:, [pivot, column])
+         basis(:, column) = basis(:, column)/basis(i, column)
+         do k = 1, size(basis, 2)
+            if (k /= column) basis(:, k) = basis(:, k) - basis(i, k)*basis(:, column)
+         end do
+         column = column + 1
+      end do
+   end function free_basis
+
+   !> Supports, axes and ties as conditions on the rigid motions, a row each.
+   pure function conditions(mesh, bodies, held, ties) result(rows)
+      type(mesh_type), intent(in) :: mesh
+      type(rigid_bodies_type), intent(in) :: bodies
+      logical, intent(in) :: held(:)
+      type(contact_tie_type), intent(in) :: ties(:)
+      real(dp) :: rows(count(held) + size(ties) + 2*count(bodies_on_axis(mesh)), 3*mesh%body_count)
+      logical :: on_axis(mesh%body_count)
       integer :: body, c, i, n, node
 
       rows = 0.0_dp
+      on_axis = bodies_on_axis(mesh)
       n = 0
       do body = 1, size(on_axis)
          if (.not. on_axis(body)) cycle
@@ -107,32 +129,34 @@ contains
          rows(n + 2, 3*body) = 1.0_dp
          n = n + 2
       end do
-      do node = 1, size(node_body)
+      do node = 1, size(mesh%node_body)
          do c = 1, 2
             if (.not. held(2*(node - 1) + c)) cycle
             n = n + 1
-            call enter(rows(n, :), node, axis(c))
+            rows(n, :) = displacement_row(mesh, bodies, node, unit(:, c))
          end do
       end do
       do i = 1, size(ties)
          n = n + 1
-         call enter(rows(n, :), ties(i)%slave, ties(i)%direction)
-         call enter(rows(n, :), ties(i)%master, -ties(i)%direction)
+         rows(n, :) = displacement_row(mesh, bodies, ties(i)%slave, ties(i)%direction) - &
+            displacement_row(mesh, bodies, ties(i)%master, ties(i)%direction)
       end do
-   contains
-      !> Adds the displacement of a node along a direction to a row.
-      pure subroutine enter(row, node, direction)
-         real(dp), intent(inout) :: row(:)
-         integer, intent(in) :: node
-         real(dp), intent(in) :: direction(2)
-
-         if (node_body(node) == 0) return
-         associate (b => node_body(node))
-            row(3*b - 2:3*b) = row(3*b - 2:3*b) + &
-               at_point(bodies, b, coordinates(:, node), direction)
-         end associate
-      end subroutine enter
    end function conditions
+
+   !> Displacement of a node along a direction by the rigid motions; none of a node of no body.
+   pure function displacement_row(mesh, bodies, node, direction) result(row)
+      type(mesh_type), intent(in) :: mesh
+      type(rigid_bodies_type), intent(in) :: bodies
+      integer, intent(in) :: node
+      real(dp), intent(in) :: direction(2)
+      real(dp) :: row(3*mesh%body_count)
+
+      row = 0.0_dp
+      if (mesh%node_body(node) == 0) return
+      associate (b => mesh%node_body(node))
+         row(3*b - 2:3*b) = at_point(bodies, b, mesh%coordinates(:, node), direction)
+      end associate
+   end function displacement_row
 
    !> Displacement along a direction by unit shifts and the unit turn of a body.
    pure function at_point(bodies, body, place, direction) result(displacement)
@@ -146,60 +170,29 @@ contains
       displacement = [direction, direction(2)*arm(1) - direction(1)*arm(2)]
    end function at_point
 
-   !> Unit vector along x or y.
-   pure function axis(c) result(direction)
-      integer, intent(in) :: c
-      real(dp) :: direction(2)
-
-      direction = merge([1.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], c == 1)
-   end function axis
-
-   !> Middle and extent of all bodies.
-   pure function measure(coordinates, node_body, count) result(bodies)
-      real(dp), intent(in) :: coordinates(:, :)
-      integer, intent(in) :: node_body(:)
-      integer, intent(in) :: count
+   pure function measure(mesh) result(bodies)
+      type(mesh_type), intent(in) :: mesh
       type(rigid_bodies_type) :: bodies
-      integer :: nodes(count), node
+      integer :: nodes(mesh%body_count), node
 
-      allocate (bodies%middle(2, count), bodies%extent(count), source=0.0_dp)
+      allocate (bodies%middle(2, size(nodes)), bodies%extent(size(nodes)), source=0.0_dp)
       nodes = 0
-      do node = 1, size(node_body)
-         if (node_body(node) == 0) cycle
-         associate (b => node_body(node))
+      do node = 1, size(mesh%node_body)
+         if (mesh%node_body(node) == 0) cycle
+         associate (b => mesh%node_body(node))
             nodes(b) = nodes(b) + 1
-            bodies%middle(:, b) = bodies%middle(:, b) + coordinates(:, node)
+            bodies%middle(:, b) = bodies%middle(:, b) + mesh%coordinates(:, node)
          end associate
       end do
       bodies%middle = bodies%middle/spread(real(nodes, dp), 1, 2)
-      do node = 1, size(node_body)
-         if (node_body(node) == 0) cycle
-         associate (b => node_body(node))
+      do node = 1, size(mesh%node_body)
+         if (mesh%node_body(node) == 0) cycle
+         associate (b => mesh%node_body(node))
             bodies%extent(b) = max(bodies%extent(b), &
-               norm2(coordinates(:, node) - bodies%middle(:, b)))
+               norm2(mesh%coordinates(:, node) - bodies%middle(:, b)))
          end associate
       end do
    end function measure
-
-   !> Reduced echelon form of the columns of a basis: each has a leading component of its own, 1,
-   !> that the others do not have.
-   pure subroutine bring_to_echelon(basis)
-      real(dp), intent(inout) :: basis(:, :)
-      integer :: column, i, k, pivot
-
-      column = 1
-      do i = 1, size(basis, 1)
-         if (column > size(basis, 2)) exit
-         pivot = column - 1 + maxloc(abs(basis(i, column:)), dim=1)
-         if (abs(basis(i, pivot)) <= nothing) cycle
-         basis(:, [column, pivot]) = basis(:, [pivot, column])
-         basis(:, column) = basis(:, column)/basis(i, column)
-         do k = 1, size(basis, 2)
-            if (k /= column) basis(:, k) = basis(:, k) - basis(i, k)*basis(:, column)
-         end do
-         column = column + 1
-      end do
-   end subroutine bring_to_echelon
 
    !> A motion in words.
    pure function motion_of(bodies, vector) result(motion)
