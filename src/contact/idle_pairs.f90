@@ -3,7 +3,7 @@
 !>
 !> A force below rounding does not decide by itself, because a light load may leave no more than
 !> that beside the thermal forces. The load is judged instead: its resultants along the rigid
-!> motions are exact (loose_motions).
+!> motions are exact (unconstrained_motions).
 module idle_pairs
    use contact_states, only: contact_state_type, status_open
    use contact_system, only: contact_system_type

@@ -118,66 +118,41 @@ contains
       end associate
    end function largest
 
-   !> A sum by the values that nothing writes.
+   !> A sum by the values that nothing writes, each once.
    pure subroutine resolve(found, sums, i, value, coefficient)
       type(elimination_type), intent(in) :: found
       class(sum_list_type), intent(in) :: sums
       integer, intent(in) :: i
       integer, allocatable, intent(out) :: value(:)
       real(dp), allocatable, intent(out) :: coefficient(:)
+      integer :: k, n, place
 
       value = sums%value(sums%start(i):sums%start(i + 1) - 1)
       coefficient = sums%coefficient(sums%start(i):sums%start(i + 1) - 1)
-      do while (any(found%writer(value) > 0))
-         call substitute(found, value, coefficient)
+      do
+         k = findloc(found%writer(value) > 0, .true., dim=1)
+         if (k == 0) exit
+         associate (first => found%sums%start(found%writer(value(k))), &
+            last => found%sums%start(found%writer(value(k)) + 1) - 1)
+            coefficient = [coefficient(:k - 1), coefficient(k)*found%sums%coefficient(first:last), &
+               coefficient(k + 1:)]
+            value = [value(:k - 1), found%sums%value(first:last), value(k + 1:)]
+         end associate
       end do
+      n = 0
+      do k = 1, size(value)
+         place = findloc(value(:n), value(k), dim=1)
+         if (place > 0) then
+            coefficient(place) = coefficient(place) + coefficient(k)
+         else
+            n = n + 1
+            value(n) = value(k)
+            coefficient(n) = coefficient(k)
+         end if
+      end do
+      value = value(:n)
+      coefficient = coefficient(:n)
    end subroutine resolve
-
-   !> Puts what values are written by in their place.
-   pure subroutine substitute(found, value, coefficient)
-      type(elimination_type), intent(in) :: found
-      integer, allocatable, intent(inout) :: value(:)
-      real(dp), allocatable, intent(inout) :: coefficient(:)
-      integer, allocatable :: values(:)
-      real(dp), allocatable :: coefficients(:)
-      integer :: i, k, n
-
-      associate (sums => found%sums, writer => found%writer(value))
-         n = size(value) + sum(sums%start(writer + 1) - sums%start(max(writer, 1)), mask=writer > 0)
-         allocate (values(n), coefficients(n))
-         n = 0
-         do i = 1, size(value)
-            if (writer(i) == 0) then
-               call take(value(i), coefficient(i), values, coefficients, n)
-               cycle
-            end if
-            do k = sums%start(writer(i)), sums%start(writer(i) + 1) - 1
-               call take(sums%value(k), coefficient(i)*sums%coefficient(k), values, coefficients, n)
-            end do
-         end do
-      end associate
-      value = values(:n)
-      coefficient = coefficients(:n)
-   end subroutine substitute
-
-   !> Adds a term to a sum of n terms.
-   pure subroutine take(value, coefficient, values, coefficients, n)
-      integer, intent(in) :: value
-      real(dp), intent(in) :: coefficient
-      integer, intent(inout) :: values(:)
-      real(dp), intent(inout) :: coefficients(:)
-      integer, intent(inout) :: n
-      integer :: place
-
-      place = findloc(values(:n), value, dim=1)
-      if (place == 0) then
-         n = n + 1
-         values(n) = value
-         coefficients(n) = coefficient
-      else
-         coefficients(place) = coefficients(place) + coefficient
-      end if
-   end subroutine take
 
    !> Numbers the unknowns: degrees of freedom, introduced values off the tail, then the tail. On it
    !> the forces of the links stand behind the values that stiffness holds and before those that

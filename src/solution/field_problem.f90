@@ -77,8 +77,7 @@ contains
       load%given = given
       supported = self%map%supported(given)
       allocate (load%rhs(self%map%equations, 1))
-      load%rhs(:, 1) = self%map%restrict(forces - self%matrix%multiply(supported)) + &
-         self%map%support_load(given)
+      load%rhs(:, 1) = self%map%load(forces - self%matrix%multiply(supported), given)
       if (allocated(self%added%value)) load%rhs(:, 1) = load%rhs(:, 1) - &
          self%map%restrict(self%added%multiply(supported))
    end function load_of

@@ -17,7 +17,7 @@ module increment_solution
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
-   use loose_motions, only: balanced_load, least_drive
+   use unconstrained_motions, only: balanced_load, least_drive
    use pair_rows, only: held_approach
    use scheme_properties, only: is_explicit
    use scheme_start, only: warn_of_imbalance

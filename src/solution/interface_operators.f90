@@ -10,7 +10,7 @@ module interface_operators
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
-   use loose_motions, only: balanced_load
+   use unconstrained_motions, only: balanced_load
    use mesh, only: extent_of
    use model, only: model_type
    use pair_rows, only: find_held_axes, pair_row_type, pair_surfaces, row_of

@@ -5,8 +5,8 @@
 !> displacements of contact points, and the forces of links. A link is a constraint that says
 !> nothing new of the degrees of freedom, as where contact points form a ring; it relates
 !> introduced values to each other, G v + H g = 0. An unknown force, a Lagrange multiplier mu, keeps
-!> it: rows k G v = -k H g, columns k G^T mu. k is the stiffness of the bodies there, so that k mu is
-!> the force and mu compares with displacements.
+!> it: rows k G v = -k H g, columns k G^T mu. k is the stiffness of the bodies there, so that k mu
+!> is the force and mu compares with displacements.
 !>
 !> The last unknowns, the tail, are those that contact acts on, and the forces. With the former zero
 !> the bodies are welded; the reduced problem on the tail is eq. (2.4) solved partially.
@@ -36,7 +36,7 @@ module linear_constraints
       procedure :: expand
       procedure :: supported
       procedure :: restrict
-      procedure :: support_load
+      procedure :: load
       procedure :: stiffen_links
       procedure :: transform
       procedure :: tail_index
@@ -52,16 +52,9 @@ contains
       real(dp), intent(in) :: unknowns(:)           !! (equations) v
       real(dp), intent(in) :: given(:)              !! (dofs) prescribed values, others not used
       real(dp) :: values(size(given))               !! (dofs)
-      integer :: dof, t
 
       values = self%supported(given)
-      associate (by => self%by_unknowns)
-         do dof = 1, size(given)
-            do t = by%start(dof), by%start(dof + 1) - 1
-               values(dof) = values(dof) + by%coefficient(t)*unknowns(by%value(t))
-            end do
-         end do
-      end associate
+      call self%by_unknowns%add_totals(unknowns, values)
    end function expand
 
    !> What prescribed values alone make of the degrees of freedom, B g.
@@ -69,16 +62,9 @@ contains
       class(linear_constraints_type), intent(in) :: self
       real(dp), intent(in) :: given(:)              !! (dofs) prescribed values, others not used
       real(dp) :: values(size(given))               !! (dofs)
-      integer :: dof, t
 
-      associate (by => self%by_given)
-         do dof = 1, size(given)
-            values(dof) = 0.0_dp
-            do t = by%start(dof), by%start(dof + 1) - 1
-               values(dof) = values(dof) + by%coefficient(t)*given(by%value(t))
-            end do
-         end do
-      end associate
+      values = 0.0_dp
+      call self%by_given%add_totals(given, values)
    end function supported
 
    !> Forces on the unknowns from forces on the degrees of freedom, T^T f.
@@ -98,23 +84,20 @@ contains
       end associate
    end function restrict
 
-   !> Right-hand side of the links, which prescribed values may stretch.
-   pure function support_load(self, given) result(rhs)
+   !> Right-hand side of the unknowns: of forces on the degrees of freedom, less what prescribed
+   !> values take of them (K B g), and of links, which prescribed values may stretch.
+   pure function load(self, forces, given) result(rhs)
       class(linear_constraints_type), intent(in) :: self
+      real(dp), intent(in) :: forces(:)             !! (dofs)
       real(dp), intent(in) :: given(:)              !! (dofs) prescribed values, others not used
       real(dp) :: rhs(self%equations)               !! (equations)
-      integer :: i, t
+      real(dp) :: stretch(size(self%link_force))
 
-      rhs = 0.0_dp
-      associate (stretch => self%link_given)
-         do i = 1, stretch%count
-            do t = stretch%start(i), stretch%start(i + 1) - 1
-               rhs(self%link_force(i)) = rhs(self%link_force(i)) - &
-                  self%link_stiffness(i)*stretch%coefficient(t)*given(stretch%value(t))
-            end do
-         end do
-      end associate
-   end function support_load
+      rhs = self%restrict(forces)
+      stretch = 0.0_dp
+      call self%link_given%add_totals(given, stretch)
+      rhs(self%link_force) = -self%link_stiffness*stretch
+   end function load
 
    !> Scales the links by the stiffness of the bodies: the smallest one of the nodes that they join.
    pure subroutine stiffen_links(self, matrix)

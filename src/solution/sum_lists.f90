@@ -15,6 +15,7 @@ module sum_lists
       procedure :: reserve
       procedure :: add
       procedure :: renumbered
+      procedure :: add_totals
    end type sum_list_type
 
 contains
@@ -76,5 +77,19 @@ contains
          sums%start(i + 1) = term
       end do
    end function renumbered
+
+   !> Adds the sums, term by term.
+   pure subroutine add_totals(self, x, totals)
+      class(sum_list_type), intent(in) :: self
+      real(dp), intent(in) :: x(:)              !! (values)
+      real(dp), intent(inout) :: totals(:)      !! (count)
+      integer :: i, k
+
+      do i = 1, self%count
+         do k = self%start(i), self%start(i + 1) - 1
+            totals(i) = totals(i) + self%coefficient(k)*x(self%value(k))
+         end do
+      end do
+   end subroutine add_totals
 
 end module sum_lists

@@ -4,8 +4,7 @@ that all decks need, which exist for that part only."""
 CONTACT_FOLDER = {
     "active_set", "pair_tractions", "chain_geometry", "closing_instant", "closing_path",
     "contact_pairs", "contact_states", "contact_system", "contact_tangent", "friction",
-    "loose_motions", "pair_checks", "pair_rings", "pair_warnings", "ring_links", "surface_chains",
-    "zone_edges",
+    "pair_checks", "pair_warnings", "surface_chains", "unconstrained_motions", "zone_edges",
 }
 COUPLING = {
     "accelerators", "anderson", "conductance_graph", "contact_operator:contact_operator_pass",
@@ -15,8 +14,8 @@ COUPLING = {
 }
 PARTS = {
     "heat": {
-        "balances:heat_residual", "balances:scheme_pair_heat", "body_names:cold_bodies",
-        "element_conduction", "element_fields:element_heat_flux",
+        "balances:heat_residual", "balances:scheme_pair_heat", "element_conduction",
+        "element_fields:element_heat_flux",
         "field_recovery:recover_heat_flux", "films", "heat_balance",
         "increment_checks:check_heat", "increment_solution:conduct",
         "increment_solution:load_heat", "interface_operators:reduce_heat",
@@ -31,8 +30,8 @@ PARTS = {
     },
     "mechanics": CONTACT_FOLDER - {
         # Pairs conduct, whether bodies move or not: these make them and their results.
-        "pair_tractions", "chain_geometry", "contact_pairs", "pair_checks", "pair_rings",
-        "pair_warnings", "ring_links", "surface_chains", "zone_edges"} | {
+        "pair_tractions", "chain_geometry", "contact_pairs", "pair_checks",
+        "pair_warnings", "surface_chains", "zone_edges"} | {
         "balances:contact_violation", "balances:force_residual", "contact_reduction",
         "element_elasticity", "element_fields:element_stress", "field_recovery:recover_stress",
         "increment_checks:check_violation", "increment_checks:warn_of_choices",
@@ -54,10 +53,11 @@ PARTS = {
         "contact_system:friction_rows", "friction", "zone_edges:stick_edges",
     },
     "coupling": COUPLING,
-    "rings of pairs": {"pair_rings", "ring_links"},
+    "rings of pairs": {"contact_constraints:stiffness_alone", "linear_constraints:add_links",
+                       "linear_constraints:stiffen_links"},
     "paths to a contact zone": {"closing_path"},
     "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",
-                                  "loose_motions"},
+                                  "unconstrained_motions"},
     "films": {"films", "loads:film_matrix", "loads:integrate_films"},
     "estimated errors": {
         "companion_steps", "doubled_increments", "error_estimator", "interface_quantities", "linked_relaxation",

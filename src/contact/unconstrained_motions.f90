@@ -1,6 +1,7 @@
-!> Rigid motions that an active set leaves free, on the tail of the contact system. What decides is
-!> which places the set holds, not a pivot: stiffness against bending may be as small as rounding.
-module loose_motions
+!> Rigid motions that supports leave free, on the tail of the contact system: which of them an
+!> active set leaves free, too, and which load drives them. What decides is which places the set
+!> holds, not a pivot: stiffness against bending may be as small as rounding.
+module unconstrained_motions
    use dense, only: least_squares, null_space
    use kinds, only: dp
    implicit none
@@ -17,17 +18,17 @@ module loose_motions
 contains
 
    !> The unsupported motions that no place of the active set holds, orthonormal on the free places.
-   pure function free_motions(motion, free, spring, schur) result(loose)
+   pure function free_motions(motion, free, spring, schur) result(unheld)
       real(dp), intent(in) :: motion(:, :)   !! (tail, q) unsupported motions, orthonormal
       integer, intent(in) :: free(:)         !! (n) places that are sought
       real(dp), intent(in) :: spring(:)      !! (tail) what holds free places [force/length]
       real(dp), intent(in) :: schur(:, :)    !! (tail, tail) S [force/length]
-      real(dp), allocatable :: loose(:, :)   !! (n, l)
+      real(dp), allocatable :: unheld(:, :) !! (n, l)
       logical :: held(size(motion, 1))
       integer :: i
 
       if (size(motion, 2) == 0) then
-         allocate (loose(size(free), 0))
+         allocate (unheld(size(free), 0))
          return
       end if
       held = .true.
@@ -35,20 +36,20 @@ contains
          held(free(i)) = spring(free(i)) > slack*abs(schur(free(i), free(i)))
       end do
       associate (places => pack([(i, i=1, size(held))], held))
-         loose = matmul(motion(free, :), null_space(motion(places, :)))
+         unheld = matmul(motion(free, :), null_space(motion(places, :)))
       end associate
    end function free_motions
 
    !> Whether forces drive the motions, by more than rounding. Each place is judged by the terms
    !> that its own motion collects: those of another body may be far larger.
-   pure logical function is_driven(loose, unbalanced, terms, least)
-      real(dp), intent(in) :: loose(:, :)    !! (n, l) orthonormal motions of the free places
+   pure logical function is_driven(unheld, unbalanced, terms, least)
+      real(dp), intent(in) :: unheld(:, :)   !! (n, l) orthonormal motions of the free places
       real(dp), intent(in) :: unbalanced(:)  !! (l) forces along the motions [force]
       real(dp), intent(in) :: terms(:) !! (n) sums without signs of the forces' terms [force]
       real(dp), intent(in) :: least(:)       !! (n) drive that counts as none [force]
 
-      is_driven = any(abs(matmul(loose, unbalanced)) > least + &
-         rounding*matmul(abs(matmul(loose, transpose(loose))), terms))
+      is_driven = any(abs(matmul(unheld, unbalanced)) > least + &
+         rounding*matmul(abs(matmul(unheld, transpose(unheld))), terms))
    end function is_driven
 
    !> A condensed load with the exact resultants along the unsupported motions. Temperatures and
@@ -79,4 +80,4 @@ contains
       end do
    end function least_drive
 
-end module loose_motions
+end module unconstrained_motions
