@@ -10,7 +10,7 @@ module contact_workspace
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use kinds, only: dp
-   use loose_motions, only: free_motions, is_driven
+   use unconstrained_motions, only: free_motions, is_driven
    implicit none
    private
    public :: contact_workspace_type

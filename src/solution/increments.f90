@@ -99,11 +99,11 @@ contains
       associate (step => model%steps(self%control%step))
          if (solves_heat(step%analysis) .and. .not. self%reduction%heat_is_reduced) then
             call self%loads%move_to(self%control%next_instant(model), model)
-            film = self%loads%film_matrix()
+            film = left_films(step%scheme, self%state%film, self%loads%film_matrix())
          end if
-         call self%reduction%reduce(model, step, self%state%film, film, self%operators, &
-            self%seconds, self%sizes, error)
+         call self%reduction%reduce(model, step, film, self%operators, self%seconds, error)
       end associate
+      call measure_factors(self%operators, self%sizes)
    end subroutine reduce
 
    !> Whether all steps are solved.

@@ -4,7 +4,6 @@ module step_reduction
    use clock, only: wall_seconds
    use conductance_laws, only: is_constant
    use errors, only: error_type
-   use films, only: left_films
    use interface_operators, only: interface_operators_type
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
@@ -104,15 +103,13 @@ contains
    !> Assembles the bodies, where that is not done, and reduces the fields of a step to their
    !> contact unknowns, where that is not done.
    !> Errors: as interface_operators' reduce.
-   subroutine reduce(self, model, step, film_old, film_new, operators, seconds, sizes, error)
+   subroutine reduce(self, model, step, film, operators, seconds, error)
       class(step_reduction_type), intent(inout) :: self          !! numbered for the step
       type(model_type), intent(in) :: model                      !! the model
       type(step_type), intent(in) :: step                        !! the step
-      type(sparse_matrix_type), intent(in) :: film_old           !! F_i [power/temperature]
-      type(sparse_matrix_type), intent(in) :: film_new           !! F_i+1 [power/temperature]
+      type(sparse_matrix_type), intent(in) :: film !! left-hand side of (3.4) [power/temperature]
       type(interface_operators_type), intent(inout) :: operators !! the bodies
       type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
-      type(run_size_type), intent(inout) :: sizes                !! receives bytes and pivot
       type(error_type), allocatable, intent(out) :: error        !! see above
       logical :: heat, mechanics
       real(dp) :: since
@@ -127,13 +124,12 @@ contains
       end if
       seconds%assemble = seconds%assemble + (wall_seconds() - since)
       since = wall_seconds()
-      if (heat) operators%thermal%added = left_films(step%scheme, film_old, film_new)
+      if (heat) operators%thermal%added = film
       call operators%reduce(model, mechanics, heat, solves_heat(step%analysis) .and. &
          solves_mechanics(step%analysis) .and. .not. all(is_constant(operators%pairs%law)), error)
       self%mechanics_is_reduced = self%mechanics_is_reduced .or. (mechanics .and. &
          .not. allocated(error))
       self%heat_is_reduced = self%heat_is_reduced .or. (heat .and. .not. allocated(error))
-      call measure_factors(operators, sizes)
       seconds%reduce = seconds%reduce + (wall_seconds() - since)
    end subroutine reduce
 
