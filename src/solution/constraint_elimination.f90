@@ -129,6 +129,7 @@ contains
 
       value = sums%value(sums%start(i):sums%start(i + 1) - 1)
       coefficient = sums%coefficient(sums%start(i):sums%start(i + 1) - 1)
+      if (all(found%writer(value) == 0)) return
       do
          k = findloc(found%writer(value) > 0, .true., dim=1)
          if (k == 0) exit
