@@ -27,18 +27,20 @@ function(add_pfunit_ctest name)
    set(folder "${CMAKE_CURRENT_BINARY_DIR}/${name}.dir")
    set(sources "")
    set(calls "")
+   set(test_sources "")
    foreach(test_source IN LISTS arg_TEST_SOURCES)
       cmake_path(ABSOLUTE_PATH test_source BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
       cmake_path(GET test_source STEM module)
-      set(source "${folder}/${module}.F90")
-      add_custom_command(OUTPUT "${source}"
-         COMMAND "${Python3_EXECUTABLE}" -B "${FUNIT_STANDIN_DIR}/funitproc.py"
-            "${test_source}" "${source}"
-         DEPENDS "${test_source}" "${FUNIT_STANDIN_DIR}/funitproc.py"
-         VERBATIM)
-      list(APPEND sources "${source}")
+      list(APPEND test_sources "${test_source}")
+      list(APPEND sources "${folder}/${module}.F90")
       string(APPEND calls "   call ${module}_suite()\n")
    endforeach()
+   # One process for all: starting Python takes longer than its work.
+   add_custom_command(OUTPUT ${sources}
+      COMMAND "${Python3_EXECUTABLE}" -B "${FUNIT_STANDIN_DIR}/funitproc.py"
+         "${folder}" ${test_sources}
+      DEPENDS ${test_sources} "${FUNIT_STANDIN_DIR}/funitproc.py"
+      VERBATIM)
    string(CONCAT driver
       "program ${name}_driver\n   use funit, only: end_tests\n   implicit none\n\n"
       "${calls}   call end_tests()\nend program ${name}_driver\n")

@@ -105,10 +105,14 @@ def convert(text, path):
 
 
 def main():
-    """Convert the file named first into the file named second."""
-    source, target = (Path(argument) for argument in sys.argv[1:3])
+    """Convert the files named into ones of the folder named first; what does not change stays as it
+    is, so that it is not compiled again."""
+    folder = Path(sys.argv[1])
     try:
-        target.write_text(convert(source.read_text(), source))
+        for source in map(Path, sys.argv[2:]):
+            target, text = folder / f"{source.stem}.F90", convert(source.read_text(), source)
+            if not target.exists() or target.read_text() != text:
+                target.write_text(text)
     except SourceError as error:
         sys.exit(str(error))
 
