@@ -298,7 +298,7 @@ def limits(folder, make, found):
     runs = []
     for count in (FINE, 2 * FINE):
         deck, known, *places = make(count)
-        path = solve(write(folder / f"deck{count}.inp", ["*OPTIONS, WIDTH=300"], deck))
+        path = solve(write(folder / f"deck{count}.inp", ["*OPTIONS, WIDTH=300, ERRORS=NO"], deck))
         runs.append(found(path, *(places[0] if places else ())))
     for name, value in known.items():
         if name == "heat_rate":

@@ -16,12 +16,12 @@ import numpy as np
 
 TERMS = 12
 LARGEST_WAVE = 40.0  # the terms of the layer fall off like exp(-k)
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(400)
 
 
 def pressure(c, half_load, base):
     """Return q_0, q_1, ... of the pressure over |x| < c that balances a unit load."""
-    k, w = np.polynomial.legendre.leggauss(400)
-    k, w = LARGEST_WAVE / 2 * (k + 1), LARGEST_WAVE / 2 * w
+    k, w = LARGEST_WAVE / 2 * (POINTS + 1), LARGEST_WAVE / 2 * WEIGHTS
     alike = (np.cosh(k) - 1) / (np.sinh(k) + k)
     cross = ((np.cosh(k) + 1) / (np.sinh(k) - k) - alike) / 2
     angles = np.pi * (np.arange(200) + 0.5) / 200

@@ -77,7 +77,10 @@ def random_deck(folder, seed, analysis):
             f"UP.LEFT, P, {r.uniform(-3, 3)!r}", f"UP.RIGHT, P, {r.uniform(-3, 3)!r}",
             "*CONTACT FILE, FREQUENCY=0", analysis=analysis,
             increment=f"{r.choice(['0.1', '0.5', '1.'])}, 1.")
-    return write(folder / f"random{seed}.inp", ["*OPTIONS, WIDTH=200"], cards), friction
+    # The others estimate their errors, too.
+    errors = "NO" if "DIRECT" in analysis else "YES"
+    return write(folder / f"random{seed}.inp", [f"*OPTIONS, WIDTH=200, ERRORS={errors}"],
+                 cards), friction
 
 
 def random_blocks(folder, analysis):
