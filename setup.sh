@@ -210,14 +210,20 @@ run_lint() {
 }
 
 # Every test on the program as users have it comes last, so that its summary closes the output; before
-# that the sources, and the unit tests and the cylinder with run-time checks.
+# that the sources, and the unit tests and the cylinder with run-time checks. Python packages, most of
+# whose time is that of the network, are installed during the first build.
 run_test() {
-   local status=0
+   local status=0 installed
    install_packages "${build_packages[@]}" "${test_packages[@]}"
-   install_python_packages
-   make_venv "$build/sweep" "${sweep_requirements[@]}" # Snakemake, for the test of input/sweep
-   run_lint || status=1
+   trap wait EXIT
+   install_python_packages &
+   installed=($!)
+   make_venv "$build/sweep" "${sweep_requirements[@]}" & # Snakemake, for the test of input/sweep
+   installed+=($!)
    build_preset debug
+   wait "${installed[0]}"
+   wait "${installed[1]}"
+   run_lint || status=1
    say "tests with run-time checks"
    ctest --preset debug --parallel 2 --label-regex 'unit|memory' || status=1
    build_preset release

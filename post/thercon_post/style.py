@@ -69,6 +69,7 @@ def write(figure, columns, folder, name):
     try:
         folder.mkdir(parents=True, exist_ok=True)
         figure.savefig(folder / f"{name}.png")
+        figure.set_layout_engine("none")  # both files have one layout, which takes long
         # No date in the file: the same result gives the same picture.
         figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
         if columns is not None:
