@@ -203,7 +203,7 @@ contains
       real(dp), intent(out) :: condensed(:, :)
 
       if (self%tail == 0) return
-      call load_rhs(self, rhs)
+      call load_rhs(self%mumps, self%tail, rhs)
       self%mumps%icntl(26) = 1
       self%mumps%job = job_solve
       call dmumps(self%mumps)
@@ -217,7 +217,7 @@ contains
       real(dp), intent(in) :: on_tail(:, :)
       real(dp), intent(out) :: solution(:, :)
 
-      call load_rhs(self, rhs)
+      call load_rhs(self%mumps, self%tail, rhs)
       self%mumps%job = job_solve
       if (self%tail > 0) then
          self%mumps%icntl(26) = 1
@@ -230,22 +230,21 @@ contains
    end subroutine recover
 
    !> Hands right-hand sides to MUMPS, with room for the condensed ones.
-   subroutine load_rhs(self, rhs)
-      class(mumps_solver_type), intent(in) :: self
+   subroutine load_rhs(id, tail, rhs)
+      type(dmumps_struc), intent(inout) :: id
+      integer, intent(in) :: tail
       real(dp), intent(in) :: rhs(:, :)
 
-      associate (id => self%mumps)
-         if (associated(id%rhs)) then
-            if (size(id%rhs) /= size(rhs)) deallocate (id%rhs, id%redrhs)
-         end if
-         if (.not. associated(id%rhs)) then
-            allocate (id%rhs(size(rhs)), id%redrhs(self%tail*size(rhs, 2)))
-         end if
-         id%rhs(:) = reshape(rhs, [size(rhs)])
-         id%nrhs = size(rhs, 2)
-         id%lrhs = self%order
-         id%lredrhs = self%tail
-      end associate
+      if (associated(id%rhs)) then
+         if (size(id%rhs) /= size(rhs)) deallocate (id%rhs, id%redrhs)
+      end if
+      if (.not. associated(id%rhs)) then
+         allocate (id%rhs(size(rhs)), id%redrhs(tail*size(rhs, 2)))
+      end if
+      id%rhs(:) = reshape(rhs, [size(rhs)])
+      id%nrhs = size(rhs, 2)
+      id%lrhs = id%n
+      id%lredrhs = tail
    end subroutine load_rhs
 
    !> MUMPS keeps memory of its own, and finalisers are not to be relied on.
