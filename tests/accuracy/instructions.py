@@ -18,7 +18,7 @@ END = re.compile(r"^\s*end\s+(?:subroutine|function)\b", re.I)
 def procedures(module):
     """Return the procedure that each line of a module belongs to, inner ones by their host."""
     names, inside = [""], []
-    for line in next(SOURCES.glob(f"*/{module}.f90")).read_text().splitlines():
+    for line in next(SOURCES.rglob(f"{module}.f90")).read_text().splitlines():
         if (begins := BEGIN.match(line)) and not END.match(line):
             inside.append(begins[1].lower())
         names.append(inside[0] if inside else "")
@@ -31,7 +31,7 @@ def procedures(module):
 def place(file, line):
     """Return module and procedure of a line of source, or of no source of ours."""
     path = Path(file)
-    if path.suffix != ".f90" or not (SOURCES / path.parent.name / path.name).exists():
+    if path.suffix != ".f90" or SOURCES not in path.parents:
         return "", ""
     names = procedures(path.stem)
     return path.stem, names[line] if line < len(names) else ""

@@ -3,8 +3,9 @@ that all decks need, which exist for that part only."""
 
 CONTACT_FOLDER = {
     "active_set", "pair_tractions", "chain_geometry", "closing_instant", "closing_path",
-    "contact_pairs", "contact_states", "contact_system", "contact_tangent", "friction",
-    "pair_checks", "pair_warnings", "surface_chains", "unconstrained_motions", "zone_edges",
+    "contact_pairs", "contact_rows", "contact_states", "contact_system", "contact_tangent",
+    "contact_workspace", "friction", "pair_checks", "pair_warnings", "surface_chains",
+    "unconstrained_motions", "zone_edges",
 }
 COUPLING = {
     "accelerators", "anderson", "conductance_graph", "contact_operator:contact_operator_pass",
@@ -35,7 +36,7 @@ PARTS = {
         "balances:contact_violation", "balances:force_residual", "contact_reduction",
         "element_elasticity", "element_fields:element_stress", "field_recovery:recover_stress",
         "increment_checks:check_violation", "increment_checks:warn_of_choices",
-        "increment_records:balance_forces", "increment_records:settle_slip",
+        "increment_records:balance_forces", "friction_memory",
         "increment_solution:load_mechanics", "point_properties:elasticity_in",
         "stiffness_matrix",
     },
@@ -44,13 +45,13 @@ PARTS = {
         "contact_operator:temperature_jumps", "contact_reduction", "deck_builder_contact",
         "deck_builder_gap_conductance", "deck_builder_gap_laws", "deck_builder_interactions",
         "increment_records:contact_record",
-        "increment_records:settle_slip", "increment_solution:conduct",
+        "friction_memory", "increment_solution:conduct",
         "listing_increments:print_interface", "listing_tables:print_contact_table",
         "pair_reports", "pair_rows", "result_fields:face_values", "result_fields:find_faces",
         "zone_diagram",
     },
     "friction": {
-        "contact_system:friction_rows", "friction", "zone_edges:stick_edges",
+        "contact_rows:combine", "friction", "zone_edges:stick_edges",
     },
     "coupling": COUPLING,
     "rings of pairs": {"contact_constraints:stiffness_alone", "linear_constraints:add_links",

@@ -162,7 +162,7 @@ def test_parts_name_what_the_program_has():
     """Every module and procedure of the parts is there, so that none is left out by a new name."""
     from instructions import SOURCES, procedures
 
-    modules = {path.stem for path in SOURCES.glob("*/*.f90")}
+    modules = {path.stem for path in SOURCES.rglob("*.f90")}
     for name in set().union(*PARTS.values()):
         module, _, procedure = name.partition(":")
         assert module in modules, name

@@ -1,20 +1,19 @@
-!> Two blocks on each other that the tests of this folder solve, and that they are sound.
-module test_two_blocks
+!> Two blocks on each other, on which procedures of several folders are tested.
+module sample_blocks
    use bodies, only: find_bodies
    use conductance_laws, only: law_power
    use elasticity, only: isotropic_elasticity
    use element_kinds, only: plane_strain, quad8
    use errors, only: error_type
-   use funit
    use increments, only: simulation_type
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use quadrature, only: integration_rule
    use records, only: increment_record_type
-   use shape_functions, only: element_gradients
    use steps, only: analysis_static, boundary_type, load_pressure, load_type
    implicit none
+   private
+   public :: two_blocks, add_block, hold, press, solve, width, gap, top
 
    real(dp), parameter :: width = 2.0_dp, gap = 0.01_dp
    real(dp), parameter :: top = 2.5_dp + gap   !! the lower block is 1 high, the upper one 1.5
@@ -137,28 +136,4 @@ contains
       call simulation%release()
    end subroutine solve
 
-   @test
-   subroutine blocks_are_two_bodies_of_their_areas()
-      type(model_type) :: model
-      real(dp) :: points(2, 9), weights(9), gradients(2, 8), jacobian, area(2)
-      integer :: e, g
-
-      model = two_blocks(0.0_dp, 1.0_dp)
-      @assertEqual([1, 1, 1, 1, 2, 2, 2, 2], model%mesh%element_body)
-      call integration_rule(quad8, points, weights)
-      area = 0.0_dp
-      do e = 1, 8
-         do g = 1, 9
-            call element_gradients(quad8, &
-               model%mesh%coordinates(:, model%mesh%element_nodes(:, e)), points(:, g), &
-               gradients, jacobian)
-            @assertGreaterThan(jacobian, 0.0_dp)
-            associate (body => model%mesh%element_body(e))
-               area(body) = area(body) + weights(g)*jacobian
-            end associate
-         end do
-      end do
-      @assertEqual([2.0_dp, 3.0_dp], area, tolerance=1.0e-14_dp)
-   end subroutine blocks_are_two_bodies_of_their_areas
-
-end module test_two_blocks
+end module sample_blocks
