@@ -1,15 +1,16 @@
 !> The errors of a run, estimated beside it: of the mesh, of the increments, of the fixed point.
 module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use contact_quantities, only: estimated
    use doubled_increments, only: doubled_increments_type
    use errors, only: error_type
+   use increment_quantities, only: history_value
    use increments, only: simulation_type
    use interface_quantities, only: edge_resolution, quantities_of_state
    use kinds, only: dp
    use load_courses, only: step_clock_type
    use model, only: model_type
-   use records, only: at_shear_force, estimated_quantities, increment_record_type, &
-      interface_errors_type, is_band
+   use records, only: increment_record_type, interface_errors_type
    use refined_model, only: refined_model_type
    use refinement_error, only: find_change_by_refinement
    use solution_state, only: solution_state_type
@@ -87,7 +88,7 @@ contains
          record)
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
-      allocate (values(estimated_quantities, size(record%contacts)))
+      allocate (values(size(estimated), size(record%contacts)))
       call quantities_of_state(simulation%operators, simulation%state, &
          model%steps(self%step)%scheme, values)
       call store(values, record%errors)
@@ -105,9 +106,9 @@ contains
 
       do i = 1, size(errors)
          errors(i)%value = values(:, i)
-         errors(i)%mesh = ieee_value(1.0_dp, ieee_quiet_nan)
-         errors(i)%increment = 0.0_dp
-         errors(i)%iteration = 0.0_dp
+         allocate (errors(i)%mesh(size(estimated)), source=ieee_value(1.0_dp, ieee_quiet_nan))
+         allocate (errors(i)%increment(size(estimated)), source=0.0_dp)
+         allocate (errors(i)%iteration(size(estimated)), source=0.0_dp)
       end do
    end subroutine store
 
@@ -136,10 +137,9 @@ contains
       do i = 1, size(record%errors)
          associate (mesh => record%errors(i)%mesh)
             mesh = of_halved_elements*change(:, i)
-            ! The slip that friction would have left on the finer mesh is not known.
-            mesh(at_shear_force) = ieee_value(1.0_dp, ieee_quiet_nan)
-            where (is_band) mesh = of_halved_bands*abs(change(:, i)) + edge_resolution( &
-               simulation%operators%interfaces(i), values(:, i))
+            where (estimated%is_path_dependent) mesh = ieee_value(1.0_dp, ieee_quiet_nan)
+            where (estimated%resolution > 0.0_dp) mesh = of_halved_bands*abs(change(:, i)) + &
+               edge_resolution(simulation%operators%interfaces(i), values(:, i))
          end associate
       end do
    end subroutine estimate_mesh
@@ -175,7 +175,7 @@ contains
       if (.not. allocated(record%iterations)) return
       if (size(record%iterations) == 0) return
       if (ieee_is_nan(record%coupling_gain)) return
-      relative = record%iterations(size(record%iterations))%residual/max(tiny(1.0_dp), &
+      relative = history_value('residual', record)/max(tiny(1.0_dp), &
          min(1.0_dp, abs(1.0_dp - record%coupling_gain), abs(1.0_dp - record%coupling_gain_max)))
       do i = 1, size(record%errors)
          record%errors(i)%iteration = relative*abs(values(:, i))

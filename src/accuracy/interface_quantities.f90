@@ -1,30 +1,24 @@
-!> The global quantities of an interface whose errors are estimated.
+!> The quantities of an interface whose errors are estimated.
 module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_pairs, only: contact_pairs_type
+   use contact_quantities, only: contact_values, estimated
    use contact_states, only: status_open
    use controls, only: thermal_scheme_type
+   use increment_records, only: measure_contact
    use interface_operators, only: interface_operators_type
    use kinds, only: dp
-   use pair_tractions, only: pressures, shears
-   use records, only: at_edge_contact, at_edge_stick, at_heat_rate, at_normal_force, &
-      at_peak_pressure, at_shear_force, estimated_quantities
+   use records, only: contact_record_type
    use solution_state, only: carrying_conductance, solution_state_type
-   use zone_edges, only: contact_edges, edges_kept, stick_edges
    implicit none
    private
-   public :: quantities_of, quantities_of_state, edge_resolution
-
-   !> How far edges of zones are known on a mesh, in spacings of the pairs about them: of those of
-   !> the published cylinder nine tenths are no further from the converged ones (docs/accuracy.md).
-   real(dp), parameter :: known_contact_edge = 0.1_dp
-   real(dp), parameter :: known_stick_edge = 0.6_dp
+   public :: contact_of, quantities_of, quantities_of_state, edge_resolution
 
 contains
 
-   !> The quantities at their places; NaN for an edge where there is none.
-   pure function quantities_of(pairs, friction, status, gap, force, shear_force, heat) &
-      result(values)
+   !> The record of an interface, as far as estimates look at it: all but slip, temperatures,
+   !> conductance and heat flux.
+   pure function contact_of(pairs, friction, status, gap, force, shear_force, heat) result(contact)
       type(contact_pairs_type), intent(in) :: pairs   !! the pairs of the interface
       real(dp), intent(in) :: friction                !! mu [-]
       integer, intent(in) :: status(:)                !! (m) open, slip or stick
@@ -32,18 +26,24 @@ contains
       real(dp), intent(in) :: force(:)                !! (m) nodal, positive in compression [force]
       real(dp), intent(in) :: shear_force(:)          !! (m) on the slave [force]
       real(dp), intent(in) :: heat(:)                 !! (m) from slave to master [power]
-      real(dp) :: values(estimated_quantities)        !! [force], [power], [stress], [length]
-      real(dp) :: edges(edges_kept), pressure(size(force)), shear(size(force))
+      type(contact_record_type) :: contact
 
-      pressure = pressures(pairs, force, status /= status_open)
-      shear = shears(pairs, shear_force, status /= status_open, friction, pressure)
-      values(at_normal_force) = sum(force)
-      values(at_shear_force) = sum(shear_force)
-      values(at_heat_rate) = sum(heat)
-      values(at_peak_pressure) = maxval(pressure)
-      call contact_edges(pairs%arc_length, status, pressure, gap, edges, values(at_edge_contact))
-      call stick_edges(pairs%arc_length, pairs%weight, status, pressure, shear, gap, friction, &
-         edges, values(at_edge_stick))
+      contact%status = status
+      contact%gap = gap
+      call measure_contact(pairs, friction, status /= status_open, force, shear_force, contact)
+      contact%heat_rate = sum(heat)
+   end function contact_of
+
+   !> The estimated quantities of an interface.
+   pure function quantities_of(pairs, contact) result(values)
+      type(contact_pairs_type), intent(in) :: pairs      !! the pairs of the interface
+      type(contact_record_type), intent(in) :: contact   !! as from contact_of
+      real(dp) :: values(size(estimated))                !! NaN for an edge where there is none
+      integer :: q
+
+      do q = 1, size(estimated)
+         values(q:q) = contact_values(estimated(q)%name, pairs, contact)
+      end do
    end function quantities_of
 
    !> The quantities of all interfaces in a state.
@@ -60,10 +60,11 @@ contains
          do i = 1, size(values, 2)
             first = pairs%interface_start(i)
             last = pairs%interface_start(i + 1) - 1
-            values(:, i) = quantities_of(operators%interfaces(i), pairs%friction(first), &
-               contact%status(first:last), contact%gap(first:last), contact%force(first:last), &
+            values(:, i) = quantities_of(operators%interfaces(i), contact_of( &
+               operators%interfaces(i), pairs%friction(first), contact%status(first:last), &
+               contact%gap(first:last), contact%force(first:last), &
                contact%shear_force(first:last), pairs%weight(first:last)*omega(first:last)* &
-               state%jump(first:last))
+               state%jump(first:last)))
          end do
       end associate
    end subroutine quantities_of_state
@@ -74,12 +75,13 @@ contains
       type(contact_pairs_type), intent(in) :: pairs   !! the pairs of the interface
       real(dp), intent(in) :: values(:)               !! as quantities_of gave them
       real(dp) :: resolution(size(values))            !! to either side [length]
+      integer :: q
 
-      resolution = 0.0_dp
-      resolution(at_edge_contact) = known_contact_edge*spacing_at(pairs%arc_length, &
-         values(at_edge_contact))
-      resolution(at_edge_stick) = known_stick_edge*spacing_at(pairs%arc_length, &
-         values(at_edge_stick))
+      do q = 1, size(values)
+         resolution(q) = 0.0_dp
+         if (estimated(q)%resolution > 0.0_dp) resolution(q) = estimated(q)%resolution* &
+            spacing_at(pairs%arc_length, values(q))
+      end do
    end function edge_resolution
 
    !> Distance of the pairs on both sides of a place; 0 at or beyond the last pair.

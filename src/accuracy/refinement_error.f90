@@ -19,7 +19,7 @@ module refinement_error
    use increment_solution, only: recover_fields, solve_pairs
    use increments, only: simulation_type
    use interface_operators, only: interface_operators_type
-   use interface_quantities, only: quantities_of, quantities_of_state
+   use interface_quantities, only: contact_of, quantities_of, quantities_of_state
    use kinds, only: dp
    use linked_relaxation, only: joint_type, relax
    use load_courses, only: step_clock_type
@@ -27,7 +27,7 @@ module refinement_error
    use model, only: model_type
    use pair_rows, only: find_held_axes
    use refined_pairs, only: refined_pairs_type
-   use records, only: at_normal_force, at_shear_force
+   use records, only: contact_record_type
    use refined_model, only: refined_model_type
    use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
@@ -246,6 +246,7 @@ contains
       type(refined_model_type), intent(in) :: refined
       type(corrected_type), intent(in) :: fields
       real(dp), intent(out) :: values(:, :)
+      type(contact_record_type) :: contact
       real(dp) :: rates(size(refined%old_pair))
       logical, allocatable :: closed(:)
       integer :: first, i, last
@@ -256,13 +257,14 @@ contains
             first = refined%pairs%interface_start(i)
             last = refined%pairs%interface_start(i + 1) - 1
             closed = pairs%status(first:last) /= status_open
-            values(:, i) = quantities_of(refined%interfaces(i), refined%pairs%friction(first), &
+            contact = contact_of(refined%interfaces(i), refined%pairs%friction(first), &
                pairs%status(first:last), max(pairs%gap(first:last), 0.0_dp), &
                merge(pairs%force(first:last), 0.0_dp, closed), &
                merge(pairs%shear_force(first:last), 0.0_dp, closed), rates(first:last))
             ! What the old mesh lacks at open pairs, the new ones about them carry.
-            values(at_normal_force, i) = sum(pairs%force(first:last))
-            values(at_shear_force, i) = sum(pairs%shear_force(first:last))
+            contact%normal_force = sum(pairs%force(first:last))
+            contact%shear_force = sum(pairs%shear_force(first:last))
+            values(:, i) = quantities_of(refined%interfaces(i), contact)
          end do
       end associate
    end subroutine measure

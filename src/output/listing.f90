@@ -103,7 +103,7 @@ contains
 
       call print_increment(self%text%unit, record)
       do i = 1, size(pairs)
-         call print_interface(self%text%unit, pairs(i)%name, record%contacts(i))
+         call print_interface(self%text%unit, pairs(i), record%contacts(i))
          call self%diagrams(i)%add(record, record%contacts(i)%status)
       end do
       call print_balances(self%text%unit, record, model%steps(record%step)%analysis)

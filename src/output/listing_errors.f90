@@ -2,10 +2,13 @@
 !> interface, those of the mesh, of the increments and of the iteration beside each other.
 module listing_errors
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_quantities, only: estimated, total_errors
+   use increment_quantities, only: body_values
    use kinds, only: dp
    use listing_text, only: column
-   use records, only: estimated_names, estimated_quantities, increment_record_type, &
-      interface_errors_type, is_band
+   use quantity_types, only: of_bodies, quantity_type
+   use records, only: increment_record_type, interface_errors_type
+   use reported_quantities, only: quantities
    implicit none
    private
    public :: print_body_errors, print_interface_errors
@@ -20,19 +23,26 @@ contains
    subroutine print_body_errors(unit, record)
       integer, intent(in) :: unit                         !! unit of the listing
       type(increment_record_type), intent(in) :: record   !! the increment
-      integer :: b, bodies
+      type(quantity_type), allocatable :: errors(:)
+      real(dp), allocatable :: values(:)
+      character(:), allocatable :: line
+      integer :: b, bodies, i
 
       if (.not. record%last_of_step) return
+      errors = pack(quantities, quantities%kind == of_bodies)
       bodies = 0
-      if (allocated(record%stress_error%body)) bodies = size(record%stress_error%body)
-      if (allocated(record%heat_flux_error%body)) bodies = size(record%heat_flux_error%body)
+      do i = 1, size(errors)
+         bodies = max(bodies, size(body_values(errors(i)%name, record)))
+      end do
       do b = 1, bodies
-         write (unit, '(3x, a, i0)', advance='no') 'estimated error of the mesh, body ', b
-         if (allocated(record%stress_error%body)) write (unit, '(2a)', advance='no') &
-            '   stress', column(record%stress_error%body(b), 9, 2)
-         if (allocated(record%heat_flux_error%body)) write (unit, '(2a)', advance='no') &
-            '   heat flux', column(record%heat_flux_error%body(b), 9, 2)
-         write (unit, '(a)') '  (energy norm, relative)'
+         line = ''
+         do i = 1, size(errors)
+            values = body_values(errors(i)%name, record)
+            if (b > size(values)) cycle
+            line = line//'   '//trim(errors(i)%label)//column(values(b), 9, 2)
+         end do
+         write (unit, '(3x, a, i0, 2a)') 'estimated error of the mesh, body ', b, line, &
+            '  (energy norm, relative)'
       end do
    end subroutine print_body_errors
 
@@ -41,19 +51,21 @@ contains
       integer, intent(in) :: unit                          !! unit of the listing
       character(*), intent(in) :: name                     !! name of the interface
       type(interface_errors_type), intent(in) :: errors    !! its errors
-      real(dp) :: total(estimated_quantities)
-      integer :: q
+      real(dp) :: total(size(estimated))
+      integer :: q, width
 
-      total = errors%total()
+      width = maxval(len_trim(estimated%name))
+      total = total_errors(errors)
       write (unit, '(/, 3a)') '   ESTIMATED ERRORS OF ', name, &
          ': what is missing to the exact value (+-: to either side)'
-      write (unit, '(3x, a14, a14, a13, 2a14, a12, a11, a14)') '', 'value', 'mesh', 'increments', &
-         'iteration', 'together', '%', 'largest part'
-      do q = 1, estimated_quantities
+      write (unit, '(4x, a, a14, a13, 2a14, a12, a11, a14)') repeat(' ', width), 'value', &
+         'mesh', 'increments', 'iteration', 'together', '%', 'largest part'
+      do q = 1, size(estimated)
          associate (value => errors%value(q))
             if (.not. is_worth_telling(value, total(q))) cycle
-            write (unit, '(3x, a14, a14, a3, a10, a14, a14, a12, a11, a14)') spaced( &
-               estimated_names(q)), column(value, 14, 6), merge(' +-', '   ', is_band(q)), &
+            write (unit, '(4x, a, a14, a3, a10, a14, a14, a12, a11, a14)') &
+               spaced(estimated(q)%name(:width)), column(value, 14, 6), &
+               merge(' +-', '   ', estimated(q)%resolution > 0.0_dp), &
                shown(errors%mesh(q), 10), shown(errors%increment(q), 14), &
                shown(errors%iteration(q), 14), shown(total(q), 12), percent(total(q), value), &
                largest_part(errors, q)

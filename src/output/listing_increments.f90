@@ -1,10 +1,16 @@
 !> The block of an accepted increment in the listing.
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_pairs, only: contact_pairs_type
+   use contact_quantities, only: contact_values
    use contact_states, only: status_open, status_stick
+   use increment_quantities, only: history_value
    use kinds, only: dp
    use listing_text, only: column, print_wrapped
+   use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, needs_nothing, &
+      of_history, of_interface, quantity_type
    use records, only: attempt_record_type, contact_record_type, increment_record_type
+   use reported_quantities, only: quantities
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    use zone_diagram, only: zone_counts
@@ -28,11 +34,10 @@ contains
       passes = size(record%iterations)
       if (passes == 0) return
       write (unit, '(3x, 2(a, i0), 5a)') 'passes ', passes, '   cut-backs ', record%cut_backs, &
-         '   residual', column(record%iterations(passes)%residual, 9, 2), '  (floor', &
-         column(record%residual_floor, 9, 2), ')'
-      if (.not. ieee_is_nan(record%coupling_gain)) write (unit, '(3x, 4a)') &
-         'quasi-static coupling gain ', text_or_none(record%coupling_gain), &
-         '   largest real one ', text_or_none(record%coupling_gain_max)
+         '   residual', column(history_value('residual', record), 9, 2), '  (floor', &
+         column(history_value('residual_floor', record), 9, 2), ')'
+      if (.not. ieee_is_nan(record%coupling_gain)) write (unit, '(a)') &
+         history_line(needs_coupling, record)
    end subroutine print_increment
 
    !> Prints the attempts at an increment that failed.
@@ -49,25 +54,72 @@ contains
    end subroutine print_attempts
 
    !> Prints zones, edges and sums of an interface.
-   subroutine print_interface(unit, name, contact)
+   subroutine print_interface(unit, pairs, contact)
       integer, intent(in) :: unit                         !! unit of the listing
-      character(*), intent(in) :: name                    !! name of the interface
+      type(contact_pairs_type), intent(in) :: pairs       !! the interface
       type(contact_record_type), intent(in) :: contact    !! its state
-      integer :: zones(3)
+      type(quantity_type) :: quantity
+      character(:), allocatable :: edges, sums
+      real(dp) :: value(1)
+      integer :: i, zones(3)
 
+      edges = ''
+      sums = ''
+      do i = 1, size(quantities)
+         quantity = quantities(i)
+         if (quantity%kind /= of_interface .or. quantity%label == '') cycle
+         if (quantity%needs == needs_heat .and. .not. allocated(contact%heat_flux)) cycle
+         value = contact_values(quantity%name, pairs, contact)
+         if (quantity%resolution > 0.0_dp) then
+            edges = edges//told(quantity, value(1))
+         else
+            sums = sums//told(quantity, value(1))
+         end if
+      end do
       zones = zone_counts(contact%status)
-      write (unit, '(3x, a, 3(a, i0), 4a)') name, '   I ', zones(1), '   II ', zones(2), &
-         '   III ', zones(3), '   edge of contact s = ', text_or_none(contact%edge_contact), &
-         '   of stick s = ', text_or_none(contact%edge_stick)
-      write (unit, '(6x, 4a)', advance='no') 'normal force', &
-         column(contact%normal_force, 14, 6), '   shear force', column(contact%shear_force, 14, 6)
-      if (allocated(contact%heat_flux)) then
-         write (unit, '(2a)', advance='no') '   heat rate', column(contact%heat_rate, 14, 6)
-      end if
-      write (unit, '()')
+      write (unit, '(3x, a, 3(a, i0), a)') pairs%name, '   I ', zones(1), '   II ', zones(2), &
+         '   III ', zones(3), edges
+      write (unit, '(3x, a)') sums
       call print_surplus(unit, 'contact', edge_count(contact%status /= status_open))
       call print_surplus(unit, 'stick', edge_count(contact%status == status_stick))
    end subroutine print_interface
+
+   !> The quantities of an increment that need the same, with their labels.
+   pure function history_line(needs, record) result(line)
+      integer, intent(in) :: needs
+      type(increment_record_type), intent(in) :: record
+      character(:), allocatable :: line
+      type(quantity_type) :: quantity
+      integer :: i
+
+      line = ''
+      do i = 1, size(quantities)
+         quantity = quantities(i)
+         if (quantity%kind /= of_history .or. quantity%needs /= needs) cycle
+         if (quantity%label /= '') line = line//told(quantity, history_value(quantity%name, record))
+      end do
+   end function history_line
+
+   !> A quantity with its label before it: edges and gains as one writes numbers, the others in
+   !> columns.
+   pure function told(quantity, value) result(words)
+      type(quantity_type), intent(in) :: quantity
+      real(dp), intent(in) :: value
+      character(:), allocatable :: words
+
+      words = '   '//trim(quantity%label)
+      if (quantity%resolution > 0.0_dp .or. quantity%needs == needs_coupling) then
+         if (ieee_is_nan(value)) then
+            words = words//' none'
+         else
+            words = words//' '//to_text(value)
+         end if
+      else if (quantity%unit == '-') then
+         words = words//column(value, 9, 2)
+      else
+         words = words//column(value, 14, 6)
+      end if
+   end function told
 
    !> Ends of zones between two pairs.
    pure integer function edge_count(in_zone)
@@ -86,30 +138,16 @@ contains
          edges_kept
    end subroutine print_surplus
 
-   function text_or_none(value) result(string)
-      real(dp), intent(in) :: value
-      character(:), allocatable :: string
-
-      string = 'none'
-      if (.not. ieee_is_nan(value)) string = to_text(value)
-   end function text_or_none
-
    !> Prints what balances, and the work of the re-factorisation.
    subroutine print_balances(unit, record, analysis)
       integer, intent(in) :: unit                         !! unit of the listing
       type(increment_record_type), intent(in) :: record   !! the increment
       integer, intent(in) :: analysis                     !! one of the analysis_* constants
 
-      if (solves_heat(analysis)) then
-         write (unit, '(3x, 8a)') 'heat in', column(record%heat_in, 14, 6), '   out', &
-            column(record%heat_out, 14, 6), '   heat imbalance', &
-            column(record%heat_imbalance, 9, 2), '   at this instant', &
-            column(record%heat_imbalance_pointwise, 9, 2)
-      end if
-      if (solves_mechanics(analysis)) then
-         write (unit, '(3x, 4a)') 'force imbalance', column(record%force_imbalance, 9, 2), &
-            '   contact conditions violated by', column(record%contact_violation, 9, 2)
-      end if
+      if (history_line(needs_nothing, record) /= '') write (unit, '(a)') &
+         history_line(needs_nothing, record)
+      if (solves_heat(analysis)) write (unit, '(a)') history_line(needs_heat, record)
+      if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
       associate (work => record%work)
          if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &
             'factored again ', work%columns_again, ' of ', work%columns_full, ' columns (', &

@@ -1,9 +1,14 @@
 !> Tables of the listing: *CONTACT PRINT, the iteration history, the *VERIFY verdicts.
 module listing_tables
    use contact_pairs, only: contact_pairs_type
-   use listing_text, only: column
+   use contact_quantities, only: contact_values, geometry_values
+   use increment_quantities, only: pass_value
+   use kinds, only: dp
+   use listing_text, only: column, table_cell, table_head
    use model, only: verify_type
+   use quantity_types, only: needs_heat, of_pairs, of_passes, quantity_type
    use records, only: contact_record_type
+   use reported_quantities, only: quantities
    use run_summaries, only: or_blank
    use solution_report, only: iteration_record_type
    use text, only: to_text
@@ -22,26 +27,33 @@ contains
       type(contact_pairs_type), intent(in) :: pairs       !! pairs of the interface
       type(contact_record_type), intent(in) :: contact    !! their state
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
-      logical :: has_heat
-      integer :: k
+      type(quantity_type), allocatable :: columns(:)
+      real(dp), allocatable :: values(:, :)
+      integer :: i, k
 
-      has_heat = allocated(contact%conductance)
+      columns = pack(quantities, quantities%kind == of_pairs .and. quantities%width > 0 .and. &
+         (quantities%needs /= needs_heat .or. allocated(contact%conductance)))
+      allocate (values(size(pairs%slave_node), size(columns)))
       write (unit, '(/, 2a)') '   CONTACT PAIRS OF ', pairs%name
-      write (unit, '(a4, 2a8, 2a11, a5, 2a10, 2a11)', advance='no') 'pair', 'slave', 'master', &
-         'x', 'y', 'zone', 'gap', 'p', 'tau', 'slip'
-      if (has_heat) write (unit, '(2a11, a10, a11)', advance='no') 'T1', 'T2', 'omega', 'q'
+      write (unit, '(a)', advance='no') 'pair'
+      do i = 1, size(columns)
+         write (unit, '(a)', advance='no') table_head(columns(i))
+         if (columns(i)%is_geometry) then
+            values(:, i) = geometry_values(columns(i)%name, pairs, node_number)
+         else
+            values(:, i) = contact_values(columns(i)%name, pairs, contact)
+         end if
+      end do
       write (unit, '()')
-      do k = 1, size(pairs%slave_node)
-         write (unit, '(i4, 2i8, 2a, a5, 4a)', advance='no') k, &
-            node_number(pairs%slave_node(k)), node_number(pairs%master_node(k)), &
-            column(pairs%position(1, k), 11, 3), column(pairs%position(2, k), 11, 3), &
-            adjustr('  '//zone_numeral(contact%status(k))), column(contact%gap(k), 10, 3), &
-            column(contact%pressure(k), 10, 3), column(contact%shear(k), 11, 3), &
-            column(contact%slip(k), 11, 3)
-         if (has_heat) write (unit, '(4a)', advance='no') &
-            column(contact%slave_temperature(k), 11, 3), &
-            column(contact%master_temperature(k), 11, 3), column(contact%conductance(k), 10, 3), &
-            column(contact%heat_flux(k), 11, 3)
+      do k = 1, size(values, 1)
+         write (unit, '(i4)', advance='no') k
+         do i = 1, size(columns)
+            if (columns(i)%name == 'status') then
+               write (unit, '(a5)', advance='no') zone_numeral(nint(values(k, i)))
+            else
+               write (unit, '(a)', advance='no') table_cell(columns(i), values(k, i))
+            end if
+         end do
          write (unit, '()')
       end do
    end subroutine print_contact_table
@@ -50,17 +62,15 @@ contains
    subroutine print_iterations(unit, iterations)
       integer, intent(in) :: unit                               !! unit of the listing
       type(iteration_record_type), intent(in) :: iterations(:)  !! passes, in their order
-      integer :: i
+      type(quantity_type), allocatable :: columns(:)
+      integer :: i, k
 
+      columns = pack(quantities, quantities%kind == of_passes)
       write (unit, '(/, a)') '   ITERATION HISTORY'
-      write (unit, '(a12, a11, a12, 2a11, a8, a15, a11)') 'increment', 'iteration', 'residual', &
-         'g min', 'g max', 'g kept', 'pairs changed', 'cut-backs'
-      do i = 1, size(iterations)
-         associate (pass => iterations(i))
-            write (unit, '(i12, i11, a, 2f11.6, i8, i15, i11)') pass%increment, &
-               pass%iteration, column(pass%residual, 12, 3), pass%g_min, pass%g_max, pass%g_kept, &
-               pass%pairs_changed, pass%cut_backs
-         end associate
+      write (unit, '(*(a))') (table_head(columns(i)), i=1, size(columns))
+      do k = 1, size(iterations)
+         write (unit, '(*(a))') (table_cell(columns(i), pass_value(columns(i)%name, &
+            iterations(k))), i=1, size(columns))
       end do
    end subroutine print_iterations
 

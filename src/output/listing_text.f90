@@ -2,11 +2,12 @@
 module listing_text
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use kinds, only: dp
-   use text, only: string_type
+   use quantity_types, only: quantity_type
+   use text, only: string_type, to_text
    implicit none
    private
    public :: page_width, print_title, print_wrapped, print_list, print_deck
-   public :: column, in_columns
+   public :: column, in_columns, table_cell, table_head
 
    integer, parameter :: page_width = 132   !! columns of the line printer
 
@@ -56,6 +57,31 @@ contains
 
       digit = achar(iachar('0') + number)
    end function digit
+
+   !> A quantity in its column of a table: integers to the right, plain numbers with six decimals.
+   pure function table_cell(quantity, value) result(string)
+      type(quantity_type), intent(in) :: quantity   !! which one; has a column
+      real(dp), intent(in) :: value                 !! its value
+      character(quantity%width) :: string
+
+      if (quantity%is_integer) then
+         string = to_text(nint(value))
+         string = adjustr(string)
+      else if (quantity%is_plain) then
+         write (string, '(f'//to_text(quantity%width)//'.6)') value
+      else
+         string = column(value, quantity%width, 3)
+      end if
+   end function table_cell
+
+   !> The head of the column of a quantity.
+   pure function table_head(quantity) result(string)
+      type(quantity_type), intent(in) :: quantity   !! which one; has a column
+      character(quantity%width) :: string
+
+      string = quantity%head
+      string = adjustr(string)
+   end function table_head
 
    !> Numbers in columns side by side.
    pure function in_columns(values, width, decimals) result(string)

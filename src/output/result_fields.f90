@@ -2,15 +2,19 @@
 !> due.
 !> The geometry is static, so its offsets are zero at every step.
 module result_fields
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_pairs, only: contact_pairs_type
+   use contact_quantities, only: contact_values
    use errors, only: error_type
+   use field_quantities, only: element_values, point_values
    use growing_datasets, only: growing_dataset, growing_dataset_type
    use hdf5, only: hid_t
    use hdf5_attributes, only: write_attribute
    use hdf5_helpers, only: as_long, as_real, create_group, link_dataset
    use kinds, only: dp
-   use record_values, only: contact_values, name_length, not_a_number, point_values
+   use quantity_types, only: of_elements, of_pairs, of_points, quantity_type
    use records, only: increment_record_type
+   use reported_quantities, only: datasets
    use result_mesh, only: cell_data_names, cell_group, point_group, steps_group
    implicit none
    private
@@ -21,8 +25,10 @@ module result_fields
    integer, parameter :: at_cell_offset = 6
    integer, parameter :: step_sets = 6
 
-   !> Fields of the result file. `sets` holds those of Steps, then one for each of `names`, then one
-   !> for each of `cell_names`.
+   character(*), parameter :: mark = 'contact_'   !! before names of quantities of pairs
+
+   !> Fields of the result file. `sets` holds those of Steps, then one for each of `point_data`,
+   !> then one for each of `cell_data`.
    type :: field_results_type
       private
       integer, allocatable, public :: point_node(:)              !! (points) node index
@@ -30,8 +36,8 @@ module result_fields
       integer, allocatable :: face_interface(:)                  !! their interface
       integer, allocatable :: face_pair(:)                       !! their pair in it
       integer :: increments = 0                                  !! increments appended
-      character(name_length), allocatable :: names(:)            !! point data that varies
-      character(name_length), allocatable :: cell_names(:)       !! cell data that varies
+      type(quantity_type), allocatable :: point_data(:)          !! point data that varies
+      type(quantity_type), allocatable :: cell_data(:)           !! cell data that varies
       integer :: cells = 0                                       !! number of cells
       type(growing_dataset_type), allocatable, public :: sets(:) !! what grows
    contains
@@ -45,41 +51,40 @@ module result_fields
 contains
 
    !> Prepares the datasets.
-   subroutine start(self, pairs, point_node, cells, has_temperature, has_heat, has_mechanics, &
-      expected)
+   subroutine start(self, pairs, point_node, cells, has, expected)
       class(field_results_type), intent(inout) :: self   !! the fields
       type(contact_pairs_type), intent(in) :: pairs(:)   !! pairs of every interface
       integer, intent(in) :: point_node(:)               !! (points) node index of each point
       integer, intent(in) :: cells                       !! number of elements
-      logical, intent(in) :: has_temperature             !! whether temperatures matter
-      logical, intent(in) :: has_heat                    !! whether a step solves heat
-      logical, intent(in) :: has_mechanics               !! whether a step solves mechanics
+      logical, intent(in) :: has(0:)                     !! what the deck solves, by needs_*
       integer, intent(in) :: expected                    !! increments that are expected
-      integer :: i
+      integer :: i, width
 
       self%point_node = point_node
       call find_faces(self, pairs)
-      self%names = field_names(has_temperature, has_heat, has_mechanics, size(pairs) > 0)
+      self%point_data = datasets(of_points, has)
+      if (size(pairs) > 0) self%point_data = [self%point_data, on_faces(datasets(of_pairs, has))]
       self%cells = cells
-      self%cell_names = pack([character(name_length) :: 'stress_error', 'heat_flux_error'], &
-         [has_mechanics, has_heat])
-      allocate(self%sets(step_sets + size(self%names) + size(self%cell_names)))
+      self%cell_data = datasets(of_elements, has)
+      allocate(self%sets(step_sets + size(self%point_data) + size(self%cell_data)))
       self%sets(at_values) = growing_dataset(steps_group//'Values', as_real, 0, 1, expected)
       self%sets(at_zero) = growing_dataset(steps_group//'PartOffsets', as_long, 0, 1, expected)
       self%sets(at_zero_column) = growing_dataset(steps_group//'CellOffsets', as_long, 1, 1, &
          expected)
       self%sets(at_one) = growing_dataset(steps_group//'NumberOfParts', as_long, 0, 1, expected)
       self%sets(at_offset) = growing_dataset(steps_group//'PointDataOffsets/'// &
-         trim(self%names(1)), as_long, 0, 1, expected)
+         trim(self%point_data(1)%name), as_long, 0, 1, expected)
       self%sets(at_cell_offset) = growing_dataset(steps_group//'CellDataOffsets/'// &
-         trim(self%cell_names(1)), as_long, 0, 1, expected)
-      do i = 1, size(self%names)
-         self%sets(step_sets + i) = growing_dataset(point_group//trim(self%names(i)), as_real, &
-            components(self%names(i)), size(point_node), expected)
+         trim(self%cell_data(1)%name), as_long, 0, 1, expected)
+      do i = 1, size(self%point_data)
+         width = self%point_data(i)%values
+         if (width == 1) width = 0
+         self%sets(step_sets + i) = growing_dataset(point_group// &
+            trim(self%point_data(i)%name), as_real, width, size(point_node), expected)
       end do
-      do i = 1, size(self%cell_names)
-         self%sets(step_sets + size(self%names) + i) = growing_dataset(cell_group// &
-            trim(self%cell_names(i)), as_real, 0, cells, expected)
+      do i = 1, size(self%cell_data)
+         self%sets(step_sets + size(self%point_data) + i) = growing_dataset(cell_group// &
+            trim(self%cell_data(i)%name), as_real, 0, cells, expected)
       end do
    end subroutine start
 
@@ -96,12 +101,13 @@ contains
       call self%sets(at_one)%append([1.0_dp])
       call self%sets(at_offset)%append([real(self%increments, dp)*size(self%point_node)])
       call self%sets(at_cell_offset)%append([real(self%increments, dp)*self%cells])
-      do i = 1, size(self%names)
-         call self%sets(step_sets + i)%append(field_values(self, self%names(i), record, pairs))
+      do i = 1, size(self%point_data)
+         call self%sets(step_sets + i)%append(field_values(self, self%point_data(i), record, &
+            pairs))
       end do
-      do i = 1, size(self%cell_names)
-         call self%sets(step_sets + size(self%names) + i)%append(cell_values(self, &
-            self%cell_names(i), record))
+      do i = 1, size(self%cell_data)
+         call self%sets(step_sets + size(self%point_data) + i)%append(or_nan(element_values( &
+            self%cell_data(i)%name, record), self%cells))
       end do
       self%increments = self%increments + 1
    end subroutine append
@@ -115,7 +121,7 @@ contains
 
       call create_group(file, steps_group, error)
       if (allocated(error)) return
-      if (size(self%names) > 0) call create_group(file, steps_group//'PointDataOffsets', error)
+      if (size(self%point_data) > 0) call create_group(file, steps_group//'PointDataOffsets', error)
       if (allocated(error)) return
       call create_group(file, steps_group//'CellDataOffsets', error)
    end subroutine create_groups
@@ -138,13 +144,14 @@ contains
       if (allocated(error)) return
       call link_dataset(file, zeros, points//'node_id', error)
       if (allocated(error)) return
-      do i = 2, size(self%names)
-         call link_dataset(file, points//trim(self%names(1)), points//trim(self%names(i)), error)
+      do i = 2, size(self%point_data)
+         call link_dataset(file, points//trim(self%point_data(1)%name), &
+            points//trim(self%point_data(i)%name), error)
          if (allocated(error)) return
       end do
-      do i = 2, size(self%cell_names)
-         call link_dataset(file, cells//trim(self%cell_names(1)), cells//trim(self%cell_names(i)), &
-            error)
+      do i = 2, size(self%cell_data)
+         call link_dataset(file, cells//trim(self%cell_data(1)%name), &
+            cells//trim(self%cell_data(i)%name), error)
          if (allocated(error)) return
       end do
       do i = 1, size(cell_data_names)
@@ -163,36 +170,17 @@ contains
       call write_attribute(file, steps_group, 'NSteps', self%increments, error)
    end subroutine write_count
 
-   pure function field_names(has_temperature, has_heat, has_mechanics, has_contact) result(names)
-      logical, intent(in) :: has_temperature
-      logical, intent(in) :: has_heat
-      logical, intent(in) :: has_mechanics
-      logical, intent(in) :: has_contact
-      character(name_length), allocatable :: names(:)
+   !> The quantities of pairs that are fields too, by their names as such.
+   pure function on_faces(of_interface) result(fields)
+      type(quantity_type), intent(in) :: of_interface(:)
+      type(quantity_type), allocatable :: fields(:)
+      integer :: i
 
-      allocate(names(0))
-      if (has_mechanics) names = [character(name_length) :: 'displacement', 'stress', 'von_mises']
-      if (has_temperature) names = [character(name_length) :: names, 'temperature']
-      if (has_heat) names = [character(name_length) :: names, 'heat_flux']
-      if (has_contact) names = [character(name_length) :: names, 'contact_pressure', &
-         'contact_shear', 'contact_gap', 'contact_status']
-      if (has_contact .and. has_heat) names = [character(name_length) :: names, &
-         'contact_conductance', 'contact_heat_flux']
-   end function field_names
-
-   pure function components(name) result(count)
-      character(*), intent(in) :: name
-      integer :: count
-
-      select case (name)
-      case ('displacement', 'heat_flux')
-         count = 3
-      case ('stress')
-         count = 4
-      case default
-         count = 0
-      end select
-   end function components
+      fields = pack(of_interface, of_interface%is_on_faces)
+      do i = 1, size(fields)
+         fields(i)%name = mark//fields(i)%name
+      end do
+   end function on_faces
 
    subroutine find_faces(self, pairs)
       class(field_results_type), intent(inout) :: self
@@ -213,60 +201,30 @@ contains
       self%face_pair = pair_of(self%point_node(self%face_point))
    end subroutine find_faces
 
-   function field_values(self, name, record, pairs) result(values)
+   function field_values(self, quantity, record, pairs) result(values)
       class(field_results_type), intent(in) :: self
-      character(*), intent(in) :: name
+      type(quantity_type), intent(in) :: quantity
       type(increment_record_type), intent(in) :: record
       type(contact_pairs_type), intent(in) :: pairs(:)
       real(dp), allocatable :: values(:)
 
-      allocate(values(0))
-      associate (fields => record%fields)
-         select case (name)
-         case ('displacement')
-            if (allocated(fields%displacement)) then
-               values = as_vectors(fields%displacement(:, self%point_node))
-            end if
-         case ('heat_flux')
-            if (allocated(fields%heat_flux)) values = as_vectors(fields%heat_flux)
-         case ('stress')
-            if (allocated(fields%stress)) values = reshape(fields%stress, [size(fields%stress)])
-         case ('von_mises')
-            values = point_values('MISES', fields, self%point_node)
-         case ('temperature')
-            values = point_values('NT', fields, self%point_node)
-         case default
-            values = face_values(self, name(len('contact_') + 1:), record, pairs)
-         end select
-      end associate
-      if (size(values) == 0) then
-         deallocate(values)
-         allocate(values(max(1, components(name))*size(self%point_node)), source=not_a_number())
+      if (quantity%kind == of_pairs) then
+         values = face_values(self, quantity%name(len(mark) + 1:), record, pairs)
+      else
+         values = or_nan(point_values(quantity%name, record%fields, self%point_node), &
+            quantity%values*size(self%point_node))
       end if
    end function field_values
 
-   function cell_values(self, name, record) result(values)
-      class(field_results_type), intent(in) :: self
-      character(*), intent(in) :: name
-      type(increment_record_type), intent(in) :: record
-      real(dp), allocatable :: values(:)
+   !> As many values as are due, NaN where there are none.
+   pure function or_nan(values, due) result(filled)
+      real(dp), intent(in) :: values(:)
+      integer, intent(in) :: due
+      real(dp), allocatable :: filled(:)
 
-      if (name == 'stress_error') then
-         if (allocated(record%stress_error%element)) values = record%stress_error%element
-      else
-         if (allocated(record%heat_flux_error%element)) values = record%heat_flux_error%element
-      end if
-      if (.not. allocated(values)) allocate(values(self%cells), source=not_a_number())
-   end function cell_values
-
-   pure function as_vectors(plane) result(values)
-      real(dp), intent(in) :: plane(:, :)
-      real(dp) :: values(3*size(plane, 2))
-
-      values(1::3) = plane(1, :)
-      values(2::3) = plane(2, :)
-      values(3::3) = 0.0_dp
-   end function as_vectors
+      filled = values
+      if (size(values) == 0) filled = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, due)
+   end function or_nan
 
    function face_values(self, name, record, pairs) result(values)
       class(field_results_type), intent(in) :: self
@@ -276,7 +234,7 @@ contains
       real(dp), allocatable :: values(:), face(:)
       integer :: i, k
 
-      allocate(values(size(self%point_node)), source=not_a_number())
+      values = or_nan([real(dp) ::], size(self%point_node))
       do i = 1, size(pairs)
          face = contact_values(name, pairs(i), record%contacts(i))
          do k = 1, size(self%face_point)

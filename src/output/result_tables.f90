@@ -1,19 +1,20 @@
 !> Groups `/history`, `/convergence`, `/contact/<name>` and `/errors` of the result file.
 module result_tables
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_pairs, only: contact_pairs_type
+   use contact_quantities, only: contact_values, estimated, geometry_values
    use errors, only: error_type
    use growing_datasets, only: growing_dataset, growing_dataset_type
    use hdf5, only: hid_t
    use hdf5_attributes, only: write_attribute
    use hdf5_helpers, only: as_integer, as_real, create_group, write_array
+   use increment_quantities, only: body_values, history_value, pass_value
    use kinds, only: dp
-   use record_values, only: contact_edge_names, contact_heat_names, contact_pair_names, &
-      contact_total_names, contact_values, history_body_names, history_body_values, history_names, &
-      history_value, name_length
-   use records, only: contact_record_type, estimated_names, estimated_quantities, &
-      increment_record_type, interface_errors_type
+   use quantity_types, only: of_bodies, of_history, of_interface, of_pairs, of_passes, &
+      quantity_type
+   use records, only: contact_record_type, increment_record_type, interface_errors_type
+   use reported_quantities, only: datasets, quantities
    use solution_report, only: iteration_record_type
-   use zone_edges, only: edges_kept
    implicit none
    private
    public :: history_results_type, convergence_results_type, contact_results_type
@@ -22,20 +23,18 @@ module result_tables
    !> Group `/history`: one row an increment.
    type :: history_results_type
       integer :: bodies = 0                                !! number of bodies
-      character(name_length), allocatable :: names(:)      !! datasets that grow
-      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of names
+      type(quantity_type), allocatable :: quantities(:)    !! those that grow
+      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of them
    contains
       procedure :: start => start_history
       procedure :: append => append_history
       procedure, nopass :: write_static => write_history_static
    end type history_results_type
 
-   character(*), parameter :: convergence_names(7) = [character(name_length) :: 'increment', &
-      'iteration', 'residual', 'g_min', 'g_max', 'pairs_changed', 'cut_backs']
-
    !> Group `/convergence`: one row an iteration.
    type :: convergence_results_type
-      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of convergence_names
+      type(quantity_type), allocatable :: quantities(:)    !! those that grow
+      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of them
    contains
       procedure :: start => start_convergence
       procedure :: append => append_convergence
@@ -43,8 +42,8 @@ module result_tables
 
    !> Group `/contact/<name>` of one interface: one row an increment.
    type :: contact_results_type
-      character(name_length), allocatable :: names(:)      !! datasets that grow
-      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of names
+      type(quantity_type), allocatable :: quantities(:)    !! those that grow
+      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of them
    contains
       procedure :: start => start_contact
       procedure :: append => append_contact
@@ -54,7 +53,7 @@ module result_tables
    integer, parameter :: error_columns = 4   !! value, errors of mesh, increments and iteration
 
    !> Group `/errors`, where errors are estimated: one row a step. `sets` holds the times, then for
-   !> each interface one dataset for each of estimated_names.
+   !> each interface one dataset for each quantity with an estimate.
    type :: error_results_type
       type(growing_dataset_type), allocatable :: sets(:)
    contains
@@ -66,41 +65,49 @@ module result_tables
 contains
 
    !> Prepares the datasets.
-   subroutine start_history(self, has_heat, has_mechanics, has_coupling, bodies, expected)
+   subroutine start_history(self, has, bodies, expected)
       class(history_results_type), intent(inout) :: self  !! the group
-      logical, intent(in) :: has_heat                     !! whether a step solves heat
-      logical, intent(in) :: has_mechanics                !! whether a step solves mechanics
-      logical, intent(in) :: has_coupling                 !! whether a step couples both in contact
+      logical, intent(in) :: has(0:)                      !! what the deck solves, by needs_*
       integer, intent(in) :: bodies                       !! number of bodies
       integer, intent(in) :: expected                     !! increments that are expected
-      integer :: i, storage, width
+      integer :: i
 
-      self%names = pack(history_names, (has_heat .or. index(history_names, 'heat_') /= 1) .and. &
-         (has_mechanics .or. history_names /= 'force_imbalance') .and. &
-         (has_coupling .or. index(history_names, 'coupling_') /= 1))
       self%bodies = bodies
-      self%names = [self%names, pack(history_body_names, [has_mechanics, has_heat])]
-      allocate(self%sets(size(self%names)))
-      do i = 1, size(self%names)
-         storage = merge(as_integer, as_real, self%names(i) == 'iterations')
-         width = merge(bodies, 0, any(self%names(i) == history_body_names))
-         self%sets(i) = growing_dataset('/history/'//trim(self%names(i)), storage, width, 1, &
-            expected)
+      self%quantities = [datasets(of_history, has), datasets(of_bodies, has)]
+      allocate(self%sets(size(self%quantities)))
+      do i = 1, size(self%sets)
+         self%sets(i) = dataset('/history/', self%quantities(i), &
+            merge(bodies, 0, self%quantities(i)%kind == of_bodies), expected)
       end do
    end subroutine start_history
+
+   !> The dataset of a quantity: rows of `width` numbers, of single ones where that is 0.
+   pure function dataset(group, quantity, width, expected) result(set)
+      character(*), intent(in) :: group
+      type(quantity_type), intent(in) :: quantity
+      integer, intent(in) :: width, expected
+      type(growing_dataset_type) :: set
+
+      set = growing_dataset(group//trim(quantity%name), merge(as_integer, as_real, &
+         quantity%is_integer), width, 1, expected)
+   end function dataset
 
    !> Adds an increment.
    subroutine append_history(self, record)
       class(history_results_type), intent(inout) :: self  !! the group
       type(increment_record_type), intent(in) :: record   !! the increment
+      real(dp), allocatable :: values(:)
       integer :: i
 
       do i = 1, size(self%sets)
-         if (any(self%names(i) == history_body_names)) then
-            call self%sets(i)%append(history_body_values(self%names(i), record, self%bodies))
+         if (self%quantities(i)%kind == of_bodies) then
+            values = body_values(self%quantities(i)%name, record)
+            if (size(values) == 0) values = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, &
+               self%bodies)
          else
-            call self%sets(i)%append([history_value(self%names(i), record)])
+            values = [history_value(self%quantities(i)%name, record)]
          end if
+         call self%sets(i)%append(values)
       end do
    end subroutine append_history
 
@@ -115,18 +122,16 @@ contains
    end subroutine write_history_static
 
    !> Prepares the datasets.
-   subroutine start_convergence(self, expected)
+   subroutine start_convergence(self, has, expected)
       class(convergence_results_type), intent(inout) :: self  !! the group
+      logical, intent(in) :: has(0:)                          !! what the deck solves, by needs_*
       integer, intent(in) :: expected                         !! iterations that are expected
-      character(*), parameter :: real_names(3) = [character(name_length) :: 'residual', 'g_min', &
-         'g_max']
-      integer :: i, storage
+      integer :: i
 
-      allocate(self%sets(size(convergence_names)))
-      do i = 1, size(convergence_names)
-         storage = merge(as_real, as_integer, any(convergence_names(i) == real_names))
-         self%sets(i) = growing_dataset('/convergence/'//trim(convergence_names(i)), storage, 0, &
-            1, expected)
+      self%quantities = datasets(of_passes, has)
+      allocate(self%sets(size(self%quantities)))
+      do i = 1, size(self%sets)
+         self%sets(i) = dataset('/convergence/', self%quantities(i), 0, expected)
       end do
    end subroutine start_convergence
 
@@ -134,38 +139,29 @@ contains
    subroutine append_convergence(self, iterations)
       class(convergence_results_type), intent(inout) :: self   !! the group
       type(iteration_record_type), intent(in) :: iterations(:) !! passes, in their order
+      integer :: i
 
-      call self%sets(1)%append(real(iterations%increment, dp))
-      call self%sets(2)%append(real(iterations%iteration, dp))
-      call self%sets(3)%append((iterations%residual))
-      call self%sets(4)%append((iterations%g_min))
-      call self%sets(5)%append((iterations%g_max))
-      call self%sets(6)%append(real(iterations%pairs_changed, dp))
-      call self%sets(7)%append(real(iterations%cut_backs, dp))
+      do i = 1, size(self%sets)
+         call self%sets(i)%append(pass_value(self%quantities(i)%name, iterations))
+      end do
    end subroutine append_convergence
 
    !> Prepares the datasets.
-   subroutine start_contact(self, pairs, has_heat, expected)
+   subroutine start_contact(self, pairs, has, expected)
       class(contact_results_type), intent(inout) :: self  !! the group
       type(contact_pairs_type), intent(in) :: pairs       !! pairs of the interface
-      logical, intent(in) :: has_heat                     !! whether the deck has heat
+      logical, intent(in) :: has(0:)                      !! what the deck solves, by needs_*
       integer, intent(in) :: expected                     !! increments that are expected
-      integer :: i, width, storage
+      integer :: i, width
 
-      self%names = [contact_pair_names, contact_edge_names, contact_total_names]
-      if (has_heat) then
-         self%names = [contact_heat_names, self%names]
-      else
-         self%names = pack(self%names, self%names /= 'heat_rate')
-      end if
-      allocate(self%sets(size(self%names)))
-      do i = 1, size(self%names)
-         width = size(pairs%slave_node)
-         if (any(self%names(i) == contact_total_names)) width = 0
-         if (any(self%names(i) == contact_edge_names)) width = edges_kept
-         storage = merge(as_integer, as_real, self%names(i) == 'status')
-         self%sets(i) = growing_dataset('/contact/'//pairs%name//'/'//trim(self%names(i)), &
-            storage, width, 1, expected)
+      self%quantities = [datasets(of_pairs, has), datasets(of_interface, has)]
+      allocate(self%sets(size(self%quantities)))
+      do i = 1, size(self%sets)
+         associate (quantity => self%quantities(i))
+            width = merge(quantity%values, 0, quantity%values > 1)
+            if (quantity%kind == of_pairs) width = size(pairs%slave_node)
+            self%sets(i) = dataset('/contact/'//pairs%name//'/', quantity, width, expected)
+         end associate
       end do
    end subroutine start_contact
 
@@ -176,8 +172,8 @@ contains
       type(contact_record_type), intent(in) :: contact    !! their state
       integer :: i
 
-      do i = 1, size(self%names)
-         call self%sets(i)%append(contact_values(self%names(i), pairs, contact))
+      do i = 1, size(self%sets)
+         call self%sets(i)%append(contact_values(self%quantities(i)%name, pairs, contact))
       end do
    end subroutine append_contact
 
@@ -189,31 +185,32 @@ contains
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
       real(dp), intent(in) :: friction                    !! coefficient of friction [-]
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      character(:), allocatable :: group
+      character(:), allocatable :: group, path
+      real(dp), allocatable :: values(:)
+      integer :: i
 
       group = '/contact/'//pairs%name
       call create_group(file, group, error)
       if (allocated(error)) return
       call write_attribute(file, group, 'friction', friction, error)
       if (allocated(error)) return
-      call write_array(file, group//'/slave_node', node_number(pairs%slave_node), as_integer, error)
-      if (allocated(error)) return
-      call write_array(file, group//'/master_node', node_number(pairs%master_node), as_integer, &
-         error)
-      if (allocated(error)) return
-      call write_array(file, group//'/x', pairs%position(1, :), error)
-      if (allocated(error)) return
-      call write_array(file, group//'/y', pairs%position(2, :), error)
-      if (allocated(error)) return
-      call write_array(file, group//'/s', pairs%arc_length, error)
-      if (allocated(error)) return
-      call write_array(file, group//'/weight', pairs%weight, error)
+      do i = 1, size(quantities)
+         if (.not. quantities(i)%is_geometry) cycle
+         path = group//'/'//trim(quantities(i)%name)
+         values = geometry_values(quantities(i)%name, pairs, node_number)
+         if (quantities(i)%is_integer) then
+            call write_array(file, path, nint(values), as_integer, error)
+         else
+            call write_array(file, path, values, error)
+         end if
+         if (allocated(error)) return
+      end do
    end subroutine write_contact_static
 
    !> Prepares the datasets; none without an interface or without estimates.
-   subroutine start_errors(self, estimated, pairs, steps)
+   subroutine start_errors(self, has_estimates, pairs, steps)
       class(error_results_type), intent(inout) :: self    !! the group
-      logical, intent(in) :: estimated                    !! whether errors are estimated
+      logical, intent(in) :: has_estimates                !! whether errors are estimated
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: steps                        !! steps of the deck
       integer :: i, q
@@ -222,12 +219,12 @@ contains
          allocate(self%sets(0))
          return
       end if
-      allocate(self%sets(1 + estimated_quantities*size(pairs)))
+      allocate(self%sets(1 + size(estimated)*size(pairs)))
       self%sets(1) = growing_dataset('/errors/time', as_real, 0, 1, steps)
       do i = 1, size(pairs)
-         do q = 1, estimated_quantities
-            self%sets(1 + (i - 1)*estimated_quantities + q) = growing_dataset('/errors/'// &
-               pairs(i)%name//'/'//trim(estimated_names(q)), as_real, error_columns, 1, steps)
+         do q = 1, size(estimated)
+            self%sets(1 + (i - 1)*size(estimated) + q) = growing_dataset('/errors/'// &
+               pairs(i)%name//'/'//trim(estimated(q)%name), as_real, error_columns, 1, steps)
          end do
       end do
    end subroutine start_errors
@@ -241,8 +238,8 @@ contains
 
       call self%sets(1)%append([time])
       do i = 1, size(errors)
-         do q = 1, estimated_quantities
-            call self%sets(1 + (i - 1)*estimated_quantities + q)%append([errors(i)%value(q), &
+         do q = 1, size(estimated)
+            call self%sets(1 + (i - 1)*size(estimated) + q)%append([errors(i)%value(q), &
                errors(i)%mesh(q), errors(i)%increment(q), errors(i)%iteration(q)])
          end do
       end do

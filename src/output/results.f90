@@ -13,6 +13,8 @@ module results
    use hdf5_helpers, only: close_hdf5, create_group, open_hdf5, write_strings
    use kinds, only: dp, long
    use model, only: model_type
+   use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, needs_nothing, &
+      needs_temperature
    use records, only: increment_record_type
    use result_fields, only: field_results_type
    use result_mesh, only: write_result_mesh
@@ -84,26 +86,22 @@ contains
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      logical :: has_heat, has_mechanics
+      logical :: has(0:needs_coupling)
       integer :: i, expected
 
       call open_hdf5(error)
       if (allocated(error)) return
       self%element_points = element_points
       self%cards = cards
-      has_heat = any(solves_heat(model%steps%analysis))
-      has_mechanics = any(solves_mechanics(model%steps%analysis))
+      has = what_is_solved(model, size(pairs) > 0)
       expected = expected_increments(model)
-      call self%fields%start(pairs, point_node, size(model%mesh%element_kind), &
-         has_heat .or. any(model%materials%has_expansion), has_heat, has_mechanics, expected)
-      call self%history%start(has_heat, has_mechanics, size(pairs) > 0 .and. any(solves_heat( &
-         model%steps%analysis) .and. solves_mechanics(model%steps%analysis)), &
-         model%mesh%body_count, expected)
-      call self%convergence%start(8*expected)
+      call self%fields%start(pairs, point_node, size(model%mesh%element_kind), has, expected)
+      call self%history%start(has, model%mesh%body_count, expected)
+      call self%convergence%start(has, 8*expected)
       call self%errors%start(model%estimates_errors, pairs, size(model%steps))
       allocate(self%contacts(size(pairs)))
       do i = 1, size(pairs)
-         call self%contacts(i)%start(pairs(i), has_heat, expected)
+         call self%contacts(i)%start(pairs(i), has, expected)
       end do
    end subroutine open_results
 
@@ -185,6 +183,22 @@ contains
       call self%increments%close()
       call self%passes%close()
    end subroutine give_up
+
+   !> What steps of a deck solve, by needs_*.
+   pure function what_is_solved(model, has_contact) result(has)
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: has_contact
+      logical :: has(0:needs_coupling)
+
+      associate (analysis => model%steps%analysis)
+         has(needs_nothing) = .true.
+         has(needs_heat) = any(solves_heat(analysis))
+         has(needs_temperature) = has(needs_heat) .or. any(model%materials%has_expansion)
+         has(needs_mechanics) = any(solves_mechanics(analysis))
+         has(needs_coupling) = has_contact .and. any(solves_heat(analysis) .and. &
+            solves_mechanics(analysis))
+      end associate
+   end function what_is_solved
 
    pure function expected_increments(model) result(expected)
       type(model_type), intent(in) :: model

@@ -3,9 +3,11 @@
 module status_files
    use errors, only: error_type
    use file_calls, only: append_to_file, close_descriptor, open_new_file, try_file
-   use kinds, only: dp
-   use listing_text, only: column
+   use increment_quantities, only: history_value, pass_value
+   use listing_text, only: column, table_cell, table_head
+   use quantity_types, only: of_passes, quantity_type
    use records, only: increment_record_type
+   use reported_quantities, only: quantities
    use solution_report, only: iteration_record_type
    implicit none
    private
@@ -18,6 +20,7 @@ module status_files
       private
       character(:), allocatable :: path               !! path of the file
       character(:), allocatable :: heading            !! first line; begins with no digit
+      type(quantity_type), allocatable :: columns(:)  !! of `.cvg`
       integer :: descriptor = -1                      !! of the file while it is open
       integer :: waiting = 0                          !! lines not yet written
       character(line_length), allocatable :: lines(:) !! these lines
@@ -49,10 +52,18 @@ contains
    subroutine start_iterations(self, path)
       class(status_file_type), intent(inout) :: self  !! the file
       character(*), intent(in) :: path                !! its path
+      integer :: i
 
       self%path = path
-      self%heading = 'increment  iteration    residual       g min       g max  g kept'// &
-         '  pairs changed  cut-backs'
+      self%columns = pack(quantities, quantities%kind == of_passes)
+      ! The first number of a line is its first character.
+      self%columns(1)%width = len_trim(self%columns(1)%head)
+      where (.not. self%columns%is_integer) self%columns%width = max(self%columns%width, 12)
+      self%columns%is_plain = .false.
+      self%heading = ''
+      do i = 1, size(self%columns)
+         self%heading = self%heading//table_head(self%columns(i))
+      end do
       allocate(self%lines(256))
    end subroutine start_iterations
 
@@ -61,16 +72,11 @@ contains
       class(status_file_type), intent(inout) :: self      !! the `.sta` file
       type(increment_record_type), intent(in) :: record   !! the increment
       character(line_length) :: line
-      integer :: passes
-      real(dp) :: residual
 
-      passes = 0
-      residual = 0.0_dp
-      if (allocated(record%iterations)) passes = size(record%iterations)
-      if (passes > 0) residual = record%iterations(passes)%residual
       write (line, '(i0, t12, i4, 2a, i12, i11, 3a)') record%increment, record%step, &
-         column(record%time, 16, 8), column(record%load, 16, 8), passes, record%cut_backs, &
-         column(residual, 12, 3), column(record%heat_imbalance, 11, 2), &
+         column(record%time, 16, 8), column(record%load, 16, 8), &
+         nint(history_value('iterations', record)), record%cut_backs, &
+         column(history_value('residual', record), 12, 3), column(record%heat_imbalance, 11, 2), &
          column(record%force_imbalance, 11, 2)
       call add_line(self, line)
    end subroutine add_increment
@@ -79,14 +85,18 @@ contains
    subroutine add_iterations(self, iterations)
       class(status_file_type), intent(inout) :: self            !! the `.cvg` file
       type(iteration_record_type), intent(in) :: iterations(:)  !! passes, in their order
+      character(:), allocatable :: cells
       character(line_length) :: line
-      integer :: i
+      integer :: i, k
 
-      do i = 1, size(iterations)
-         associate (pass => iterations(i))
-            write (line, '(i0, t12, i9, 3a, i8, i15, i11)') pass%increment, pass%iteration, &
-               column(pass%residual, 12, 3), column(pass%g_min, 12, 3), &
-               column(pass%g_max, 12, 3), pass%g_kept, pass%pairs_changed, pass%cut_backs
+      do k = 1, size(iterations)
+         cells = ''
+         do i = 1, size(self%columns)
+            cells = cells//table_cell(self%columns(i), pass_value(self%columns(i)%name, &
+               iterations(k)))
+         end do
+         associate (first => self%columns(1)%width)
+            line = adjustl(cells(:first))//cells(first + 1:)
          end associate
          call add_line(self, line)
       end do

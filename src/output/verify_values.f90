@@ -1,28 +1,20 @@
 !> Finds in a record what a *VERIFY card asks for.
 module verify_values
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_pairs, only: contact_pairs_type
+   use contact_quantities, only: contact_values, geometry_values
+   use field_quantities, only: point_values
+   use increment_quantities, only: history_value
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: verify_type
-   use record_values, only: contact_values, history_names, history_value, name_length, &
-      not_a_number, point_values
+   use quantity_types, only: find_quantity, of_history, of_nodes, quantity_type
    use records, only: contact_record_type, increment_record_type
+   use reported_quantities, only: verifiable
    use text, only: read_integer, read_real, to_upper
    implicit none
    private
    public :: values_asked_for, is_on_interface
-
-   !> Datasets of `/contact/<name>` that can be checked.
-   character(name_length), parameter :: contact_names(22) = [character(name_length) :: &
-      'gap', 'pressure', 'shear', 'slip', 'status', 'conductance', 'heat_flux', &
-      'slave_temperature', 'master_temperature', 'normal_force', 'shear_force', 'heat_rate', &
-      'edge_contact', 'edge_stick', 'edges_contact', 'edges_stick', 'x', 'y', 's', 'weight', &
-      'slave_node', 'master_node']
-
-   !> Those of them that are numbers of a pair and have no values between two.
-   character(name_length), parameter :: numbers_of_pairs(3) = [character(name_length) :: &
-      'status', 'slave_node', 'master_node']
 
 contains
 
@@ -35,42 +27,28 @@ contains
       integer, intent(in) :: point_node(:)                 !! (points) node index of each point
       real(dp), allocatable, intent(out) :: values(:)      !! unallocated where there are none
       character(:), allocatable, intent(out) :: reason     !! why there are none; else empty
-      character(:), allocatable :: name
+      type(quantity_type) :: quantity
 
       reason = ''
-      name = known_name(check%quantity, contact_names)
-      if (name /= '') then
-         call contact_values_at(name, check%where, record, mesh, pairs, values, reason)
-         return
-      end if
-      name = known_name(check%quantity, history_names)
-      if (name /= '') then
-         values = [history_value(name, record)]
-         return
-      end if
-      values = point_values(to_upper(check%quantity), record%fields, point_node)
-      if (size(values) == 0) then
-         deallocate(values)
-         reason = 'this step has no '//check%quantity
-      else
-         call select_points(check%where, mesh, point_node, values, reason)
-      end if
+      quantity = verifiable(find_quantity(verifiable, check%quantity))
+      select case (quantity%kind)
+      case (of_history)
+         values = [history_value(quantity%name, record)]
+      case (of_nodes)
+         values = point_values(quantity%name, record%fields, point_node)
+         if (size(values) == 0) then
+            deallocate (values)
+            reason = 'this step has no '//check%quantity
+         else
+            call select_points(check%where, mesh, point_node, values, reason)
+         end if
+      case default
+         call contact_values_at(quantity, check%where, record, mesh, pairs, values, reason)
+      end select
    end subroutine values_asked_for
 
-   pure function known_name(quantity, names) result(name)
-      character(*), intent(in) :: quantity
-      character(*), intent(in) :: names(:)
-      character(:), allocatable :: name
-      integer :: i
-
-      name = ''
-      do i = 1, size(names)
-         if (to_upper(names(i)) == to_upper(quantity)) name = trim(names(i))
-      end do
-   end function known_name
-
-   subroutine contact_values_at(name, where, record, mesh, pairs, values, reason)
-      character(*), intent(in) :: name
+   subroutine contact_values_at(quantity, where, record, mesh, pairs, values, reason)
+      type(quantity_type), intent(in) :: quantity
       character(*), intent(in) :: where
       type(increment_record_type), intent(in) :: record
       type(mesh_type), intent(in) :: mesh
@@ -82,7 +60,7 @@ contains
       if (to_upper(where) == 'MIN' .or. to_upper(where) == 'MAX') then
          allocate(values(0))
          do i = 1, size(pairs)
-            values = [values, values_of(name, mesh, pairs(i), record%contacts(i))]
+            values = [values, values_of(quantity, mesh, pairs(i), record%contacts(i))]
          end do
          values = [extreme(values, to_upper(where))]
          return
@@ -91,33 +69,30 @@ contains
       if (at == 0) at = len(where) + 1
       do i = 1, size(pairs)
          if (to_upper(pairs(i)%name) /= to_upper(trim(where(:at - 1)))) cycle
-         values = values_of(name, mesh, pairs(i), record%contacts(i))
+         values = values_of(quantity, mesh, pairs(i), record%contacts(i))
          if (at < len(where)) call take_place(pairs(i), where(at + 1:), &
-            any(name == numbers_of_pairs), values, reason)
+            quantity%is_integer, values, reason)
          return
       end do
       reason = 'there is no contact pair "'//where(:at - 1)//'"'
    end subroutine contact_values_at
 
-   function values_of(name, mesh, pairs, contact) result(values)
-      character(*), intent(in) :: name
+   !> Values of an interface; of places in a list that is padded with NaN those that there are.
+   function values_of(quantity, mesh, pairs, contact) result(values)
+      type(quantity_type), intent(in) :: quantity
       type(mesh_type), intent(in) :: mesh
       type(contact_pairs_type), intent(in) :: pairs
       type(contact_record_type), intent(in) :: contact
       real(dp), allocatable :: values(:)
 
-      select case (name)
-      case ('slave_node')
-         values = real(mesh%node_number(pairs%slave_node), dp)
-      case ('master_node')
-         values = real(mesh%node_number(pairs%master_node), dp)
-      case ('edges_contact', 'edges_stick')
-         values = contact_values(name, pairs, contact)
-         values = pack(values, .not. ieee_is_nan(values))
-         if (size(values) == 0) values = [not_a_number()]
-      case default
-         values = contact_values(name, pairs, contact)
-      end select
+      if (quantity%is_geometry) then
+         values = geometry_values(quantity%name, pairs, mesh%node_number)
+      else
+         values = contact_values(quantity%name, pairs, contact)
+      end if
+      if (quantity%values == 1) return
+      values = pack(values, .not. ieee_is_nan(values))
+      if (size(values) == 0) values = [ieee_value(1.0_dp, ieee_quiet_nan)]
    end function values_of
 
    !> Whether an arc length lies on an interface.
@@ -200,7 +175,7 @@ contains
 
       numbers = pack(values, .not. ieee_is_nan(values))
       if (size(numbers) == 0) then
-         value = not_a_number()
+         value = ieee_value(value, ieee_quiet_nan)
       else if (which == 'MIN') then
          value = minval(numbers)
       else

@@ -11,30 +11,17 @@ module records
    public :: increment_record_type, contact_record_type
    public :: field_record_type, attempt_record_type
    public :: add_attempts, note_failure
-   public :: interface_errors_type, estimated_quantities, estimated_names, is_band
-   public :: at_normal_force, at_shear_force, at_heat_rate, at_peak_pressure, at_edge_contact, &
-      at_edge_stick
+   public :: interface_errors_type
 
-
-   integer, parameter :: estimated_quantities = 6   !! quantities with an estimated error
-   ! Their places in arrays over them.
-   integer, parameter :: at_normal_force = 1, at_shear_force = 2, at_heat_rate = 3
-   integer, parameter :: at_peak_pressure = 4, at_edge_contact = 5, at_edge_stick = 6
-   character(13), parameter :: estimated_names(estimated_quantities) = [character(13) :: &
-      'normal_force', 'shear_force', 'heat_rate', 'peak_pressure', 'edge_contact', &
-      'edge_stick']   !! in the order of interface_errors_type
-   logical, parameter :: is_band(estimated_quantities) = [.false., .false., .false., .false., &
-      .true., .true.]   !! whether its errors are bands to both sides
 
    !> Errors of an interface, as estimated: what would have to be added to the quantities, and of
-   !> edges how far they may be off either way. NaN where nothing can be said.
+   !> edges how far they may be off either way. NaN where nothing can be said. Arrays over the
+   !> quantities with an estimate (`estimated` of contact_quantities).
    type :: interface_errors_type
-      real(dp) :: value(estimated_quantities)       !! the quantities as computed
-      real(dp) :: mesh(estimated_quantities)        !! error of the mesh
-      real(dp) :: increment(estimated_quantities)   !! error of the size of the increments
-      real(dp) :: iteration(estimated_quantities)   !! largest error of the fixed point, >= 0
-   contains
-      procedure :: total => total_error
+      real(dp), allocatable :: value(:)        !! the quantities as computed
+      real(dp), allocatable :: mesh(:)         !! error of the mesh
+      real(dp), allocatable :: increment(:)    !! error of the size of the increments
+      real(dp), allocatable :: iteration(:)    !! largest error of the fixed point, >= 0
    end type interface_errors_type
 
    !> State of one contact interface; arrays over its pairs, in the order of contact_pairs_type.
@@ -128,16 +115,6 @@ module records
    end type increment_record_type
 
 contains
-
-   !> All errors together; those of the iteration count with the sign of the others.
-   pure function total_error(self) result(total)
-      class(interface_errors_type), intent(in) :: self   !! errors of an interface
-      real(dp) :: total(estimated_quantities)            !! as the errors of the mesh
-
-      total = self%mesh + self%increment
-      where (is_band) total = abs(self%mesh) + abs(self%increment)
-      total = total + sign(self%iteration, total)
-   end function total_error
 
    !> Puts the attempts at an increment that failed, with their passes and their work, before those
    !> of the last one.

@@ -14,6 +14,7 @@ module deck_preparation
    use model, only: model_type
    use pair_reports, only: pair_all
    use pair_rows, only: over_constrained
+   use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
    use text, only: string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
@@ -39,7 +40,7 @@ contains
 
       status = 0
       call read_deck(path, command%width, command%settings, cards, report)
-      call build_model(cards, model, report, error, variation)
+      call build_model(cards, verifiable, model, report, error, variation)
       if (.not. (report%has_errors() .or. allocated(error))) then
          call pair_all(model, simulation%operators%interfaces, report)
       end if

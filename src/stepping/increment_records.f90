@@ -4,6 +4,7 @@ module increment_records
    use balances, only: contact_violation, force_residual, imbalance
    use conductance_laws, only: conductance
    use contact_operator, only: kept_contact, thermal_forces
+   use contact_pairs, only: contact_pairs_type
    use contact_states, only: contact_state_type, status_open, status_slip, status_stick
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery
@@ -23,7 +24,7 @@ module increment_records
    use zone_edges, only: contact_edges, stick_edges
    implicit none
    private
-   public :: complete_record
+   public :: complete_record, measure_contact
 
    !> Part of K u or of the gaps below which a force or a displacement is no scale to measure by:
    !> where nothing is loaded only rounding is left of them.
@@ -137,17 +138,9 @@ contains
                operators%pairs%friction(first:last) > 0.0_dp)
             record%gap = 0.0_dp
          end where
-         record%pressure = pressures(pairs, contact%force(first:last), closed)
-         record%shear = shears(pairs, contact%shear_force(first:last), closed, &
-            operators%pairs%friction(first), record%pressure)
+         call measure_contact(pairs, operators%pairs%friction(first), closed, &
+            contact%force(first:last), contact%shear_force(first:last), record)
          record%slip = contact%tangential(first:last) - contact%slip_origin(first:last)
-         record%normal_force = sum(contact%force(first:last))
-         record%shear_force = sum(contact%shear_force(first:last))
-         call contact_edges(pairs%arc_length, record%status, record%pressure, record%gap, &
-            record%edges_contact, record%edge_contact)
-         call stick_edges(pairs%arc_length, pairs%weight, record%status, record%pressure, &
-            record%shear, record%gap, operators%pairs%friction(first), record%edges_stick, &
-            record%edge_stick)
          if (allocated(operators%thermal%matrix%value)) then
             record%slave_temperature = next%temperature(pairs%slave_node)
             record%master_temperature = next%temperature(pairs%master_node)
@@ -162,6 +155,25 @@ contains
          record%heat_rate = sum(pairs%weight*record%heat_flux)
       end associate
    end function contact_record
+
+   !> Tractions, sums and edges of an interface from its nodal forces.
+   pure subroutine measure_contact(pairs, friction, closed, force, shear_force, record)
+      type(contact_pairs_type), intent(in) :: pairs        !! the pairs of the interface
+      real(dp), intent(in) :: friction                     !! mu [-]
+      logical, intent(in) :: closed(:)                     !! (m) pairs that have a traction
+      real(dp), intent(in) :: force(:)                     !! (m) 0 at the others [force]
+      real(dp), intent(in) :: shear_force(:)               !! (m) on the slave [force]
+      type(contact_record_type), intent(inout) :: record   !! has states and gaps
+
+      record%pressure = pressures(pairs, force, closed)
+      record%shear = shears(pairs, shear_force, closed, friction, record%pressure)
+      record%normal_force = sum(force)
+      record%shear_force = sum(shear_force)
+      call contact_edges(pairs%arc_length, record%status, record%pressure, record%gap, &
+         record%edges_contact, record%edge_contact)
+      call stick_edges(pairs%arc_length, pairs%weight, record%status, record%pressure, &
+         record%shear, record%gap, friction, record%edges_stick, record%edge_stick)
+   end subroutine measure_contact
 
    !> Displacement below which none is a scale to measure by. Where bodies are at their initial
    !> temperature, the rounding of that temperature strains them.

@@ -1,8 +1,9 @@
 !> Which rows of a trade are worth their cost: those that none beats, and the cheapest for a wish.
 module recommendation
    use kinds, only: dp
+   use reported_quantities, only: traded
    use text, only: to_text
-   use trade_quantities, only: is_there, quantity_count, quantity_names
+   use trade_quantities, only: is_there, quantity_count
    use trade_rows, only: trade_type, wish_count, wishes
    implicit none
    private
@@ -100,7 +101,7 @@ contains
 
       if (len(words) > 0) words = words//'; '
       if (trade%uncertainty(q) >= wishes(wish)) then
-         words = words//trim(quantity_names(q))//': the reference itself is uncertain by '// &
+         words = words//trim(traded(q)%name)//': the reference itself is uncertain by '// &
             to_text(100.0_dp*rounded(trade%uncertainty(q)))//' %'
          return
       end if
@@ -108,7 +109,7 @@ contains
       do i = 1, trade%count
          if (trade%rows(i)%status == 0) closest = min(closest, trade%rows(i)%errors(q))
       end do
-      words = words//trim(quantity_names(q))//': the best row has '// &
+      words = words//trim(traded(q)%name)//': the best row has '// &
          to_text(100.0_dp*rounded(closest))//' %'
    end subroutine remark
 

@@ -2,8 +2,8 @@
 !> by, relative to the value at the instant, or to a part of the largest where that is more.
 module trade_errors
    use kinds, only: dp
-   use trade_quantities, only: edge_contact, figure_count, is_there, &
-      temperature
+   use reported_quantities, only: traded
+   use trade_quantities, only: figure_count, is_there, temperature
    use trade_reference, only: reference_type
    use trade_rows, only: trade_type
    implicit none
@@ -83,7 +83,7 @@ contains
 
       allocate (scales, mold=reference%figures)
       do q = 1, figure_count
-         if (q >= edge_contact) then
+         if (traded(q)%resolution > 0.0_dp) then
             scales(q, :, :) = reference%length
             if (.not. any(is_there(reference%figures(q, :, :)))) scales(q, :, :) = 0.0_dp
          else

@@ -4,8 +4,9 @@ module trade_file
    use errors, only: error_type
    use file_calls, only: write_file
    use kinds, only: dp
+   use reported_quantities, only: traded
    use text, only: to_text
-   use trade_quantities, only: is_there, quantity_count, quantity_names
+   use trade_quantities, only: is_there, quantity_count
    use trade_rows, only: trade_row_type, trade_type, wish_count
    use trade_table, only: elements_of
    implicit none
@@ -41,7 +42,7 @@ contains
 
       line = first_columns
       do i = 1, quantity_count
-         line = line//',error_'//trim(quantity_names(i))
+         line = line//',error_'//trim(traded(i)%name)
       end do
       line = line//',error_worst,pareto'
       do i = 1, wish_count

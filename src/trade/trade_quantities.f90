@@ -3,28 +3,20 @@
 module trade_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use contact_pairs, only: contact_pairs_type
+   use contact_quantities, only: contact_values
    use contact_states, only: status_open
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
    use records, only: contact_record_type, increment_record_type
+   use reported_quantities, only: traded
    implicit none
    private
    public :: row_values_type, is_there
-   public :: quantity_count, figure_count, quantity_names, quantity_heads
-   public :: normal_force, heat_rate, peak_pressure, edge_contact, edge_stick, temperature, absent
+   public :: quantity_count, figure_count, temperature, figure, absent
 
-   integer, parameter :: quantity_count = 6   !! quantities that rows are judged by
-   integer, parameter :: figure_count = 5     !! of them, those that are one number a contact pair
-   integer, parameter :: normal_force = 1     !! sum of the nodal contact forces
-   integer, parameter :: heat_rate = 2        !! through the contact; without contact into the model
-   integer, parameter :: peak_pressure = 3    !! largest pressure at a node
-   integer, parameter :: edge_contact = 4     !! outer edge of the contact zone
-   integer, parameter :: edge_stick = 5       !! outer edge of the stick zone
-   integer, parameter :: temperature = 6      !! of the nodes, the worst of them
-   character(13), parameter :: quantity_names(quantity_count) = [character(13) :: &
-      'normal_force', 'heat_rate', 'peak_pressure', 'edge_contact', 'edge_stick', 'temperature'] !!
-   character(7), parameter :: quantity_heads(quantity_count) = [character(7) :: 'force', 'heat', &
-      'peak', 'contact', 'stick', 'temp.']   !! heads of the columns of the table
+   integer, parameter :: quantity_count = size(traded)   !! quantities that rows are judged by
+   integer, parameter :: temperature = quantity_count    !! the last: of the nodes, the worst
+   integer, parameter :: figure_count = quantity_count - 1   !! the others: a number a contact pair
 
    real(dp), parameter :: absent = -1.0e300_dp   !! in place of what there is none of
 
@@ -72,33 +64,40 @@ contains
       type(contact_pairs_type), intent(in) :: pairs(:)      !! pairs of every interface
       integer, intent(in) :: nodes(:)                       !! (nodes) indexes
       integer, intent(in) :: instant                        !! which instant
-      integer :: i
+      integer :: i, q
 
       self%temperatures(:, instant) = record%fields%temperature(nodes)
-      if (size(pairs) == 0) self%figures(heat_rate, 1, instant) = finite(record%heat_in)
+      ! Without contact the heat that enters stands for that through the contact.
+      if (size(pairs) == 0) self%figures(figure('heat_rate'), 1, instant) = finite(record%heat_in)
       do i = 1, size(pairs)
-         call figures_of(record%contacts(i), pairs(i)%arc_length, self%figures(:, i, instant), &
-            self%length(i, instant))
+         do q = 1, figure_count
+            self%figures(q:q, i, instant) = finite(contact_values(traded(q)%name, pairs(i), &
+               record%contacts(i)))
+         end do
+         self%length(i, instant) = closed_length(record%contacts(i), pairs(i)%arc_length)
       end do
    end subroutine sample
 
-   subroutine figures_of(contact, s, figures, length)
+   !> Index of a figure by the name of its quantity.
+   pure integer function figure(name)
+      character(*), intent(in) :: name   !! one of traded
+
+      do figure = figure_count, 1, -1
+         if (traded(figure)%name == name) return
+      end do
+   end function figure
+
+   pure real(dp) function closed_length(contact, s) result(length)
       type(contact_record_type), intent(in) :: contact
       real(dp), intent(in) :: s(:)
-      real(dp), intent(out) :: figures(:), length
       integer :: k
 
-      figures(normal_force) = finite(contact%normal_force)
-      figures(heat_rate) = finite(contact%heat_rate)
-      figures(peak_pressure) = finite(maxval(contact%pressure))
-      figures(edge_contact) = finite(contact%edge_contact)
-      figures(edge_stick) = finite(contact%edge_stick)
       length = 0.0_dp
       do k = 1, size(s)
          if (contact%status(k) == status_open) cycle
          length = length + 0.5_dp*(s(min(k + 1, size(s))) - s(max(k - 1, 1)))
       end do
-   end subroutine figures_of
+   end function closed_length
 
    !> A number, or absent in place of none.
    elemental real(dp) function finite(number)

@@ -3,8 +3,9 @@
 module trade_reference
    use extrapolation, only: extrapolate, limit_type
    use kinds, only: dp
+   use reported_quantities, only: traded
    use trade_plan, only: factors, find_row
-   use trade_quantities, only: edge_contact, figure_count, is_there, quantity_count
+   use trade_quantities, only: figure_count, is_there, quantity_count
    use trade_rows, only: trade_type
    implicit none
    private
@@ -57,8 +58,8 @@ contains
       do t = 1, size(reference%figures, 3)
          do i = 1, size(reference%figures, 2)
             do q = 1, figure_count
-               call find_limit(figures_of(trade, rows, q, i, t), q >= edge_contact, limit, &
-                  differs)
+               call find_limit(figures_of(trade, rows, q, i, t), &
+                  traded(q)%resolution > 0.0_dp, limit, differs)
                reference%figures(q, i, t) = limit%value
                reference%uncertainty(q, i, t) = limit%uncertainty
                reference%is_contradictory(q) = reference%is_contradictory(q) .or. differs

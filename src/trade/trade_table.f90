@@ -3,8 +3,9 @@ module trade_table
    use heat_balance, only: sound_imbalance
    use kinds, only: dp
    use messages, only: print_line
+   use reported_quantities, only: traded
    use text, only: to_text
-   use trade_quantities, only: is_there, quantity_count, quantity_heads
+   use trade_quantities, only: is_there, quantity_count
    use trade_rows, only: trade_row_type, trade_type, wish_count, wishes
    implicit none
    private
@@ -26,7 +27,7 @@ contains
       write (unit, '(/, a)', advance='no') &
          ' row  mesh      incr.   steps  varied           CPU s      MB'
       do q = 1, quantity_count
-         write (unit, '(a9)', advance='no') trim(quantity_heads(q))
+         write (unit, '(a9)', advance='no') trim(traded(q)%head)
       end do
       write (unit, '(a)') '    worst'
       do i = 1, trade%count

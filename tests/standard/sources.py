@@ -47,6 +47,18 @@ def statements(text):
             start, statement = 0, ""
 
 
+def constant_selectors(text, tables):
+    """Find ASSOCIATE statements with an element of a constant table: (line, table)."""
+    return [(number, name) for number, statement in statements(text) if ASSOCIATE.match(statement)
+            for name in re.findall(r"=>\s*(\w+)\s*\(", statement.lower()) if name in tables]
+
+
+def constant_tables(texts):
+    """Names of constant arrays of derived type."""
+    return {name.lower() for text in texts for name in
+            re.findall(r"^\s*type\s*\(\w+\),\s*parameter\s*::\s*(\w+)\s*\(", text, re.M | re.I)}
+
+
 def late_selectors(text):
     """Find ASSOCIATE statements that call a function defined further down: (line, function)."""
     listed = list(statements(text))

@@ -12,7 +12,14 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from sources import ROOT, in_order, late_selectors, program_sources
+from sources import (
+    ROOT,
+    constant_selectors,
+    constant_tables,
+    in_order,
+    late_selectors,
+    program_sources,
+)
 
 FLANG = "flang-new-19"
 STUB = Path(__file__).with_name("hdf5.f90")
@@ -107,6 +114,26 @@ def test_no_associate_statement_calls_a_function_defined_further_down():
              for file in (ROOT / folder).rglob("*.*") if file.suffix in (".f90", ".pf")
              if (late := late_selectors(file.read_text()))}
     assert not found
+
+
+def test_no_associate_statement_takes_an_element_of_a_constant_table():
+    # gfortran 12 compares components of the first element in place of those of the one asked for.
+    tables = constant_tables(file.read_text() for file in program_sources())
+    assert "quantities" in tables
+    found = {str(file): names for folder in ("src", "tests/unit")
+             for file in (ROOT / folder).rglob("*.*") if file.suffix in (".f90", ".pf")
+             if (names := constant_selectors(file.read_text(), tables))}
+    assert not found
+
+
+def test_elements_of_constant_tables_are_found_in_continued_statements():
+    text = """
+   type(quantity_type), parameter :: table(*) = [first, second]
+   associate (one => item%table(1), &
+      another => Table(i))
+   end associate
+"""
+    assert constant_selectors(text, constant_tables([text])) == [(3, "table")]
 
 
 def test_functions_further_down_are_found_in_continued_statements():

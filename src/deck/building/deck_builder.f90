@@ -31,6 +31,7 @@ module deck_builder
    use memory_needs, only: memory_needed
    use mesh, only: set_type
    use model, only: model_type
+   use quantity_types, only: quantity_type
    use refinement, only: refine
    use steps, only: analysis_coupled, analysis_static, solves_heat
    use text, only: to_text
@@ -44,8 +45,9 @@ contains
 
    !> Builds the model that a deck describes; it is usable only if the report then has no errors.
    !> Error: status_internal, when a run would need more memory than there is.
-   subroutine build_model(cards, model, report, error, variation)
+   subroutine build_model(cards, verifiable, model, report, error, variation)
       type(cards_type), intent(in) :: cards               !! the cards, as read_deck left them
+      type(quantity_type), intent(in) :: verifiable(:)    !! what *VERIFY may name
       type(model_type), intent(out) :: model              !! the model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
       type(error_type), allocatable, intent(out) :: error !! see above
@@ -56,6 +58,7 @@ contains
       integer :: i, deck_nodes, errors
 
       if (size(cards%keywords) == 0) return
+      context%verifiable = verifiable
       if (allocated(cards%notes)) then
          do i = 1, size(cards%notes)
             call context%note(cards%notes(i)%value)
@@ -93,7 +96,7 @@ contains
          if (present(variation)) call apply_variation(variation, context%order, context%levels, &
             model)
          call drop_idle_heat(context, model, report)
-         call check_heat_quantities(model, report)
+         call check_heat_quantities(verifiable, model, report)
          call apply_loads(context, model, report)
          deck_nodes = size(model%mesh%node_number)
          call apply_temperatures(context, deck_nodes, .true., model)

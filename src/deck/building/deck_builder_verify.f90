@@ -10,10 +10,10 @@ module deck_builder_verify
    use deck_source, only: place_type
    use kinds, only: dp
    use model, only: model_type, verify_type
+   use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_history, of_interface, &
+      of_nodes, of_pairs, quantity_type
    use steps, only: analysis_static
-   use text, only: read_real, string_type, to_text, to_upper
-   use verify_quantities, only: find_quantity, of_history, of_interface, of_nodes, of_pairs, &
-      quantities, read_quantity
+   use text, only: nearest_known, read_real, string_type, to_text, to_upper
    implicit none
    private
    public :: build_verifications, check_heat_quantities
@@ -47,11 +47,12 @@ contains
             end do
          end associate
       end do
-      if (context%analyses_sound) call check_heat_quantities(model, report)
+      if (context%analyses_sound) call check_heat_quantities(context%verifiable, model, report)
    end subroutine build_verifications
 
    !> Reports quantities of heat in a deck none of whose steps solves heat.
-   subroutine check_heat_quantities(model, report)
+   subroutine check_heat_quantities(verifiable, model, report)
+      type(quantity_type), intent(in) :: verifiable(:)     !! what *VERIFY may name
       type(model_type), intent(in) :: model                !! steps and checks
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: i, quantity
@@ -59,10 +60,11 @@ contains
       if (size(model%steps) == 0 .or. any(model%steps%analysis /= analysis_static)) return
       do i = 1, size(model%verifications)
          associate (check => model%verifications(i))
-            quantity = find_quantity(check%quantity)
+            quantity = find_quantity(verifiable, check%quantity)
             if (quantity == 0) cycle
-            if (quantities(quantity)%is_heat) call report%error(place_type(check%line, &
-               check%columns(1)), 'no step of this deck solves heat: there is no '//check%quantity)
+            if (all(verifiable(quantity)%needs /= [needs_heat, needs_coupling])) cycle
+            call report%error(place_type(check%line, check%columns(1)), &
+               'no step of this deck solves heat: there is no '//check%quantity)
          end associate
       end do
    end subroutine check_heat_quantities
@@ -82,10 +84,10 @@ contains
       check%quantity = ''
       check%where = field_text(data, 2)
       check%columns = [field_column(data, 1), field_column(data, 2)]
-      call read_quantity(data, report, quantity)
+      call read_quantity(data, context%verifiable, report, quantity)
       if (quantity > 0) then
-         check%quantity = trim(quantities(quantity)%name)
-         call check_where(data, quantities(quantity)%kind, context, model, report, check)
+         check%quantity = trim(context%verifiable(quantity)%name)
+         call check_where(data, context%verifiable(quantity)%kind, context, model, report, check)
       end if
       if (context%analyses_sound) call read_when(data, model, report, check)
       call need_field(data, 4, 'value', report, check%value, valid)
@@ -105,6 +107,29 @@ contains
             ''' is neither REL nor ABS')
       end select
    end subroutine build_check
+
+   !> The first field: index into verifiable, 0 after an error.
+   subroutine read_quantity(data, verifiable, report, quantity)
+      type(data_card_type), intent(in) :: data
+      type(quantity_type), intent(in) :: verifiable(:)
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: quantity
+      character(:), allocatable :: name
+      type(string_type) :: names(size(verifiable))
+      logical :: valid
+      integer :: i
+
+      valid = .true.
+      quantity = 0
+      call need_field(data, 1, 'quantity', report, name, valid)
+      if (.not. valid) return
+      quantity = find_quantity(verifiable, name)
+      if (quantity > 0) return
+      do i = 1, size(names)
+         names(i)%value = trim(verifiable(i)%name)
+      end do
+      call report%error(field_place(data, 1), 'unknown quantity '//name//nearest_known(name, names))
+   end subroutine read_quantity
 
    integer function field_column(data, position)
       type(data_card_type), intent(in) :: data

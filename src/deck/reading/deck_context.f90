@@ -8,6 +8,7 @@ module deck_context
    use keywords, only: known_keywords
    use load_requests, only: request_list_type
    use mesh, only: set_type
+   use quantity_types, only: quantity_type
    use sorting, only: number_index_type
    use text, only: is_slip, nearest_known, read_integer, string_type, to_upper
    implicit none
@@ -26,6 +27,7 @@ module deck_context
 
    !> State of the builder.
    type :: deck_context_type
+      type(quantity_type), allocatable :: verifiable(:)   !! what *VERIFY may name
       type(number_index_type) :: node_index               !! numbers of nodes -> indexes
       type(number_index_type) :: element_index            !! numbers of elements -> indexes
       !> numbers of elements and, behind them, of lines -> indexes

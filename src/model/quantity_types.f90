@@ -1,0 +1,74 @@
+!> What is known of a reported quantity besides its value.
+!>
+!> A quantity is added in one file, that of its kind: increment_quantities, contact_quantities or
+!> field_quantities. Each holds a table with one entry a quantity, and functions that take its value
+!> out of a record by its name.
+module quantity_types
+   use kinds, only: dp
+   use text, only: to_upper
+   implicit none
+   private
+   public :: quantity_type, find_quantity
+   public :: of_history, of_bodies, of_passes, of_interface, of_pairs, of_nodes, of_points, &
+      of_elements
+   public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
+
+   integer, parameter :: name_length = 24
+
+   ! What a quantity is a number of; each is a group of the result file, but for the nodes.
+   integer, parameter :: of_history = 1     !! an increment: /history
+   integer, parameter :: of_bodies = 2      !! an increment and body, its errors: /history
+   integer, parameter :: of_passes = 3      !! a pass of the fixed point: /convergence
+   integer, parameter :: of_interface = 4   !! an increment and interface: /contact/<name>
+   integer, parameter :: of_pairs = 5       !! an increment and pair: /contact/<name>
+   integer, parameter :: of_nodes = 6       !! an increment and node, of *VERIFY alone
+   integer, parameter :: of_points = 7      !! an increment and point: /VTKHDF/PointData
+   integer, parameter :: of_elements = 8    !! an increment and element: /VTKHDF/CellData
+
+   ! What a step must solve for a quantity to have a value; a deck none of whose steps does so has
+   ! no dataset of it.
+   integer, parameter :: needs_nothing = 0
+   integer, parameter :: needs_temperature = 1   !! heat, or expansion at a given temperature
+   integer, parameter :: needs_heat = 2
+   integer, parameter :: needs_mechanics = 3
+   integer, parameter :: needs_coupling = 4      !! both, and contact
+
+   type :: quantity_type
+      character(name_length) :: name           !! of its dataset, in *VERIFY and in tables of errors
+      integer :: kind                          !! one of the of_* constants
+      character(24) :: unit                    !! in those of the deck; '-' for a pure number
+      integer :: needs = needs_nothing         !! one of the needs_* constants
+      integer :: values = 1                    !! numbers of one increment, interface, point, ...
+      !> Words before its value in the block of an increment of the listing; blank: not there.
+      character(30) :: label = ''
+      !> Head of its column in tables: the passes, the pairs, the rows of a trade; blank: no column.
+      character(13) :: head = ''
+      integer :: width = 0                     !! characters of that column; in a trade it is fixed
+      logical :: is_plain = .false.            !! no exponent there
+      logical :: is_integer = .false.          !! has no values between two pairs either
+      logical :: is_geometry = .false.         !! that of the undeformed mesh
+      logical :: is_on_faces = .false.         !! also a field over the nodes of both faces
+      logical :: is_published = .true.         !! in the result file and in *VERIFY
+      logical :: is_estimated = .false.        !! its errors are estimated
+      logical :: is_traded = .false.           !! rows of a trade are judged by it
+      !> Friction on the way decides it, so that one increment on a finer mesh does not tell its
+      !> error.
+      logical :: is_path_dependent = .false.
+      !> Of an edge of a zone: how far it is known on a mesh, in spacings of the pairs about it; 0
+      !> for what is no edge. Errors of edges are bands to both sides.
+      real(dp) :: resolution = 0.0_dp
+   end type quantity_type
+
+contains
+
+   !> Index of the quantity that a name means in any case; 0 for one that is not known.
+   pure integer function find_quantity(list, name)
+      type(quantity_type), intent(in) :: list(:)
+      character(*), intent(in) :: name
+
+      do find_quantity = size(list), 1, -1
+         if (to_upper(trim(list(find_quantity)%name)) == to_upper(trim(name))) return
+      end do
+   end function find_quantity
+
+end module quantity_types

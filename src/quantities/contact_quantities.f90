@@ -1,0 +1,157 @@
+!> Reported quantities of an interface and of its pairs.
+module contact_quantities
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use contact_pairs, only: contact_pairs_type
+   use kinds, only: dp
+   use quantity_types, only: needs_heat, of_interface, of_pairs, quantity_type
+   use records, only: contact_record_type, interface_errors_type
+   use zone_edges, only: edges_kept
+   implicit none
+   private
+   public :: contact_table, estimated, contact_values, geometry_values, total_errors
+
+   ! Of the edges of the published cylinder nine tenths are no further from the converged ones than
+   ! their resolution (docs/accuracy.md). Pairs are in the order of the columns of *CONTACT PRINT.
+   type(quantity_type), parameter :: contact_table(*) = [ &
+      quantity_type('normal_force', of_interface, 'stress length^2', label='normal force', &
+      head='force', is_estimated=.true., is_traded=.true.), &
+      quantity_type('shear_force', of_interface, 'stress length^2', label='shear force', &
+      is_estimated=.true., is_path_dependent=.true.), &
+      quantity_type('heat_rate', of_interface, 'power', needs_heat, label='heat rate', &
+      head='heat', is_estimated=.true., is_traded=.true.), &
+      quantity_type('peak_pressure', of_interface, 'stress', head='peak', is_estimated=.true., &
+      is_traded=.true., is_published=.false.), &
+      quantity_type('edge_contact', of_interface, 'length', label='edge of contact s =', &
+      head='contact', is_estimated=.true., is_traded=.true., resolution=0.1_dp), &
+      quantity_type('edge_stick', of_interface, 'length', label='of stick s =', &
+      head='stick', is_estimated=.true., is_traded=.true., resolution=0.6_dp), &
+      quantity_type('edges_contact', of_interface, 'length', values=edges_kept), &
+      quantity_type('edges_stick', of_interface, 'length', values=edges_kept), &
+      quantity_type('slave_node', of_pairs, '-', head='slave', width=8, is_integer=.true., &
+      is_geometry=.true.), &
+      quantity_type('master_node', of_pairs, '-', head='master', width=8, is_integer=.true., &
+      is_geometry=.true.), &
+      quantity_type('x', of_pairs, 'length', head='x', width=11, is_geometry=.true.), &
+      quantity_type('y', of_pairs, 'length', head='y', width=11, is_geometry=.true.), &
+      quantity_type('s', of_pairs, 'length', is_geometry=.true.), &
+      quantity_type('weight', of_pairs, 'length^2', is_geometry=.true.), &
+      quantity_type('status', of_pairs, '-', head='zone', width=5, is_integer=.true., &
+      is_on_faces=.true.), &
+      quantity_type('gap', of_pairs, 'length', head='gap', width=10, is_on_faces=.true.), &
+      quantity_type('pressure', of_pairs, 'stress', head='p', width=10, is_on_faces=.true.), &
+      quantity_type('shear', of_pairs, 'stress', head='tau', width=11, is_on_faces=.true.), &
+      quantity_type('slip', of_pairs, 'length', head='slip', width=11), &
+      quantity_type('slave_temperature', of_pairs, 'temperature', needs_heat, head='T1', &
+      width=11), &
+      quantity_type('master_temperature', of_pairs, 'temperature', needs_heat, head='T2', &
+      width=11), &
+      quantity_type('conductance', of_pairs, 'power/(length^2 temp.)', needs_heat, &
+      head='omega', width=10, is_on_faces=.true.), &
+      quantity_type('heat_flux', of_pairs, 'power/length^2', needs_heat, head='q', width=11, &
+      is_on_faces=.true.)]
+
+   !> Those with an estimated error; components of interface_errors_type are in this order.
+   type(quantity_type), parameter :: estimated(*) = pack(contact_table, contact_table%is_estimated)
+
+contains
+
+   !> A quantity of an interface, or of its pairs: those of the mesh excepted.
+   pure function contact_values(name, pairs, contact) result(values)
+      character(*), intent(in) :: name                     !! one of of_interface or of_pairs
+      type(contact_pairs_type), intent(in) :: pairs         !! pairs of the interface
+      type(contact_record_type), intent(in) :: contact     !! its state
+      !> One a pair, one an edge, or one alone; NaN where the step has none; empty for a name that
+      !> is not known.
+      real(dp), allocatable :: values(:)
+
+      select case (name)
+      case ('normal_force')
+         values = [contact%normal_force]
+      case ('shear_force')
+         values = [contact%shear_force]
+      case ('heat_rate')
+         values = [contact%heat_rate]
+      case ('peak_pressure')
+         values = [maxval(contact%pressure)]
+      case ('edge_contact')
+         values = [contact%edge_contact]
+      case ('edge_stick')
+         values = [contact%edge_stick]
+      case ('edges_contact')
+         values = contact%edges_contact
+      case ('edges_stick')
+         values = contact%edges_stick
+      case ('status')
+         values = real(contact%status, dp)
+      case ('gap')
+         values = or_nan(contact%gap)
+      case ('pressure')
+         values = or_nan(contact%pressure)
+      case ('shear')
+         values = or_nan(contact%shear)
+      case ('slip')
+         values = or_nan(contact%slip)
+      case ('slave_temperature')
+         values = or_nan(contact%slave_temperature)
+      case ('master_temperature')
+         values = or_nan(contact%master_temperature)
+      case ('conductance')
+         values = or_nan(contact%conductance)
+      case ('heat_flux')
+         values = or_nan(contact%heat_flux)
+      case default
+         allocate (values(0))
+      end select
+
+   contains
+
+      pure function or_nan(given) result(filled)
+         real(dp), allocatable, intent(in) :: given(:)
+         real(dp), allocatable :: filled(:)
+
+         if (allocated(given)) then
+            filled = given
+         else
+            allocate (filled(size(pairs%slave_node)), &
+               source=ieee_value(1.0_dp, ieee_quiet_nan))
+         end if
+      end function or_nan
+
+   end function contact_values
+
+   !> A quantity of the pairs that the mesh gives.
+   pure function geometry_values(name, pairs, node_number) result(values)
+      character(*), intent(in) :: name                     !! one of those with is_geometry
+      type(contact_pairs_type), intent(in) :: pairs         !! pairs of the interface
+      integer, intent(in) :: node_number(:)                !! (nodes) numbers in the deck
+      real(dp), allocatable :: values(:)                   !! (m), empty for an unknown name
+
+      select case (name)
+      case ('slave_node')
+         values = real(node_number(pairs%slave_node), dp)
+      case ('master_node')
+         values = real(node_number(pairs%master_node), dp)
+      case ('x')
+         values = pairs%position(1, :)
+      case ('y')
+         values = pairs%position(2, :)
+      case ('s')
+         values = pairs%arc_length
+      case ('weight')
+         values = pairs%weight
+      case default
+         allocate (values(0))
+      end select
+   end function geometry_values
+
+   !> All estimated errors together; those of the iteration count with the sign of the others.
+   pure function total_errors(errors) result(total)
+      type(interface_errors_type), intent(in) :: errors    !! errors of an interface
+      real(dp) :: total(size(estimated))                   !! as the errors of the mesh
+
+      total = errors%mesh + errors%increment
+      where (estimated%resolution > 0.0_dp) total = abs(errors%mesh) + abs(errors%increment)
+      total = total + sign(errors%iteration, total)
+   end function total_errors
+
+end module contact_quantities

@@ -1,0 +1,136 @@
+!> Reported quantities of an increment as a whole, of its bodies and of its passes.
+module increment_quantities
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use kinds, only: dp
+   use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, of_bodies, of_history, &
+      of_passes, quantity_type
+   use records, only: increment_record_type
+   use solution_report, only: iteration_record_type
+   implicit none
+   private
+   public :: increment_table, history_value, body_values, pass_value
+
+   type(quantity_type), parameter :: increment_table(*) = [ &
+      quantity_type('time', of_history, 'time'), &
+      quantity_type('load', of_history, 'load'), &
+      quantity_type('iterations', of_history, '-', is_integer=.true.), &
+      quantity_type('cut_backs', of_history, '-', is_integer=.true., is_published=.false.), &
+      quantity_type('residual', of_history, '-', is_published=.false.), &
+      quantity_type('residual_floor', of_history, '-', is_published=.false.), &
+      quantity_type('heat_in', of_history, 'power', needs_heat, label='heat in'), &
+      quantity_type('heat_out', of_history, 'power', needs_heat, label='out'), &
+      quantity_type('heat_imbalance', of_history, '-', needs_heat, label='heat imbalance'), &
+      quantity_type('heat_imbalance_pointwise', of_history, '-', needs_heat, &
+      label='at this instant'), &
+      quantity_type('force_imbalance', of_history, '-', needs_mechanics, &
+      label='force imbalance'), &
+      quantity_type('contact_violation', of_history, '-', needs_mechanics, is_published=.false., &
+      label='contact conditions violated by'), &
+      quantity_type('coupling_gain', of_history, '-', needs_coupling, &
+      label='quasi-static coupling gain'), &
+      quantity_type('coupling_gain_max', of_history, '-', needs_coupling, &
+      label='largest real one'), &
+      quantity_type('stress_error', of_bodies, '-', needs_mechanics, label='stress'), &
+      quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux'), &
+      quantity_type('increment', of_passes, '-', head='increment', width=12, is_integer=.true.), &
+      quantity_type('iteration', of_passes, '-', head='iteration', width=11, is_integer=.true.), &
+      quantity_type('residual', of_passes, '-', head='residual', width=12), &
+      quantity_type('g_min', of_passes, '-', head='g min', width=11, is_plain=.true.), &
+      quantity_type('g_max', of_passes, '-', head='g max', width=11, is_plain=.true.), &
+      quantity_type('g_kept', of_passes, '-', head='g kept', width=8, is_integer=.true., &
+      is_published=.false.), &
+      quantity_type('pairs_changed', of_passes, '-', head='pairs changed', width=15, &
+      is_integer=.true.), &
+      quantity_type('cut_backs', of_passes, '-', head='cut-backs', width=11, is_integer=.true.)]
+
+contains
+
+   !> A quantity of an increment.
+   pure function history_value(name, record) result(value)
+      character(*), intent(in) :: name                     !! one of of_history
+      type(increment_record_type), intent(in) :: record    !! the increment
+      real(dp) :: value                                    !! NaN for a name that is not known
+      integer :: passes
+
+      passes = 0
+      if (allocated(record%iterations)) passes = size(record%iterations)
+      select case (name)
+      case ('time')
+         value = record%time
+      case ('load')
+         value = record%load
+      case ('iterations')
+         value = passes
+      case ('cut_backs')
+         value = record%cut_backs
+      case ('residual')
+         value = 0.0_dp
+         if (passes > 0) value = record%iterations(passes)%residual
+      case ('residual_floor')
+         value = record%residual_floor
+      case ('heat_in')
+         value = record%heat_in
+      case ('heat_out')
+         value = record%heat_out
+      case ('heat_imbalance')
+         value = record%heat_imbalance
+      case ('heat_imbalance_pointwise')
+         value = record%heat_imbalance_pointwise
+      case ('force_imbalance')
+         value = record%force_imbalance
+      case ('contact_violation')
+         value = record%contact_violation
+      case ('coupling_gain')
+         value = record%coupling_gain
+      case ('coupling_gain_max')
+         value = record%coupling_gain_max
+      case default
+         value = ieee_value(value, ieee_quiet_nan)
+      end select
+   end function history_value
+
+   !> A quantity of the bodies.
+   pure function body_values(name, record) result(values)
+      character(*), intent(in) :: name                     !! one of of_bodies
+      type(increment_record_type), intent(in) :: record    !! the increment
+      real(dp), allocatable :: values(:)                   !! (bodies), or none
+
+      allocate (values(0))
+      select case (name)
+      case ('stress_error')
+         if (allocated(record%stress_error%body)) values = record%stress_error%body
+      case ('heat_flux_error')
+         if (allocated(record%heat_flux_error%body)) values = record%heat_flux_error%body
+      case default   ! not known: none
+      end select
+   end function body_values
+
+   !> A quantity of a pass.
+   elemental function pass_value(name, pass) result(value)
+      character(*), intent(in) :: name                     !! one of of_passes
+      type(iteration_record_type), intent(in) :: pass      !! the pass
+      real(dp) :: value                                    !! NaN for a name that is not known
+
+      select case (name)
+      case ('increment')
+         value = pass%increment
+      case ('iteration')
+         value = pass%iteration
+      case ('residual')
+         value = pass%residual
+      case ('g_min')
+         value = pass%g_min
+      case ('g_max')
+         value = pass%g_max
+      case ('g_kept')
+         value = pass%g_kept
+      case ('pairs_changed')
+         value = pass%pairs_changed
+      case ('cut_backs')
+         value = pass%cut_backs
+      case default
+         value = ieee_value(value, ieee_quiet_nan)
+      end select
+   end function pass_value
+
+end module increment_quantities
