@@ -1,8 +1,5 @@
-!> What is known of a reported quantity besides its value.
-!>
-!> A quantity is added in one file, that of its kind: increment_quantities, contact_quantities or
-!> field_quantities. Each holds a table with one entry a quantity, and functions that take its value
-!> out of a record by its name.
+!> What is known of a reported quantity besides its value: an entry of the tables in src/quantities,
+!> which hold the quantities themselves.
 module quantity_types
    use kinds, only: dp
    use text, only: to_upper

@@ -215,7 +215,7 @@ contains
       integer, intent(in) :: steps                        !! steps of the deck
       integer :: i, q
 
-      if (size(pairs) == 0 .or. .not. estimated) then
+      if (size(pairs) == 0 .or. .not. has_estimates) then
          allocate(self%sets(0))
          return
       end if
