@@ -178,7 +178,7 @@ contains
 
       fields = pack(of_interface, of_interface%is_on_faces)
       do i = 1, size(fields)
-         fields(i)%name = mark//fields(i)%name
+         fields(i)%name = mark//trim(fields(i)%name)
       end do
    end function on_faces
 
