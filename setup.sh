@@ -7,8 +7,8 @@ build=$root/build
 venv=$build/venv
 program=$build/release/thercon
 
-build_packages=(gfortran cmake ninja-build libopenblas-serial-dev libmumps-seq-dev libmetis-dev
-   libhdf5-dev python3 python3-venv)
+build_packages=(gcc libc6-dev gfortran cmake ninja-build libopenblas-serial-dev libmumps-seq-dev
+   libmetis-dev libhdf5-dev python3 python3-venv)
 test_packages=(valgrind calculix-ccx flang-19)
 bench_packages=(calculix-ccx)
 requirements=("$root/post/requirements.txt" "$root/tests/requirements.txt")

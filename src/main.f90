@@ -42,7 +42,7 @@ program thercon
    case (command_check)
       call check_all(status)
    case (command_trade)
-      call catch_signals()
+      call catch_signals(outlives_pipes=.false.)
       call trade_deck(command%decks(1)%value, command, status)
    case default
       if (command%is_batch) then
@@ -79,7 +79,7 @@ contains
       integer, intent(out) :: deck_status
       type(deck_outcome_type) :: outcome
 
-      call catch_signals()
+      call catch_signals(outlives_pipes=.false.)
       call run_deck(path, command, outcome)
       deck_status = outcome%status
       if (.not. command%quiet .and. deck_status /= status_deck) call outcome%print( &

@@ -20,6 +20,7 @@ module refinement_error
    use increments, only: simulation_type
    use interface_operators, only: interface_operators_type
    use interface_quantities, only: contact_of, quantities_of, quantities_of_state
+   use interruption, only: check_overdue
    use kinds, only: dp
    use linked_relaxation, only: joint_type, relax
    use load_courses, only: step_clock_type
@@ -56,7 +57,7 @@ contains
 
    !> What the quantities of the interfaces change by on the refined mesh, at the end of an
    !> increment, in the equilibrium of heat there.
-   !> Error: the increment has no solution under one of the corrections.
+   !> Error: the increment has no solution under one of the corrections, or a signal left no time.
    subroutine find_change_by_refinement(refined, simulation, model, clock, previous, change, error)
       type(refined_model_type), intent(inout) :: refined         !! the refined model
       type(simulation_type), intent(inout) :: simulation         !! the run at the end; films change
@@ -77,6 +78,8 @@ contains
       step = implicit_step(model%steps(simulation%control%step))
       before = previous
       do k = 1, corrections
+         call check_overdue(error)
+         if (allocated(error)) return
          call smooth(refined, step, fields)
          ! The fixed point starts from the last solution; the implicit scheme takes nothing else
          ! of the conductances before.

@@ -19,6 +19,7 @@ module errors
    type :: error_type
       integer :: status = status_internal      !! one of the status_* constants
       character(:), allocatable :: message     !! one sentence in plain words
+      logical :: lacks_memory = .false.        !! whether it is that there is too little memory
       integer :: card = 0                      !! card image of the deck where it lies, if known
    end type error_type
 

@@ -59,12 +59,13 @@ static int write_all(int descriptor, const char *bytes, size_t count)
    return 0;
 }
 
-/* Prints text on standard output at once; that it finds no room is remembered. */
+/* Prints text on standard output at once; that it finds no room is remembered, that nobody reads
+ * it any more is not. */
 void file_print(const char *text, long count)
 {
    int number = write_all(STDOUT_FILENO, text, (size_t)count);
 
-   if (standard_output_error == 0)
+   if (standard_output_error == 0 && number != EPIPE)
       standard_output_error = number;
 }
 

@@ -6,7 +6,7 @@ module messages
    use utf8, only: printable
    implicit none
    private
-   public :: print_line, print_error
+   public :: print_line, print_error, pass_on
 
 contains
 
@@ -23,6 +23,15 @@ contains
          if (status /= 0) return   ! there is nobody left to tell
       end if
    end subroutine print_line
+
+   !> Prints on stderr what another process of the program has printed.
+   subroutine pass_on(lines)
+      character(*), intent(in) :: lines     !! with line ends between them
+      integer :: status
+
+      write (error_unit, '(a)', iostat=status) lines
+      if (status /= 0) return   ! there is nobody left to tell
+   end subroutine pass_on
 
    !> Prints an error on stderr as `subject: error: message`.
    subroutine print_error(subject, message)

@@ -8,6 +8,7 @@ module increment_iteration
    use fixed_point, only: accelerator_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use interface_operators, only: interface_operators_type
+   use interruption, only: check_overdue
    use kinds, only: dp
    use newton, only: newton_type
    use opening_slopes, only: opening_slope, openings
@@ -29,7 +30,8 @@ contains
    !> Conductances, jumps and contact state of an increment. Where another method fails, Newton's
    !> solves the increment if laws jump, since the others know no pairs at rest; elsewhere it only
    !> tells what the failure means.
-   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
+   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds;
+   !> status_interrupted where a signal left no more time.
    subroutine iterate(operators, controls, data, workspace, next, error)
       type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
       type(fixed_point_type), intent(in) :: controls             !! *FIXED POINT
@@ -154,6 +156,8 @@ contains
          pass%image = pass%omega
          do i = 1, size(passes)
             if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
+            call check_overdue(error)
+            if (allocated(error)) exit
             good = next%contact
             pass%iteration = i
             call contact_operator_pass(operators, data, workspace, next%jump, next%contact, error)

@@ -1,46 +1,41 @@
 !> Several decks, some of them at a time. Each has a process of its own, so that what becomes of one
 !> leaves the others alone.
 module batch
-   use, intrinsic :: iso_c_binding, only: c_f_pointer, c_ptr, c_size_t, c_sizeof
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
-   use batch_ends, only: take_end
+   use, intrinsic :: iso_fortran_env, only: output_unit
    use batch_table, only: print_batch, write_batch
    use clock, only: wall_seconds
    use command_line, only: command_type
    use deck_outcomes, only: deck_outcome_type
    use deck_run, only: base_name
-   use deck_task, only: account_type, deck_task_type
+   use deck_task, only: deck_task_type
    use errors, only: error_type, status_deck, status_internal, status_interrupted
    use file_calls, only: make_folder
-   use interruption, only: catch_signals, caught_number, caught_signal, caught_times
-   use messages, only: print_error
-   use process_ends, only: process_end_type, signal_kill
-   use processes, only: collect_process, pause_briefly, send_signal, start_process
-   use progress, only: progress_type
-   use shared_memory, only: message_file_type, share_memory
-   use text, only: to_text
+   use interruption, only: catch_signals, caught_signal, caught_times
    use kinds, only: dp
+   use messages, only: pass_on, print_error
+   use processes, only: child_type, pause_briefly, report_type
+   use progress, only: progress_type
+   use text, only: to_text
    implicit none
    private
    public :: run_batch
 
-   real(dp), parameter :: table_pause = 1.0_dp   !! between two writings of the CSV file [s]
-   real(dp), parameter :: one_signal = 0.5_dp   !! time within which signals are one [s]
+   real(dp), parameter :: table_pause = 1.0_dp    !! between two writings of the CSV file [s]
+   real(dp), parameter :: shortest_pause = 0.1_dp !! where a deck was started or has ended [s]
+   real(dp), parameter :: one_signal = 0.5_dp     !! time within which signals are one [s]
 
    !> A deck that is running.
    type :: slot_type
       integer :: deck = 0                    !! its number, 0 where the slot is free
-      integer :: process = 0                 !! its process
       real(dp) :: since = 0.0_dp             !! when it began [s]
       logical :: is_killed = .false.         !! whether the batch was told twice to end
-      type(message_file_type) :: messages = message_file_type()   !! what it printed
+      type(child_type) :: child              !! its process
    end type slot_type
 
    !> All that a batch knows.
    type :: batch_type
       type(command_type) :: command                      !! decks and options
       type(deck_outcome_type), allocatable :: outcomes(:) !! (decks) how each ended
-      type(account_type), pointer :: accounts(:) => null() !! (decks) what each says of itself
       type(slot_type), allocatable :: slots(:)           !! (jobs)
       type(progress_type) :: progress                    !! progress line
       integer :: started = 0                             !! decks that were started
@@ -49,7 +44,7 @@ module batch
       integer :: forwarded = 0                           !! signals that were seen
       real(dp) :: signalled = 0.0_dp                     !! when the first was passed on [s]
       real(dp) :: written = 0.0_dp                       !! when the CSV file was written [s]
-      integer :: in_file = 0                             !! decks that have ended in it
+      logical :: has_news = .false.                      !! whether it is not up to date
    end type batch_type
 
 contains
@@ -60,20 +55,16 @@ contains
       integer, intent(out) :: status              !! the largest of all
       type(batch_type) :: self
       type(error_type), allocatable :: error
+      logical :: has_collected
       real(dp) :: since
 
       since = wall_seconds()
       call check_names(command, status)
       if (status /= 0) return
-      call catch_signals()
-      call prepare(self, command, error)
-      if (allocated(error)) then
-         call print_error('thercon', error%message)
-         status = error%status
-         return
-      end if
+      call catch_signals(outlives_pipes=.true.)
+      call prepare(self, command)
       ! The table of an earlier batch must not be taken for that of this one.
-      call write_table(self, error)
+      call write_batch(command%folder, self%outcomes, error)
       if (allocated(error)) then
          call print_error('thercon', error%message)
          status = error%status
@@ -82,17 +73,16 @@ contains
       do while (any(self%slots%deck > 0) .or. &
          self%started < size(self%outcomes) .and. caught_signal() == '')
          call fill_slots(self)
-         call collect(self)
+         call collect(self, has_collected)
          call pass_on_signals(self)
          call show_progress(self)
-         if (wall_seconds() - self%written > table_pause .and. self%ended > self%in_file) then
-            call write_table(self, error)
-         end if
+         call renew_table(self)
+         if (.not. has_collected) call pause_briefly()
       end do
       call self%progress%clear()
       call leave_out_the_rest(self)
       status = maxval(self%outcomes%status)
-      call write_table(self, error)
+      call write_batch(command%folder, self%outcomes, error)
       if (allocated(error)) then
          call print_error('thercon', error%message)
          status = max(status, error%status)
@@ -119,19 +109,12 @@ contains
       end do
    end subroutine check_names
 
-   !> Error: status_internal, where there is no memory to share.
-   subroutine prepare(self, command, error)
+   subroutine prepare(self, command)
       type(batch_type), intent(inout) :: self
       type(command_type), intent(in) :: command
-      type(error_type), allocatable, intent(out) :: error
-      type(account_type) :: account
-      type(c_ptr) :: address
       integer :: i, decks
 
       decks = size(command%decks)
-      call share_memory(decks*c_sizeof(account), address, error)
-      if (allocated(error)) return
-      call c_f_pointer(address, self%accounts, [decks])
       self%command = command
       allocate (self%outcomes(decks), self%slots(min(command%jobs, decks)))
       do i = 1, decks
@@ -146,95 +129,105 @@ contains
    !> Starts decks where slots are free.
    subroutine fill_slots(self)
       type(batch_type), intent(inout) :: self
-      type(error_type), allocatable :: error
       integer :: s
 
       do s = 1, size(self%slots)
          if (self%slots(s)%deck > 0) cycle
          if (self%started == size(self%outcomes) .or. caught_signal() /= '') return
-         call start_deck(self, self%started + 1, self%slots(s), error)
-         if (.not. allocated(error)) then
-            self%started = self%started + 1
-         else if (any(self%slots%deck > 0)) then
-            return   ! until one of those has ended
-         else
-            self%started = self%started + 1
-            call refuse(self, self%started, error)
-         end if
+         self%started = self%started + 1
+         self%has_news = .true.
+         call start_deck(self, self%started, self%slots(s))
       end do
    end subroutine fill_slots
 
-   subroutine start_deck(self, deck, slot, error)
+   !> A deck for which the system has no process has ended already.
+   subroutine start_deck(self, deck, slot)
       type(batch_type), intent(inout) :: self
       integer, intent(in) :: deck
-      type(slot_type), intent(inout) :: slot
-      type(error_type), allocatable, intent(out) :: error
+      type(slot_type), intent(out) :: slot
       type(deck_task_type) :: task
-      character(:), allocatable :: nothing
-
-      slot = slot_type()
-      call slot%messages%open(error)
-      if (allocated(error)) return
-      task%path = self%outcomes(deck)%path
-      task%command = self%command
-      task%account => self%accounts(deck)
-      slot%since = wall_seconds()
-      call start_process(task, slot%messages%descriptor, slot%process, error)
-      if (allocated(error)) then
-         call slot%messages%take(nothing)
-         return
-      end if
-      slot%deck = deck
-      self%outcomes(deck)%ending = 'running'
-   end subroutine start_deck
-
-   !> A deck for which the system has no process.
-   subroutine refuse(self, deck, error)
-      type(batch_type), intent(inout) :: self
-      integer, intent(in) :: deck
-      type(error_type), intent(in) :: error
+      type(error_type), allocatable :: error
 
       associate (outcome => self%outcomes(deck))
+         task%path = outcome%path
+         task%command = self%command
+         slot%since = wall_seconds()
+         call slot%child%start(task, error)
+         outcome%is_running = .not. allocated(error)
+         if (outcome%is_running) then
+            outcome%ending = 'running'
+            slot%deck = deck
+            return
+         end if
          outcome%status = status_internal
-         outcome%ending = 'not run'
          outcome%reason = error%message
+         self%ended = self%ended + 1
+         self%failed = self%failed + 1
          call self%progress%clear()
          call print_error(outcome%path, error%message)
       end associate
-      self%ended = self%ended + 1
-      self%failed = self%failed + 1
-   end subroutine refuse
+   end subroutine start_deck
 
-   !> Takes what has ended; waits a moment where nothing has.
-   subroutine collect(self)
+   !> Takes what has ended.
+   subroutine collect(self, has_collected)
       type(batch_type), intent(inout) :: self
-      type(process_end_type) :: ended
+      logical, intent(out) :: has_collected   !! whether anything had ended
       character(:), allocatable :: printed
-      logical :: has_ended
       integer :: s
 
-      call collect_process(has_ended, ended)
-      if (.not. has_ended) then
-         call pause_briefly()
-         return
-      end if
-      s = findloc(self%slots%process == ended%process .and. self%slots%deck > 0, .true., dim=1)
-      if (s == 0) return
-      associate (slot => self%slots(s), outcome => self%outcomes(self%slots(s)%deck))
-         call slot%messages%take(printed)
-         outcome%seconds = wall_seconds() - slot%since
-         call take_end(ended, self%accounts(slot%deck), printed, slot%is_killed, outcome)
-         self%ended = self%ended + 1
-         if (outcome%status /= 0) self%failed = self%failed + 1
-         call self%progress%clear()
-         if (len(printed) > 0) write (error_unit, '(a)') printed
-         if (.not. self%command%quiet .and. outcome%status /= status_deck) then
-            call outcome%print(self%command%folder//'/'//base_name(outcome%path))
-         end if
-         flush (output_unit)
-         slot%deck = 0
-      end associate
+      has_collected = .false.
+      do s = 1, size(self%slots)
+         if (self%slots(s)%deck == 0) cycle
+         if (.not. self%slots(s)%child%has_ended()) cycle
+         has_collected = .true.
+         associate (outcome => self%outcomes(self%slots(s)%deck))
+            call take_end(self%slots(s), outcome, printed)
+            self%ended = self%ended + 1
+            if (outcome%status /= 0) self%failed = self%failed + 1
+            call self%progress%clear()
+            if (len(printed) > 0) call pass_on(printed)
+            if (.not. self%command%quiet .and. outcome%status /= status_deck) then
+               call outcome%print(self%command%folder//'/'//base_name(outcome%path))
+            end if
+         end associate
+         self%slots(s)%deck = 0
+      end do
+      self%has_news = self%has_news .or. has_collected
    end subroutine collect
+
+   !> How a deck ended. Why a process ended before the deck did is added to what it printed.
+   subroutine take_end(slot, outcome, printed)
+      type(slot_type), intent(inout) :: slot
+      type(deck_outcome_type), intent(inout) :: outcome
+      character(:), allocatable, intent(out) :: printed   !! messages, without last line end
+      type(report_type) :: report
+
+      report = slot%child%report()
+      call outcome%take(report)
+      call slot%child%take_messages(printed)
+      outcome%is_running = .false.
+      outcome%has_run = .true.
+      outcome%seconds = merge(report%seconds, wall_seconds() - slot%since, report%seconds > 0.0_dp)
+      deallocate (outcome%ending)
+      associate (child => slot%child)
+         outcome%cpu_seconds = child%end%cpu_seconds
+         outcome%peak_bytes = child%end%peak_bytes
+         if (report%lacks_memory == 1) outcome%ending = 'out of memory'
+         if (child%end%signal == 0 .and. report%is_whole == 1) return
+         outcome%status = status_internal
+         outcome%reason = child%sudden_end()
+         if (slot%is_killed) then
+            outcome%status = status_interrupted
+            outcome%reason = 'killed because a second signal came'
+         else if (child%end%is_crash == 1) then
+            outcome%ending = 'crash: '//child%signal_name()
+         else if (child%end%signal /= 0) then
+            outcome%ending = 'killed: '//child%signal_name()
+         end if
+      end associate
+      if (len(printed) > 0) printed = printed//new_line('a')
+      printed = printed//outcome%path//': error: '//outcome%reason
+   end subroutine take_end
 
    !> The first signal goes on to the decks, which end after their increments; a later one ends
    !> them. What comes at once, as from timeout, which signals a process and its group, is one.
@@ -250,12 +243,8 @@ contains
       if (.not. is_first .and. wall_seconds() - self%signalled < one_signal) return
       do s = 1, size(self%slots)
          if (self%slots(s)%deck == 0) cycle
-         if (is_first) then
-            call send_signal(self%slots(s)%process, caught_number())
-         else
-            self%slots(s)%is_killed = .true.
-            call send_signal(self%slots(s)%process, signal_kill)
-         end if
+         self%slots(s)%is_killed = .not. is_first
+         call self%slots(s)%child%send_signal(kills=.not. is_first)
       end do
    end subroutine pass_on_signals
 
@@ -268,6 +257,25 @@ contains
       if (caught_signal() /= '') line = line//'; ending after their increments, again to kill'
       call self%progress%say(line)
    end subroutine show_progress
+
+   !> Writes the table again where that is due. What goes wrong shows at the end, in the last one.
+   subroutine renew_table(self)
+      type(batch_type), intent(inout) :: self
+      type(error_type), allocatable :: ignored
+      integer :: s
+
+      if (wall_seconds() - self%written < merge(shortest_pause, table_pause, self%has_news)) return
+      do s = 1, size(self%slots)
+         if (self%slots(s)%deck == 0) cycle
+         associate (outcome => self%outcomes(self%slots(s)%deck))
+            call outcome%take(self%slots(s)%child%report())
+            outcome%seconds = wall_seconds() - self%slots(s)%since
+         end associate
+      end do
+      call write_batch(self%command%folder, self%outcomes, ignored)
+      self%written = wall_seconds()
+      self%has_news = .false.
+   end subroutine renew_table
 
    !> Says which decks were not started because of a signal.
    subroutine leave_out_the_rest(self)
@@ -282,14 +290,5 @@ contains
          end associate
       end do
    end subroutine leave_out_the_rest
-
-   subroutine write_table(self, error)
-      type(batch_type), intent(inout) :: self
-      type(error_type), allocatable, intent(out) :: error
-
-      call write_batch(self%command%folder, self%outcomes, error)
-      self%written = wall_seconds()
-      self%in_file = self%ended
-   end subroutine write_table
 
 end module batch

@@ -4,6 +4,7 @@ module deck_check
    use cards, only: cards_type
    use command_line, only: command_type
    use deck_preparation, only: prepare_deck
+   use errors, only: error_type
    use increments, only: simulation_type
    use kinds, only: dp
    use messages, only: print_line
@@ -28,9 +29,13 @@ contains
       type(model_type) :: model
       type(simulation_type) :: simulation
       type(run_summary_type) :: run
+      type(error_type), allocatable :: error
 
-      call prepare_deck(path, command, cards, model, simulation, status)
-      if (status == 0) then
+      status = 0
+      call prepare_deck(path, command, cards, model, simulation, error)
+      if (allocated(error)) then
+         status = error%status
+      else
          call describe_run(path, model, simulation, run)
          call print_deck(model, simulation, run)
       end if

@@ -1,9 +1,8 @@
 !> Memory that OpenBLAS takes at its first use, and waits for without an end where there is too
 !> little of it, as under `ulimit -v`.
 module blas_memory
-   use, intrinsic :: iso_c_binding, only: c_associated, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_size_t
    use blas_lapack, only: dgetrf
-   use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
    implicit none
    private
@@ -29,19 +28,14 @@ module blas_memory
 
 contains
 
-   !> Has OpenBLAS take its memory now, where there is enough of it. None of it is touched.
-   !> Error: status_internal, where there is not.
-   subroutine reserve_blas_memory(error)
-      type(error_type), allocatable, intent(out) :: error   !! see above
+   !> Has OpenBLAS take its memory now, where there is enough of it. None of it is touched. Where
+   !> there is not, the program ends as at any allocation.
+   subroutine reserve_blas_memory()
       type(c_ptr) :: address
       real(dp) :: matrix(1, 1)
       integer :: pivot(1), info
 
       address = c_malloc(needed)
-      if (.not. c_associated(address)) then
-         call set_error(error, status_internal, 'memory ran out: 144 MB could not be had')
-         return
-      end if
       call c_free(address)
       matrix = 1.0_dp
       call dgetrf(1, 1, matrix, 1, pivot, info)

@@ -24,7 +24,7 @@ contains
    !> Prints the table, and how many decks ended in which way.
    subroutine print_batch(unit, outcomes, seconds)
       integer, intent(in) :: unit                          !! unit that is written to
-      class(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
+      type(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
       real(dp), intent(in) :: seconds                      !! time that the batch took [s]
       character(120) :: line
       integer :: width, i
@@ -53,7 +53,7 @@ contains
 
    !> How many decks ended in which way, in the order of the first of each.
    function counts_of(outcomes) result(string)
-      class(deck_outcome_type), intent(in) :: outcomes(:)
+      type(deck_outcome_type), intent(in) :: outcomes(:)
       character(:), allocatable :: string
       logical :: is_counted(size(outcomes))
       integer :: i, k, number
@@ -73,12 +73,12 @@ contains
       end do
    end function counts_of
 
-   !> Writes the CSV file; one that is there is replaced in one instant. Fields of a deck that did
-   !> not run to an end are empty.
+   !> Writes the CSV file; one that is there is replaced in one instant. Fields of a deck that was
+   !> not run are empty; those of one that runs say how far it is.
    !> Error: status_internal, when the file cannot be written.
    subroutine write_batch(folder, outcomes, error)
       character(*), intent(in) :: folder                   !! folder of the results
-      class(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
+      type(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
       type(error_type), allocatable, intent(out) :: error  !! see above
       character(:), allocatable :: path, working_path, text
       integer :: i
@@ -96,12 +96,18 @@ contains
    end subroutine write_batch
 
    function row_of(deck) result(line)
-      class(deck_outcome_type), intent(in) :: deck
+      type(deck_outcome_type), intent(in) :: deck
       character(:), allocatable :: line
 
       line = quoted(deck%path)//','
       if (.not. deck%has_run) then
-         line = line//','//deck%words()//','//quoted(deck%reason)//repeat(',', 7)
+         line = line//','//deck%words()//','//quoted(deck%reason)
+         if (deck%is_running) then
+            line = line//','//to_text(deck%increments)//','//to_text(deck%iterations)//',,,'// &
+               decimal(deck%seconds)//',,'
+         else
+            line = line//repeat(',', 7)
+         end if
          return
       end if
       line = line//to_text(deck%status)//','//deck%words()//','//quoted(deck%reason)//','// &

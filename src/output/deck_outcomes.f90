@@ -1,10 +1,11 @@
 !> How the run of a deck ended, and the short summary of it.
 module deck_outcomes
-   use, intrinsic :: iso_fortran_env, only: output_unit
-   use errors, only: status_deck, status_internal, status_interrupted, status_no_convergence, &
+   use, intrinsic :: iso_c_binding, only: c_int
+   use errors, only: error_type, status_deck, status_internal, status_interrupted, status_no_convergence, &
       status_ok, status_verify
    use kinds, only: dp
    use messages, only: print_line
+   use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
    use text, only: to_text
    implicit none
@@ -15,12 +16,14 @@ module deck_outcomes
    type :: deck_outcome_type
       character(:), allocatable :: path     !! deck as the command line names it
       integer :: status = status_ok         !! one of the status_* constants
+      logical :: lacks_memory = .false.     !! whether it failed for want of memory
       integer :: increments = 0             !! increments that were accepted
       integer :: iterations = 0             !! passes of these and of the one that failed
       integer :: verify_passed = 0          !! *VERIFY checks that passed
       integer :: verify_failed = 0          !! *VERIFY checks that failed
       real(dp) :: seconds = 0.0_dp          !! time it took [s]
       ! The rest is what a batch knows of the deck's process.
+      logical :: is_running = .false.       !! whether it was started and has not ended
       logical :: has_run = .false.          !! whether it was started and has ended
       real(dp) :: cpu_seconds = 0.0_dp      !! its own and the system's [s]
       real(dp) :: peak_bytes = 0.0_dp       !! largest resident memory [byte]
@@ -28,13 +31,16 @@ module deck_outcomes
       character(:), allocatable :: reason   !! why it is not solved, one sentence; or nothing
    contains
       procedure :: note
+      procedure :: as_report
+      procedure :: take
+      procedure :: fail
       procedure :: words
       procedure :: print => print_outcome
    end type deck_outcome_type
 
 contains
 
-   !> Counts the passes of an increment.
+   !> Counts the passes of an increment; the process of a deck of a batch reports them.
    subroutine note(self, record, accepted)
       class(deck_outcome_type), intent(inout) :: self     !! the run
       type(increment_record_type), intent(in) :: record   !! the increment
@@ -42,7 +48,47 @@ contains
 
       self%increments = accepted
       if (allocated(record%iterations)) self%iterations = self%iterations + size(record%iterations)
+      call file_report(self%as_report())
    end subroutine note
+
+   !> The outcome as a deck's process reports it.
+   function as_report(self) result(report)
+      class(deck_outcome_type), intent(in) :: self        !! the run
+      type(report_type) :: report
+
+      report%status = int(self%status, c_int)
+      report%lacks_memory = merge(1_c_int, 0_c_int, self%lacks_memory)
+      report%increments = int(self%increments, c_int)
+      report%iterations = int(self%iterations, c_int)
+      report%verify_passed = int(self%verify_passed, c_int)
+      report%verify_failed = int(self%verify_failed, c_int)
+      report%seconds = self%seconds
+      if (allocated(self%reason)) call set_reason(report, self%reason)
+   end function as_report
+
+   !> Takes what a deck's process has reported so far.
+   subroutine take(self, report)
+      class(deck_outcome_type), intent(inout) :: self     !! the run
+      type(report_type), intent(in) :: report
+
+      self%status = int(report%status)
+      self%increments = int(report%increments)
+      self%iterations = int(report%iterations)
+      self%verify_passed = int(report%verify_passed)
+      self%verify_failed = int(report%verify_failed)
+      self%reason = reason_of(report)
+   end subroutine take
+
+   !> Takes what went wrong; the first reason counts.
+   pure subroutine fail(self, error)
+      class(deck_outcome_type), intent(inout) :: self     !! the run
+      type(error_type), intent(in) :: error               !! what went wrong
+
+      if (self%status /= status_ok) return
+      self%status = error%status
+      self%reason = error%message
+      self%lacks_memory = error%lacks_memory
+   end subroutine fail
 
    !> The outcome in words, of at most 18 characters.
    pure function words(self) result(string)

@@ -25,7 +25,7 @@ module listing
    !> An open listing.
    type :: listing_type
       private
-      character(:), allocatable :: path                        !! path of the file
+      character(:), allocatable, public :: path                !! path of the file
       integer :: descriptor = -1                               !! of the file while it is locked
       type(printed_text_type) :: text                          !! what is not yet in the file
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
@@ -35,6 +35,7 @@ module listing
    contains
       procedure :: reserve
       procedure :: open => open_listing
+      procedure :: is_begun
       procedure :: add
       procedure :: add_failure
       procedure :: break_off
@@ -79,6 +80,13 @@ contains
       call print_title(self%text%unit, 'INCREMENTS')
       call write_text(self, error)
    end subroutine open_listing
+
+   !> Whether the file holds anything of this run.
+   pure logical function is_begun(self)
+      class(listing_type), intent(in) :: self             !! the listing
+
+      is_begun = allocated(self%warnings)
+   end function is_begun
 
    !> Writes what was printed.
    !> Error: status_internal, when the file cannot be written.
@@ -127,22 +135,16 @@ contains
 
    !> Says why the run ended early; prints the attempts at an increment that failed, and the passes
    !> of the last one.
-   subroutine add_failure(self, reason, record, accepted)
+   subroutine add_failure(self, reason, record, kept)
       class(listing_type), intent(inout) :: self             !! the listing
       character(*), intent(in) :: reason                     !! what went wrong
       type(increment_record_type), intent(in) :: record      !! that increment; empty for none
-      integer, intent(in) :: accepted                        !! increments that were accepted
+      character(*), intent(in) :: kept                       !! what the results hold, a sentence
 
       self%failure = reason
       call print_title(self%text%unit, 'ENDED EARLY')
       call print_wrapped(self%text%unit, '   ', reason)
-      if (accepted > 0) then
-         write (self%text%unit, '(3x, 3a)') 'The results hold the increments up to number ', &
-            to_text(accepted), '.'
-      else
-         call print_wrapped(self%text%unit, '   ', 'No increment was accepted: this run has no '// &
-            'result file and no .sta; those of an earlier run, if there are any, were left.')
-      end if
+      call print_wrapped(self%text%unit, '   ', kept)
       if (allocated(record%failed)) call print_attempts(self%text%unit, record%failed)
       if (allocated(record%iterations)) call print_iterations(self%text%unit, &
          pack(record%iterations, record%iterations%cut_backs == record%cut_backs))

@@ -11,7 +11,7 @@ module progress
    private
    public :: progress_type
 
-   real(dp), parameter :: pause_seconds = 0.1_dp   !! between two updates of the line [s]
+   real(dp), parameter :: pause_seconds = 0.05_dp  !! between two updates of the line [s]
    integer, parameter :: line_length = 100         !! longest progress line
 
    !> The progress line.
@@ -19,11 +19,14 @@ module progress
       private
       logical :: is_shown = .false.         !! whether there is a terminal that wants it
       real(dp) :: last_update = 0.0_dp      !! when the line was last drawn [s]
+      character(:), allocatable :: last     !! what the last increment came to
       integer :: length = 0                 !! characters that stand on the line
       character(line_length) :: line = ''   !! what stands there
    contains
       procedure :: start
-      procedure :: show
+      procedure :: is_on_line
+      procedure :: begin_increment
+      procedure :: take
       procedure :: say
       procedure :: clear
    end type progress_type
@@ -37,32 +40,47 @@ contains
 
       self%is_shown = .not. quiet
       if (self%is_shown) self%is_shown = is_terminal(2)
+      self%last = ''
    end subroutine start
 
-   !> Shows where the run stands; several calls a moment draw the line once.
-   subroutine show(self, record)
-      class(progress_type), intent(inout) :: self         !! the line
-      type(increment_record_type), intent(in) :: record   !! the last accepted increment
-      character(:), allocatable :: line
-      integer :: zones(3), i
+   !> Whether the line is shown.
+   pure logical function is_on_line(self)
+      class(progress_type), intent(in) :: self   !! the line
+
+      is_on_line = self%is_shown
+   end function is_on_line
+
+   !> Shows which increment is being solved, and what the last one came to. The line is drawn some
+   !> times a second at most.
+   subroutine begin_increment(self, number, planned)
+      class(progress_type), intent(inout) :: self   !! the line
+      integer, intent(in) :: number                 !! the increment
+      integer, intent(in) :: planned                !! how many there will be
 
       if (.not. self%is_shown) return
       if (wall_seconds() - self%last_update < pause_seconds) return
       self%last_update = wall_seconds()
+      call self%say('increment '//to_text(number)//' of '//to_text(planned)//self%last)
+   end subroutine begin_increment
+
+   !> Takes an increment that was accepted.
+   subroutine take(self, record)
+      class(progress_type), intent(inout) :: self         !! the line
+      type(increment_record_type), intent(in) :: record   !! the increment
+      integer :: zones(3), i
+
+      if (.not. self%is_shown) return
       zones = 0
       do i = 1, size(record%contacts)
          zones = zones + zone_counts(record%contacts(i)%status)
       end do
-      line = 'increment '//to_text(record%increment)
-      if (allocated(record%iterations)) then
-         line = line//'  iterations '//to_text(size(record%iterations))
-      end if
-      if (record%cut_backs > 0) line = line//'  cut-backs '//to_text(record%cut_backs)
-      line = line//'  load '//to_text(record%load)
-      if (sum(zones) > 0) line = line//'  I '//to_text(zones(1))//' II '//to_text(zones(2))// &
-         ' III '//to_text(zones(3))
-      call self%say(line)
-   end subroutine show
+      self%last = '  load '//to_text(record%load)
+      if (allocated(record%iterations)) self%last = self%last//'  iterations '// &
+         to_text(size(record%iterations))
+      if (record%cut_backs > 0) self%last = self%last//'  cut-backs '//to_text(record%cut_backs)
+      if (sum(zones) > 0) self%last = self%last//'  I '//to_text(zones(1))//' II '// &
+         to_text(zones(2))//' III '//to_text(zones(3))
+   end subroutine take
 
    !> Shows a line of words in place of the last one.
    subroutine say(self, words)

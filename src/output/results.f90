@@ -3,8 +3,8 @@
 !> Increments gather in memory and are published together: the file in the making is closed and
 !> renamed over the one in place, then their lines go to `.sta`. So a killed run leaves a file that
 !> opens and holds every increment of its `.sta`. A run publishes the end of every step and its own
-!> end, and in between whenever that costs less than a tenth of the time. The first publishing
-!> replaces the files of an earlier run.
+!> end, and in between whenever that costs less than a tenth of the time, or an increment was long.
+!> The first publishing replaces the files of an earlier run.
 module results
    use contact_pairs, only: contact_pairs_type
    use due_output, only: fields_are_due
@@ -37,7 +37,7 @@ module results
    !> Writer of the results of one run.
    type :: results_type
       private
-      type(working_file_type) :: file                         !! the result file
+      type(working_file_type), public :: file                         !! the result file
       type(status_file_type) :: increments                    !! `.sta`
       type(status_file_type) :: passes                        !! `.cvg`
       type(field_results_type) :: fields                      !! `/VTKHDF`

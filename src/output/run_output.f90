@@ -28,7 +28,7 @@ module run_output
       type(results_type) :: results                            !! result file, `.sta`, `.cvg`
       type(listing_type) :: listing                            !! `.lst`
       type(verifier_type) :: verifier                          !! *VERIFY cards
-      type(progress_type) :: progress                          !! progress line
+      type(progress_type), public :: progress                  !! progress line
       type(run_judgement_type) :: judgement                    !! what the whole run shows
       type(iteration_record_type), allocatable :: failed(:)    !! passes of an increment that failed
       integer, allocatable :: point_node(:)                    !! (points) node index of each point
@@ -41,6 +41,9 @@ module run_output
       procedure :: break_off
       procedure :: close => close_output
       procedure :: accepted
+      procedure :: listing_path
+      procedure :: working_path
+      procedure :: kept_words
       procedure :: failed_checks
    end type run_output_type
 
@@ -65,14 +68,13 @@ contains
    !> Begins the output of a run, whose files are reserved: writes the head of the listing and
    !> touches no other file yet. `run` is filled in before, but for its times and verdicts.
    !> Error: status_internal, when the listing cannot be written or HDF5 does not start.
-   subroutine start(self, model, pairs, point_node, element_points, cards, quiet, error)
+   subroutine start(self, model, pairs, point_node, element_points, cards, error)
       class(run_output_type), intent(inout) :: self       !! the output
       type(model_type), intent(in) :: model               !! the model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points of each element
       type(string_type), intent(in) :: cards(:)           !! card images as read
-      logical, intent(in) :: quiet                        !! no progress line
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       real(dp) :: since
 
@@ -80,7 +82,6 @@ contains
       self%point_node = point_node
       allocate(self%failed(0))
       call self%verifier%start(model)
-      call self%progress%start(quiet)
       call self%listing%open(model, pairs, cards, self%run, error)
       if (allocated(error)) return
       call self%results%open(model, pairs, point_node, element_points, cards, error)
@@ -102,7 +103,7 @@ contains
       call self%verifier%judge(record, model, pairs, self%point_node)
       call self%judgement%take(record, model, pairs)
       if (allocated(record%warnings)) call print_warnings(self, record%warnings)
-      call self%progress%show(record)
+      call self%progress%take(record)
       if (.not. allocated(error)) call self%results%append(record, model, pairs, self%run, error)
       if (allocated(error)) call self%progress%clear()
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
@@ -129,7 +130,7 @@ contains
 
       if (allocated(record%iterations)) self%failed = record%iterations
       call self%judgement%fail()
-      call self%listing%add_failure(reason, record, self%results%accepted)
+      call self%listing%add_failure(reason, record, self%kept_words())
    end subroutine fail
 
    !> Ends the output: publishes what is left, then closes the listing. `run` then holds the
@@ -202,6 +203,33 @@ contains
       if (.not. allocated(reason)) return
       if (len(reason) > 0) string = ', but '//reason
    end function finding
+
+   !> Path of the listing, or nothing before it is open.
+   pure function listing_path(self) result(path)
+      class(run_output_type), intent(in) :: self   !! the output
+      character(:), allocatable :: path
+
+      path = or_blank(self%listing%path)
+   end function listing_path
+
+   !> Path of the file that is renamed once it is whole, or nothing before it has a name.
+   pure function working_path(self) result(path)
+      class(run_output_type), intent(in) :: self   !! the output
+      character(:), allocatable :: path
+
+      path = or_blank(self%results%file%working_path)
+   end function working_path
+
+   !> What the results of a run hold that ends now.
+   pure function kept_words(self) result(words)
+      class(run_output_type), intent(in) :: self   !! the output
+      character(:), allocatable :: words           !! one sentence
+
+      words = 'No increment was accepted: this run has no result file and no .sta; those of '// &
+         'an earlier run, if there are any, were left.'
+      if (self%accepted() > 0) words = 'The results hold the increments up to number '// &
+         to_text(self%accepted())//'.'
+   end function kept_words
 
    !> Number of increments that were accepted.
    pure function accepted(self) result(number)

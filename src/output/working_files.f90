@@ -13,6 +13,8 @@ module working_files
    public :: working_file_type
 
    real(dp), parameter :: patience = 11.0_dp   !! pause between publishings, in costs of one
+   !> An increment that takes longer is published at once: a signal may end the next one. [s]
+   real(dp), parameter :: long_increment = 2.0_dp
    real(dp), parameter :: usual_cost = 0.01_dp   !! what the first one is taken to cost [s]
    integer, parameter :: tried_bytes = 16384   !! room for these must be had before the run [byte]
    integer, parameter :: unlike_full = 65536   !! a disk that takes these is not full [byte]
@@ -22,12 +24,13 @@ module working_files
    type :: working_file_type
       private
       character(:), allocatable :: path          !! path of the file in place
-      character(:), allocatable :: working_path  !! path of the working copy, where there is one
+      character(:), allocatable, public :: working_path !! path of the working copy, if there is one
       integer(hid_t), public :: id = -1          !! HDF5's handle while the working copy is open
       logical :: is_open = .false.               !! whether the working copy is open
       logical, public :: in_place = .false.      !! whether this run's file is in place
       real(dp) :: cost = 0.0_dp                  !! what the present publishing has cost so far [s]
       real(dp) :: last_cost = usual_cost         !! what the last one cost [s]
+      real(dp) :: last_increment = 0.0_dp        !! when the last increment was accepted [s]
       real(dp) :: last_end = 0.0_dp              !! when it ended, at first when the run began [s]
    contains
       procedure :: start
@@ -50,6 +53,7 @@ contains
 
       self%path = path
       self%last_end = wall_seconds()
+      self%last_increment = self%last_end
    end subroutine start
 
    !> Tries whether both files can be written, and leaves none behind.
@@ -123,12 +127,17 @@ contains
       deallocate (self%working_path)
    end subroutine put_in_place
 
-   !> Whether publishing now keeps the cost of it below a tenth of the run time.
+   !> Whether an increment that has just been accepted is to be published: where that keeps the cost
+   !> of it below a tenth of the run time, or where increments are long.
    function is_due(self) result(due)
-      class(working_file_type), intent(in) :: self  !! the file
-      logical :: due                                !! whether it does
+      class(working_file_type), intent(inout) :: self  !! the file
+      logical :: due                                   !! whether it does
+      real(dp) :: now
 
-      due = wall_seconds() - self%last_end > patience*(self%last_cost + self%cost)
+      now = wall_seconds()
+      due = now - self%last_end > patience*(self%last_cost + self%cost) .or. &
+         now - self%last_increment > long_increment
+      self%last_increment = now
    end function is_due
 
    !> Books time that was spent on publishing.

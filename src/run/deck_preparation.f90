@@ -7,13 +7,14 @@ module deck_preparation
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use errors, only: error_type, status_deck
+   use errors, only: error_type, set_error, status_deck
    use increments, only: simulation_type
    use loads, only: loads_type
    use messages, only: print_error
    use model, only: model_type
    use pair_reports, only: pair_all
    use pair_rows, only: over_constrained
+   use progress, only: progress_type
    use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
    use text, only: string_type, to_text
@@ -26,19 +27,21 @@ module deck_preparation
 
 contains
 
-   !> Reads a deck and prepares its run. Warnings and errors go to stderr.
-   subroutine prepare_deck(path, command, cards, model, simulation, status, variation)
+   !> Reads a deck and prepares its run. Warnings and errors are printed on stderr.
+   !> Errors: status_deck, with the first of the deck's errors; as simulation_type's start.
+   subroutine prepare_deck(path, command, cards, model, simulation, error, variation)
       character(*), intent(in) :: path                    !! the deck as given
       type(command_type), intent(in) :: command           !! options of the command line
       type(cards_type), intent(out) :: cards              !! its cards
       type(model_type), intent(out) :: model              !! its model
       type(simulation_type), intent(inout) :: simulation  !! a fresh run
-      integer, intent(out) :: status                      !! exit status so far
+      type(error_type), allocatable, intent(out) :: error !! see above
       type(variation_type), intent(in), optional :: variation   !! what is other than in the deck
       type(deck_report_type) :: report
-      type(error_type), allocatable :: error
+      type(progress_type) :: progress
 
-      status = 0
+      call progress%start(command%quiet)
+      call progress%say('reading')
       call read_deck(path, command%width, command%settings, cards, report)
       call build_model(cards, verifiable, model, report, error, variation)
       if (.not. (report%has_errors() .or. allocated(error))) then
@@ -49,14 +52,15 @@ contains
          if (.not. allocated(error)) call check_arc_lengths(model, &
             simulation%operators%interfaces, report)
          call check_supports(cards%last, model, simulation, report)
-         if (report%has_errors() .and. allocated(error)) deallocate (error)
       end if
       model%warnings = report%warnings()
+      call progress%clear()
       call report%print(error_unit)
-      if (report%has_errors()) status = status_deck
-      if (.not. allocated(error)) return
-      status = error%status
-      call print_error(path, error%message)
+      if (report%has_errors()) then
+         call set_error(error, status_deck, report%first_error())
+      else if (allocated(error)) then
+         call print_error(path, error%message)
+      end if
    end subroutine prepare_deck
 
    !> Reports what supports hold too much, and what they and the contact leave unconstrained or

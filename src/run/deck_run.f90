@@ -13,7 +13,8 @@ module deck_run
    use file_calls, only: make_folder
    use increment_control, only: increment_control_type
    use increments, only: simulation_type
-   use interruption, only: caught_signal
+   use interruption, only: caught_signal, end_after_grace, end_at_once, end_by_increments, &
+      run_end_type
    use kinds, only: dp
    use load_courses, only: step_clock_type
    use messages, only: print_error
@@ -26,105 +27,131 @@ module deck_run
    private
    public :: run_deck, base_name
 
-contains
-
-   !> Solves one deck. What goes wrong is printed on stderr and stands in the outcome's status.
-   subroutine run_deck(path, command, outcome)
-      character(*), intent(in) :: path                  !! the deck as given
-      type(command_type), intent(in) :: command         !! options of the command line
-      class(deck_outcome_type), intent(inout) :: outcome !! how it ended
+   !> The run of a deck.
+   type :: run_type
+      character(:), allocatable :: path       !! the deck as given
+      type(command_type) :: command           !! options of the command line
       type(cards_type) :: cards
       type(model_type) :: model
       type(simulation_type) :: simulation
       type(run_output_type) :: output
+      type(run_end_type) :: end               !! of an increment that takes too long
+   end type run_type
+
+contains
+
+   !> Solves one deck. What goes wrong is printed on stderr and stands in the outcome.
+   subroutine run_deck(path, command, outcome)
+      character(*), intent(in) :: path                  !! the deck as given
+      type(command_type), intent(in) :: command         !! options of the command line
+      type(deck_outcome_type), intent(inout) :: outcome !! how it ended
+      type(run_type) :: self
       type(error_type), allocatable :: error
       real(dp) :: since
 
       since = wall_seconds()
       outcome%path = path
-      if (any(path(max(len(path) - 3, 1):) == ['.lst', '.sta', '.cvg']) .or. &
-         path(max(len(path) - 6, 1):) == '.vtkhdf' .or. &
-         path(index(path, '/', back=.true.) + 1:) == table_name) then
-         call print_error(path, 'a deck cannot have the name of a result file')
-         outcome%status = status_deck
-         return
-      end if
-      call reserve_blas_memory(error)
+      self%path = path
+      self%command = command
+      call check_name(path, error)
       if (allocated(error)) then
-         call report_failure(path, error, outcome)
+         call report_failure(self, error, outcome)
          return
       end if
-      call prepare_deck(path, command, cards, model, simulation, outcome%status)
-      if (outcome%status == 0) then
-         output%run%deck_path = path
-         call make_folder(command%folder)
-         call output%reserve(command%folder//'/'//base_name(path), error)
-         if (.not. allocated(error)) then
-            call simulation%reduce(model, error)
-            if (allocated(error)) call say_when(model, simulation, error)
-         end if
-         if (allocated(error)) call report_failure(path, error, outcome)
+      call prepare_end(self, end_at_once)
+      call reserve_blas_memory()
+      call prepare_deck(path, command, self%cards, self%model, self%simulation, error)
+      if (allocated(error)) then
+         call outcome%fail(error)
+      else
+         call reserve_files(self, error)
+         if (.not. allocated(error)) call reduce_bodies(self, error)
+         if (allocated(error)) call report_failure(self, error, outcome)
       end if
       if (outcome%status == 0) then
-         output%run%seconds_read = wall_seconds() - since - simulation%seconds%assemble - &
-            simulation%seconds%reduce
-         call describe_run(path, model, simulation, output%run)
-         call solve_deck(command%quiet, cards, model, simulation, output, outcome, error)
-         if (allocated(error)) call report_failure(path, error, outcome)
+         self%output%run%seconds_read = wall_seconds() - since - &
+            self%simulation%seconds%assemble - self%simulation%seconds%reduce
+         call describe_run(path, self%model, self%simulation, self%output%run)
+         call solve_deck(self, outcome, error)
+         if (allocated(error)) call report_failure(self, error, outcome)
          ! Of a run that could not go on for want of a file or of memory a check says nothing.
-         if (outcome%status /= status_internal) then
-            call report_checks(path, output%failed_checks(model))
-         end if
-         outcome%verify_passed = output%run%verify_passed
-         outcome%verify_failed = output%run%verify_failed
-         if (outcome%status == 0 .and. outcome%verify_failed > 0) outcome%status = status_verify
+         if (outcome%status /= status_internal) call report_checks(path, &
+            self%output%failed_checks(self%model), outcome)
+         outcome%verify_passed = self%output%run%verify_passed
+         outcome%verify_failed = self%output%run%verify_failed
       end if
-      call output%close()
-      call simulation%release()
+      call self%output%close()
+      call self%simulation%release()
       outcome%seconds = wall_seconds() - since
    end subroutine run_deck
 
+   !> Error: status_deck, where results would be written over the deck.
+   subroutine check_name(path, error)
+      character(*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+
+      if (any(path(max(len(path) - 3, 1):) == ['.lst', '.sta', '.cvg']) .or. &
+         path(max(len(path) - 6, 1):) == '.vtkhdf' .or. &
+         path(index(path, '/', back=.true.) + 1:) == table_name) then
+         call set_error(error, status_deck, 'a deck cannot have the name of a result file')
+      end if
+   end subroutine check_name
+
+   !> Sees to it that results can be written before anything is solved.
+   !> Error: as run_output_type's reserve.
+   subroutine reserve_files(self, error)
+      type(run_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      self%output%run%deck_path = self%path
+      call make_folder(self%command%folder)
+      call self%end%hold(.true.)
+      call self%output%reserve(self%command%folder//'/'//base_name(self%path), error)
+      call prepare_end(self, end_at_once)
+      call self%end%hold(.false.)
+   end subroutine reserve_files
+
+   !> What the first step needs before its first increment.
+   !> Error: as simulation_type's reduce.
+   subroutine reduce_bodies(self, error)
+      type(run_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (progress => self%output%progress)
+         call progress%start(self%command%quiet)
+         call progress%say('assembling')
+         call self%simulation%assemble(self%model)
+         call progress%say('reducing')
+         call self%simulation%reduce(self%model, error)
+         if (allocated(error)) call say_when(self%model, self%simulation, error)
+      end associate
+   end subroutine reduce_bodies
+
    !> All increments, with their output.
-   subroutine solve_deck(quiet, cards, model, simulation, output, outcome, error)
-      logical, intent(in) :: quiet
-      type(cards_type), intent(in) :: cards
-      type(model_type), intent(in) :: model
-      type(simulation_type), intent(inout) :: simulation
-      type(run_output_type), intent(inout) :: output
-      class(deck_outcome_type), intent(inout) :: outcome
+   subroutine solve_deck(self, outcome, error)
+      type(run_type), intent(inout) :: self
+      type(deck_outcome_type), intent(inout) :: outcome
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: output_error
-      type(error_estimator_type) :: estimator
       type(increment_record_type) :: record
+      logical :: is_written
 
-      associate (pairs => simulation%operators%interfaces, points => simulation%recovery%points)
-         call output%start(model, pairs, points%node, points%element_points, cards%images, quiet, &
+      associate (model => self%model, simulation => self%simulation, output => self%output, &
+         pairs => self%simulation%operators%interfaces, points => self%simulation%recovery%points)
+         call self%end%hold(.true.)
+         call output%start(model, pairs, points%node, points%element_points, self%cards%images, &
             error)
          if (allocated(error)) return
-         call estimator%start(model, simulation)
-         do while (.not. simulation%finished(model))
-            call check_signals(simulation%control, error)
-            if (allocated(error)) then
-               record = increment_record_type()
-               exit
-            end if
-            call estimator%begin_increment(simulation)
-            call simulation%advance(model, record, error)
-            output%run%seconds_assemble = simulation%seconds%assemble
-            output%run%seconds_reduce = simulation%seconds%reduce
-            output%run%seconds_iterate = simulation%seconds%iterate
-            output%run%seconds_recover = simulation%seconds%recover
-            output%run%factor_bytes = simulation%sizes%factor_bytes
-            output%run%smallest_pivot = simulation%sizes%smallest_pivot
-            if (allocated(error)) exit
-            call estimator%end_increment(model, simulation, record)
-            call output%accept(record, model, pairs, error)
-            call outcome%note(record, output%accepted())
-            if (allocated(error)) then
-               call output%break_off(error%message)
-               return
-            end if
-         end do
+         call prepare_end(self, end_at_once)
+         call self%end%hold(.false.)
+         call solve_increments(self, outcome, record, is_written, error)
+         ! What is written now is no longer cut short.
+         call self%end%hold(.true.)
+         call prepare_end(self, end_by_increments)
+         if (.not. is_written) then
+            call output%break_off(error%message)
+            return
+         end if
          if (allocated(error)) then
             if (error%status == status_deck) then
                ! What only an increment shows is no mistake of the deck's cards; one that has no
@@ -142,6 +169,76 @@ contains
          end if
       end associate
    end subroutine solve_deck
+
+   !> Solves increment after increment, each with its output.
+   !> Errors: as simulation_type's advance and run_output_type's accept; status_interrupted.
+   subroutine solve_increments(self, outcome, record, is_written, error)
+      type(run_type), intent(inout) :: self
+      type(deck_outcome_type), intent(inout) :: outcome
+      type(increment_record_type), intent(out) :: record    !! the last; empty after a signal
+      logical, intent(out) :: is_written                    !! whether the output went well
+      type(error_type), allocatable, intent(out) :: error
+      type(error_estimator_type) :: estimator
+
+      is_written = .true.
+      associate (model => self%model, simulation => self%simulation, output => self%output)
+         call estimator%start(model, simulation)
+         do while (.not. simulation%finished(model))
+            call prepare_end(self, end_after_grace)
+            call check_signals(simulation%control, error)
+            if (.not. allocated(error)) then
+               call output%progress%begin_increment(simulation%control%increments + 1, &
+                  simulation%control%planned(model))
+               call estimator%begin_increment(simulation)
+               call simulation%advance(model, record, error)
+               call take_measures(simulation, output)
+               if (allocated(error)) then
+                  if (error%status == status_interrupted) call check_signals( &
+                     simulation%control, error)
+               end if
+            end if
+            if (allocated(error)) then
+               if (error%status == status_interrupted) record = increment_record_type()
+               return
+            end if
+            call estimator%end_increment(model, simulation, record)
+            call self%end%hold(.true.)
+            call output%accept(record, model, simulation%operators%interfaces, error)
+            call outcome%note(record, output%accepted())
+            is_written = .not. allocated(error)
+            if (allocated(error)) return
+            call self%end%hold(.false.)
+         end do
+      end associate
+   end subroutine solve_increments
+
+   subroutine take_measures(simulation, output)
+      type(simulation_type), intent(in) :: simulation
+      type(run_output_type), intent(inout) :: output
+
+      output%run%seconds_assemble = simulation%seconds%assemble
+      output%run%seconds_reduce = simulation%seconds%reduce
+      output%run%seconds_iterate = simulation%seconds%iterate
+      output%run%seconds_recover = simulation%seconds%recover
+      output%run%factor_bytes = simulation%sizes%factor_bytes
+      output%run%smallest_pivot = simulation%sizes%smallest_pivot
+   end subroutine take_measures
+
+   !> Prepares the end of the run from here on: within an increment that takes too long after a
+   !> signal, or where there is no memory left.
+   subroutine prepare_end(self, when)
+      type(run_type), intent(inout) :: self
+      integer, intent(in) :: when   !! one of the end_* constants
+
+      self%end%when = when
+      self%end%shows_progress = self%output%progress%is_on_line()
+      self%end%deck = self%path
+      self%end%where = where_words(self%simulation%control)
+      self%end%listing = self%output%listing_path()
+      self%end%working = self%output%working_path()
+      self%end%kept = self%output%kept_words()
+      call self%end%prepare()
+   end subroutine prepare_end
 
    !> Puts the increment that was tried before what went wrong.
    subroutine say_when(model, simulation, error)
@@ -161,37 +258,43 @@ contains
       type(increment_control_type), intent(in) :: control
       type(error_type), allocatable, intent(out) :: error
 
-      if (caught_signal() == '') return
-      if (control%increments == 0) then
-         call set_error(error, status_interrupted, 'ended by '//caught_signal()// &
-            ' before the first increment')
-      else
-         call set_error(error, status_interrupted, 'ended by '//caught_signal()// &
-            ' after increment '//to_text(control%increments)//' (time '// &
-            to_text(control%step_start + control%step_time)//')')
-      end if
+      if (caught_signal() /= '') call set_error(error, status_interrupted, 'ended by '// &
+         caught_signal()//where_words(control))
    end subroutine check_signals
 
+   !> Behind which increment a run ends.
+   function where_words(control) result(words)
+      type(increment_control_type), intent(in) :: control
+      character(:), allocatable :: words   !! with a blank before them
+
+      words = ' before the first increment'
+      if (control%increments > 0) words = ' after increment '//to_text(control%increments)// &
+         ' (time '//to_text(control%step_start + control%step_time)//')'
+   end function where_words
+
    !> Prints which checks of the deck failed.
-   subroutine report_checks(path, lines)
+   subroutine report_checks(path, lines, outcome)
       character(*), intent(in) :: path
       type(string_type), intent(in) :: lines(:)
+      type(deck_outcome_type), intent(inout) :: outcome
       integer :: i
 
       do i = 1, size(lines)
          call print_error(path, lines(i)%value)
+         call outcome%fail(error_type(status=status_verify, message=lines(i)%value))
       end do
    end subroutine report_checks
 
    !> Prints why a run ended early.
-   subroutine report_failure(path, error, outcome)
-      character(*), intent(in) :: path
+   subroutine report_failure(self, error, outcome)
+      type(run_type), intent(inout) :: self
       type(error_type), intent(in) :: error
-      class(deck_outcome_type), intent(inout) :: outcome
+      type(deck_outcome_type), intent(inout) :: outcome
 
-      outcome%status = error%status
-      call print_error(path, error%message)
-      if (error%status == status_no_convergence) call print_error(path, &
+      call outcome%fail(error)
+      call self%output%progress%clear()
+      call print_error(self%path, error%message)
+      if (error%status == status_no_convergence) call print_error(self%path, &
          'not converged; the listing has the iteration history')
    end subroutine report_failure
 

@@ -26,6 +26,7 @@ module increment_control
       procedure :: enter_step
       procedure :: step_is_over
       procedure :: next_instant
+      procedure :: planned
       procedure :: accept
       procedure :: can_cut_back
       procedure :: cut_back
@@ -92,6 +93,21 @@ contains
          clock%ramped = step%ramped
       end associate
    end function next_instant
+
+   !> How many increments the whole run takes where no further one is cut back or ends before its
+   !> time on an instant of the deck.
+   pure integer function planned(self, model)
+      class(increment_control_type), intent(in) :: self   !! place in the steps
+      type(model_type), intent(in) :: model               !! the model
+      real(dp), parameter :: rounding = 1.0e-6_dp
+      real(dp) :: left(size(model%steps))
+
+      left = model%steps%period/model%steps%first_increment
+      left(:self%step) = 0.0_dp
+      if (self%step > 0) left(self%step) = (model%steps(self%step)%period - self%step_time)/ &
+         model%steps(self%step)%first_increment
+      planned = self%increments + sum(ceiling(min(left - rounding, 1.0e6_dp)))
+   end function planned
 
    !> Goes on behind an increment that converged.
    pure subroutine accept(self, model, clock)

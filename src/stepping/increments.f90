@@ -21,7 +21,7 @@ module increments
    use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
-   use step_reduction, only: measure_factors, measure_steps, step_reduction_type
+   use step_reduction, only: assemble_bodies, measure_factors, measure_steps, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: append, to_text
    use unconstrained_bodies, only: unconstrained_now
@@ -47,6 +47,7 @@ module increments
       real(dp) :: runaway_time = 0.0_dp             !! where this attempt would have ended [time]
    contains
       procedure :: start
+      procedure :: assemble
       procedure :: reduce
       procedure :: finished
       procedure :: advance
@@ -87,6 +88,14 @@ contains
          call self%reduction%number(model, step, self%loads, self%operators, error)
       end associate
    end subroutine enter_step
+
+   !> Assembles the bodies, where that is not done.
+   subroutine assemble(self, model)
+      class(simulation_type), intent(inout) :: self       !! the run, started
+      type(model_type), intent(in) :: model               !! the model
+
+      call assemble_bodies(model, self%operators, self%seconds)
+   end subroutine assemble
 
    !> Assembles and reduces the bodies for the present step, where that is not done.
    !> Errors: as step_reduction's reduce.

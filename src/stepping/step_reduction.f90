@@ -17,7 +17,7 @@ module step_reduction
    use text, only: to_text
    implicit none
    private
-   public :: step_reduction_type, measure_steps, measure_factors
+   public :: step_reduction_type, assemble_bodies, measure_steps, measure_factors
 
    !> What of the bodies is numbered and reduced.
    type :: step_reduction_type
@@ -100,6 +100,21 @@ contains
       end do
    end subroutine measure_steps
 
+   !> Assembles the bodies, where that is not done.
+   subroutine assemble_bodies(model, operators, seconds)
+      type(model_type), intent(in) :: model                      !! the model
+      type(interface_operators_type), intent(inout) :: operators !! the bodies
+      type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
+      real(dp) :: since
+
+      if (allocated(operators%mechanical%matrix%value)) return
+      if (allocated(operators%thermal%matrix%value)) return
+      since = wall_seconds()
+      call operators%assemble(model, any(solves_mechanics(model%steps%analysis)), &
+         any(solves_heat(model%steps%analysis)), temperatures_strain(model))
+      seconds%assemble = seconds%assemble + (wall_seconds() - since)
+   end subroutine assemble_bodies
+
    !> Assembles the bodies, where that is not done, and reduces the fields of a step to their
    !> contact unknowns, where that is not done.
    !> Errors: as interface_operators' reduce.
@@ -116,13 +131,7 @@ contains
 
       mechanics = solves_mechanics(step%analysis) .and. .not. self%mechanics_is_reduced
       heat = solves_heat(step%analysis) .and. .not. self%heat_is_reduced
-      since = wall_seconds()
-      if (.not. (allocated(operators%mechanical%matrix%value) .or. &
-         allocated(operators%thermal%matrix%value))) then
-         call operators%assemble(model, any(solves_mechanics(model%steps%analysis)), &
-            any(solves_heat(model%steps%analysis)), temperatures_strain(model))
-      end if
-      seconds%assemble = seconds%assemble + (wall_seconds() - since)
+      call assemble_bodies(model, operators, seconds)
       since = wall_seconds()
       if (heat) operators%thermal%added = film
       call operators%reduce(model, mechanics, heat, solves_heat(step%analysis) .and. &

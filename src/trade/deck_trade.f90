@@ -53,10 +53,13 @@ contains
          call print_error(path, 'trade reads the deck more than once, which only a file allows')
          return
       end if
-      call prepare_deck(path, command, cards, model, simulation, status, &
+      call prepare_deck(path, command, cards, model, simulation, error, &
          variation_type(order=2, levels=0))
       call simulation%release()
-      if (status /= 0) return
+      if (allocated(error)) then
+         status = error%status
+         return
+      end if
       call make_folder(command%folder)
       results = command%folder//'/'//base_name(path)//'.trade'
       trade%instants = common_instants(model, longest_factor)

@@ -1,15 +1,15 @@
 !> One row of a trade, solved in a process of its own.
 module row_task
+   use, intrinsic :: iso_c_binding, only: c_int
    use cards, only: cards_type
    use command_line, only: command_type
    use deck_preparation, only: prepare_deck
-   use errors, only: error_type, set_error, status_deck, status_interrupted, &
-      status_no_convergence
+   use errors, only: error_type, set_error, status_interrupted, status_no_convergence
    use increments, only: simulation_type
    use interruption, only: caught_signal
    use kinds, only: dp
    use model, only: model_type
-   use processes, only: task_type
+   use processes, only: report_type, set_reason, task_type
    use records, only: increment_record_type
    use sorting, only: number_index_type
    use steps, only: solves_heat
@@ -35,25 +35,24 @@ module row_task
 contains
 
    !> Solves the row and leaves its values in a file.
-   subroutine execute(self, status)
+   subroutine execute(self, report)
       class(row_task_type), intent(inout) :: self   !! the row
-      integer, intent(out) :: status                !! exit status
+      type(report_type), intent(inout) :: report    !! how it ended
       type(cards_type) :: cards
       type(model_type) :: model
       type(simulation_type) :: simulation
       type(row_values_type) :: values
       type(error_type), allocatable :: error
 
-      call prepare_deck(self%path, self%command, cards, model, simulation, status, self%variation)
-      if (status /= 0) return   ! the parent finds the message in what was printed
-      call solve(self, model, simulation, values, error)
-      if (allocated(error)) then
-         status = error%status
-         if (status == status_deck) status = status_no_convergence
-         call values%save(self%values_path, status, error%message)
-      else
-         call values%save(self%values_path, status, '')
+      call prepare_deck(self%path, self%command, cards, model, simulation, error, self%variation)
+      if (.not. allocated(error)) then
+         call solve(self, model, simulation, values, error)
+         call values%save(self%values_path)
+         if (allocated(error)) error%status = max(error%status, status_no_convergence)
       end if
+      if (.not. allocated(error)) return
+      report%status = int(error%status, c_int)
+      call set_reason(report, error%message)
    end subroutine execute
 
    subroutine solve(self, model, simulation, values, error)

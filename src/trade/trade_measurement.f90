@@ -2,12 +2,11 @@
 module trade_measurement
    use clock, only: wall_seconds
    use command_line, only: command_type
-   use errors, only: error_type, set_error, status_deck, status_internal, status_interrupted
+   use errors, only: error_type, set_error, status_internal, status_interrupted
    use interruption, only: caught_signal
    use file_calls, only: remove_file
    use kinds, only: dp
-   use process_ends, only: describe_end, process_end_type
-   use processes, only: collect_process, kill_process, pause_briefly, start_process
+   use processes, only: child_type, pause_briefly, reason_of, report_type
    use progress, only: progress_type
    use row_task, only: row_task_type
    use text, only: to_text
@@ -25,7 +24,7 @@ module trade_measurement
    !> A run of a row that is under way.
    type :: slot_type
       integer :: row = 0            !! the row, 0 where the slot is free
-      integer :: process = 0        !! its process
+      type(child_type) :: child     !! its process
       real(dp) :: since = 0.0_dp    !! when it began [s]
       logical :: is_late = .false.  !! whether it was ended for taking too long
    end type slot_type
@@ -70,8 +69,7 @@ contains
          if (allocated(error)) exit
       end do
       do s = 1, size(slots)
-         if (slots(s)%row > 0) call kill_process(slots(s)%process)
-         call remove_file(messages_path(self, s))
+         if (slots(s)%row > 0) call slots(s)%child%kill()
          call remove_file(values_path(self, s))
       end do
       call self%progress%clear()
@@ -103,7 +101,7 @@ contains
       if (allocated(trade%rows(row)%cpu)) line = line//', run '// &
          to_text(size(trade%rows(row)%cpu) + 1)
       call self%progress%say(line)
-      call start_process(self%task, messages_path(self, place), slot%process, error)
+      call slot%child%start(self%task, error)
       if (allocated(error)) return
       slot%row = row
       slot%since = wall_seconds()
@@ -115,109 +113,77 @@ contains
       type(trade_type), intent(inout) :: trade
       type(slot_type), intent(inout) :: slots(:)
       integer, intent(inout) :: queue(:), queued
-      type(process_end_type) :: ended
       logical :: has_ended
       integer :: s
 
       has_ended = .false.
-      do while (.not. has_ended .and. caught_signal() == '')
-         call collect_process(has_ended, ended)
-         if (has_ended) exit
+      do while (caught_signal() == '')
          do s = 1, size(slots)
             if (slots(s)%row == 0) cycle
-            if (wall_seconds() - slots(s)%since < max(patience*self%limit, least_patience)) cycle
-            call kill_process(slots(s)%process)
-            slots(s)%is_late = .true.
-            ended = process_end_type(process=slots(s)%process)
-            has_ended = .true.
-            exit
+            slots(s)%is_late = wall_seconds() - slots(s)%since >= max(patience*self%limit, &
+               least_patience)
+            if (slots(s)%is_late) call slots(s)%child%kill()
+            has_ended = slots(s)%is_late
+            if (.not. has_ended) has_ended = slots(s)%child%has_ended()
+            if (.not. has_ended) cycle
+            call take(self, trade%rows(slots(s)%row), slots(s), s, queue, queued)
+            slots(s)%row = 0
+            return
          end do
-         if (.not. has_ended) call pause_briefly()
+         call pause_briefly()
       end do
-      if (.not. has_ended) return
-      s = findloc(slots%process == ended%process .and. slots%row > 0, .true., dim=1)
-      if (s == 0) return
-      call take(self, trade%rows(slots(s)%row), slots(s), s, ended, queue, queued)
-      slots(s) = slot_type()
    end subroutine wait_for_one
 
    !> Takes what a run left; after the first one its repetitions are queued.
-   subroutine take(self, row, slot, place, ended, queue, queued)
+   subroutine take(self, row, slot, place, queue, queued)
       class(measurement_type), intent(in) :: self
       type(trade_row_type), intent(inout) :: row
-      type(slot_type), intent(in) :: slot
+      type(slot_type), intent(inout) :: slot
       integer, intent(in) :: place
-      type(process_end_type), intent(in) :: ended
       integer, intent(inout) :: queue(:), queued
       integer :: again
 
-      row%peak_bytes = max(row%peak_bytes, ended%peak_bytes)
-      if (allocated(row%cpu)) then
-         if (ended%signal == 0 .and. .not. slot%is_late) row%cpu = [row%cpu, ended%cpu_seconds]
-         return
-      end if
-      row%cpu = [ended%cpu_seconds]
-      call take_outcome(self, row, slot, place, ended)
-      if (row%status /= 0) return
-      again = runs_within(count(ended%cpu_seconds > moments) + 1) - 1
+      associate (ended => slot%child%end)
+         row%peak_bytes = max(row%peak_bytes, ended%peak_bytes)
+         if (allocated(row%cpu)) then
+            if (ended%signal == 0) row%cpu = [row%cpu, ended%cpu_seconds]
+            if (.not. slot%is_late) call slot%child%drop_files()
+            return
+         end if
+         row%cpu = [ended%cpu_seconds]
+         call take_outcome(self, row, slot, place)
+         if (row%status /= 0) return
+         again = runs_within(count(ended%cpu_seconds > moments) + 1) - 1
+      end associate
       queue(queued + 1:queued + again) = slot%row
       queued = queued + again
    end subroutine take
 
-   subroutine take_outcome(self, row, slot, place, ended)
+   subroutine take_outcome(self, row, slot, place)
       class(measurement_type), intent(in) :: self
       type(trade_row_type), intent(inout) :: row
-      type(slot_type), intent(in) :: slot
+      type(slot_type), intent(inout) :: slot
       integer, intent(in) :: place
-      type(process_end_type), intent(in) :: ended
+      type(report_type) :: report
       type(error_type), allocatable :: error
 
+      row%status = status_internal
       if (slot%is_late) then
-         row%status = status_internal
          row%reason = 'took longer than '//to_text(max(patience*self%limit, least_patience))//' s'
-      else if (ended%signal /= 0) then
-         row%status = status_internal
-         row%reason = describe_end(ended)
-      else
-         call row%values%load(values_path(self, place), row%status, row%reason, error)
-         if (.not. allocated(error)) return
-         row%status = max(ended%status, status_deck)
-         row%reason = line_with(': error: ', messages_path(self, place))
-         if (len(row%reason) > 0) return
-         row%status = status_internal
-         row%reason = 'ended with status '//to_text(ended%status)//': '// &
-            line_with('', messages_path(self, place))
+         return
+      end if
+      report = slot%child%report()
+      call slot%child%drop_files()
+      row%reason = slot%child%sudden_end()
+      if (slot%child%end%signal /= 0 .or. report%is_whole == 0) return
+      row%status = int(report%status)
+      row%reason = reason_of(report)
+      call row%values%load(values_path(self, place), error)
+      if (row%status == 0 .and. allocated(error)) then
+         row%status = error%status
+         row%reason = error%message
       end if
    end subroutine take_outcome
-
-   !> What stands behind a mark in the first line that a child printed with it.
-   function line_with(mark, path) result(words)
-      character(*), intent(in) :: mark, path
-      character(:), allocatable :: words
-      character(500) :: line
-      integer :: unit, io, at
-
-      words = ''
-      open (newunit=unit, file=path, action='read', status='old', iostat=io)
-      if (io /= 0) return
-      do
-         read (unit, '(a)', iostat=io) line
-         if (io /= 0) exit
-         at = index(line, mark)
-         if (at == 0 .or. len_trim(line) == 0) cycle
-         words = trim(line(at + len(mark):))
-         exit
-      end do
-      close (unit)
-   end function line_with
-
-   pure function messages_path(self, place) result(path)
-      class(measurement_type), intent(in) :: self
-      integer, intent(in) :: place
-      character(:), allocatable :: path
-
-      path = self%scratch//'.'//to_text(place)//'.messages.tmp'
-   end function messages_path
 
    pure function values_path(self, place) result(path)
       class(measurement_type), intent(in) :: self

@@ -107,19 +107,16 @@ contains
       if (ieee_is_finite(number)) finite = number
    end function finite
 
-   !> Writes the values with how the row ended into a file, which a parent process reads.
-   subroutine save_values(self, path, status, reason)
+   !> Writes the values into a file, which a parent process reads.
+   subroutine save_values(self, path)
       class(row_values_type), intent(in) :: self   !! the values
       character(*), intent(in) :: path             !! the file
-      integer, intent(in) :: status                !! one of the status_* constants
-      character(*), intent(in) :: reason           !! why it ended so; empty for none
       integer :: unit, io
 
       open (newunit=unit, file=path, access='stream', form='unformatted', status='replace', &
          action='write', iostat=io)
       if (io /= 0) return
-      write (unit, iostat=io) status, len(reason), reason, self%increments, self%passes, &
-         self%imbalance, allocated(self%figures)
+      write (unit, iostat=io) self%increments, self%passes, self%imbalance, allocated(self%figures)
       if (io == 0 .and. allocated(self%figures)) write (unit, iostat=io) shape(self%figures), &
          size(self%temperatures, 1), self%figures, self%length, self%temperatures
       if (io == 0) then
@@ -131,25 +128,16 @@ contains
 
    !> Reads what save_values wrote, and removes the file.
    !> Error: status_internal, when there is no whole file.
-   subroutine load_values(self, path, status, reason, error)
+   subroutine load_values(self, path, error)
       class(row_values_type), intent(inout) :: self          !! the values
       character(*), intent(in) :: path                       !! the file
-      integer, intent(out) :: status                         !! how the row ended
-      character(:), allocatable, intent(out) :: reason       !! why; empty for none
       type(error_type), allocatable, intent(out) :: error    !! see above
       integer :: unit, io, n(4)
       logical :: has_figures
 
-      status = status_internal
       open (newunit=unit, file=path, access='stream', form='unformatted', status='old', iostat=io)
       if (io == 0) then
-         read (unit, iostat=io) status, n(1)
-         if (io == 0) then
-            allocate (character(n(1)) :: reason)
-            read (unit, iostat=io) reason
-         end if
-         if (io == 0) read (unit, iostat=io) self%increments, self%passes, &
-            self%imbalance, has_figures
+         read (unit, iostat=io) self%increments, self%passes, self%imbalance, has_figures
          if (io == 0 .and. has_figures) then
             read (unit, iostat=io) n
             if (io == 0) call self%prepare(n(2), n(4), n(3))

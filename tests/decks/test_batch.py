@@ -46,9 +46,9 @@ def children(process):
             Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
 
 
-def wait_until(what):
+def wait_until(what, seconds=PATIENCE):
     """Wait until something holds."""
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + seconds
     while not what():
         assert time.monotonic() < until
         time.sleep(0.002)
@@ -108,6 +108,9 @@ def test_decks_that_fail_leave_the_others_alone(tmp_path, single, jobs):
     assert rows["stopped"]["increments"] == str(len(lines_of(tmp_path / "stopped.sta")))
     assert (rows["checked"]["checks_passed"], rows["checked"]["checks_failed"]) == ("0", "1")
     assert "*NONSENSE" in rows["refused"]["reason"]
+    assert "no such file" in rows["nowhere"]["reason"]
+    assert "*VERIFY" in rows["checked"]["reason"]
+    assert all(rows[name]["reason"] for name in said if said[name][0] != "0")
     # On the terminal the same decks in the same order.
     lines = process.stdout[process.stdout.rindex("outcome"):].splitlines()[1:]
     assert [line.split()[0] for line in lines[:-1]] == [str(deck) for deck in decks]
@@ -151,8 +154,63 @@ def test_a_crash_is_named_and_takes_no_other_deck_along(tmp_path, single, long):
     assert 10 < len(lines_of(tmp_path / "long.sta")) <= written <= int(row["increments"]) + 1
 
 
+def test_decks_that_run_are_listed_so_at_once_and_every_second(tmp_path, long):
+    other, rest = heat(tmp_path, "other.inp", INCREMENTS), heat(tmp_path, "rest.inp", 1)
+    process = start([long, other, rest], tmp_path, "--jobs", 2)
+    wait_until((tmp_path / "long.lst").exists)
+    time.sleep(0.5)
+    rows = [table(tmp_path)]
+    for _ in range(2):
+        time.sleep(1.5)
+        rows.append(table(tmp_path))
+    process.kill()
+    process.communicate()
+    for row in rows:
+        assert [row[name]["outcome"] for name in row] == ["running", "running", "not run"]
+        assert row["long"]["status"] == row["long"]["reason"] == ""
+    for column in "increments", "iterations", "seconds":
+        assert float(rows[0]["long"][column]) < float(rows[1]["long"][column]) \
+            < float(rows[2]["long"][column])
+
+
+def test_the_end_of_a_deck_is_in_the_table_within_a_second(tmp_path, long):
+    other = heat(tmp_path, "other.inp", INCREMENTS)
+    process = start([long, other], tmp_path, "--jobs", 2)
+    wait_until(lambda: len(lines_of(tmp_path / "long.sta")) > 10)
+    os.kill(min(children(process)), signal.SIGKILL)
+    time.sleep(1.0)
+    rows = table(tmp_path)
+    process.kill()
+    process.communicate()
+    assert (rows["long"]["status"], rows["long"]["outcome"]) == ("3", "killed: SIGKILL")
+    assert "signal 9 (SIGKILL)" in rows["long"]["reason"]
+    assert rows["other"]["outcome"] == "running"
+
+
+@pytest.mark.parametrize("broken", ["stdout", "stderr"])
+def test_output_that_nobody_reads_any_more_does_not_touch_the_table(tmp_path, broken):
+    refused, _, _ = failing(tmp_path)
+    process = start([*GOOD, refused], tmp_path)
+    getattr(process, broken).close()
+    setattr(process, broken, None)
+    process.communicate(timeout=PATIENCE)
+    assert process.returncode == 1
+    assert [row["outcome"] for row in table(tmp_path).values()] == [*3 * ["solved"], "deck error"]
+
+
+def test_a_batch_whose_caller_ignores_the_ends_of_children_sees_them(tmp_path):
+    process = start(GOOD, tmp_path, preexec_fn=lambda: signal.signal(
+        signal.SIGCHLD, signal.SIG_IGN))
+    try:
+        process.communicate(timeout=PATIENCE / 4)
+    finally:
+        process.kill()
+    assert process.returncode == 0
+    assert {row["outcome"] for row in table(tmp_path).values()} == {"solved"}
+
+
 def test_memory_that_runs_out_takes_no_other_deck_along(tmp_path, single):
-    large = copy_deck(CYLINDER, tmp_path / "large.inp", ["*REFINE, LEVELS=6"])
+    large = copy_deck(CYLINDER, tmp_path / "large.inp", ["*REFINE, LEVELS=5"])
 
     def limit():
         resource.setrlimit(resource.RLIMIT_AS, (PLACE, PLACE))
@@ -229,7 +287,7 @@ def test_a_second_signal_kills(tmp_path, long):
     os.kill(child, signal.SIGSTOP)
     process.send_signal(signal.SIGINT)
     with pytest.raises(subprocess.TimeoutExpired):
-        process.wait(timeout=0.5)
+        process.wait(timeout=1.5)
     process.send_signal(signal.SIGINT)
     _, messages = process.communicate(timeout=PATIENCE)
     assert process.returncode == 5
@@ -248,8 +306,9 @@ def test_decks_end_with_a_batch_that_is_killed_and_the_table_holds_what_had_ende
     process.kill()
     process.communicate(timeout=PATIENCE)
     wait_until(lambda: not Path(f"/proc/{child}").exists()
-               or ") Z " in Path(f"/proc/{child}/stat").read_text())
-    assert table(tmp_path)["long"]["outcome"] in ("running", "not run")
+               or ") Z " in Path(f"/proc/{child}/stat").read_text(), 1.0)
+    assert len(lines_of(tmp_path / "long.sta")) < INCREMENTS
+    assert table(tmp_path)["long"]["outcome"] == "running"
 
 
 def test_settings_hold_for_every_deck(tmp_path):

@@ -9,9 +9,10 @@ import h5py
 import numpy as np
 import pytest
 import test_rods as rods
-from deck_runs import PROGRAM, copy_deck, solve
+from deck_runs import COUPLED, CYLINDER, PROGRAM, copy_deck, solve
 
 INCREMENTS, BEFORE = 20000, 100
+AT_MOST = 5.0    # seconds that a run goes on behind a signal
 PATIENCE = 60.0  # seconds for what takes a small part of one
 
 
@@ -103,3 +104,52 @@ def test_a_signal_that_the_caller_ignores_stays_ignored(tmp_path):
     ignore = partial(signal.signal, signal.SIGINT, signal.SIG_IGN)
     process, _, messages = interrupt([deck], tmp_path, signal.SIGINT, ignore)
     assert process.returncode == 0, messages
+
+
+def seconds_behind_signal(process):
+    """Send SIGINT to a run; return its messages and how long it went on."""
+    since = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    _, messages = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 5, messages
+    return messages, time.monotonic() - since
+
+
+def test_a_signal_ends_a_run_that_reduces_its_bodies(tmp_path):
+    """At once, for there is nothing to keep; results of an earlier run stay."""
+    deck = copy_deck(CYLINDER, tmp_path / "large.inp", ["*REFINE, LEVELS=4"])
+    earlier = tmp_path / "large.vtkhdf"
+    earlier.write_text("of an earlier run")
+    process = subprocess.Popen([PROGRAM, "run", str(deck), "--out", str(tmp_path)], text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    time.sleep(3.0)
+    messages, seconds = seconds_behind_signal(process)
+    assert seconds < AT_MOST / 2
+    assert messages.splitlines()[-1] == \
+        f"{deck}: error: ended by SIGINT before the first increment"
+    assert earlier.read_text() == "of an earlier run"
+    assert not list(tmp_path.glob("*.tmp"))
+
+
+def test_a_signal_ends_an_increment_without_an_end_and_keeps_those_before(tmp_path):
+    """By plain iteration, which goes round for ever where the gain of the coupling is below -1."""
+    deck = copy_deck(COUPLED, tmp_path / "long.inp", ["*REFINE, LEVELS=1"], {
+        "METHOD=NEWTON": "METHOD=PICARD, MAXITER=100000"})
+    process = subprocess.Popen([PROGRAM, "run", str(deck), "--out", str(tmp_path)], text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    sizes = [0, -1]
+    while sizes[-1] == 0 or sizes[-1] != sizes[-2]:   # until no increment ends any more
+        time.sleep(1.0)
+        sizes.append(len(lines_of(tmp_path / "long.sta")))
+    messages, seconds = seconds_behind_signal(process)
+    assert seconds < AT_MOST
+    count = len(lines_of(tmp_path / "long.sta"))
+    assert 0 < count < 45
+    with h5py.File(tmp_path / "long.vtkhdf") as file:
+        assert len(file["history/time"]) == count
+    reason = f"ended by SIGINT after increment {count} (time "
+    assert f"{deck}: error: {reason}" in messages
+    listing = (tmp_path / "long.lst").read_text()
+    assert reason in listing
+    assert "\nSECONDS\n" in listing   # it came to its end
+    assert not list(tmp_path.glob("*.tmp"))

@@ -46,6 +46,7 @@ module deck_report
       procedure :: has_errors
       procedure :: error_count
       procedure :: warnings
+      procedure :: first_error
       procedure :: print => print_report
    end type deck_report_type
 
@@ -158,6 +159,22 @@ contains
          lines(n)%value = first_line(self, self%diagnostics(order(i)))
       end do
    end function warnings
+
+   !> The first error in the order of the deck, without its place.
+   function first_error(self) result(message)
+      class(deck_report_type), intent(in) :: self     !! the report
+      character(:), allocatable :: message            !! one sentence; empty for none
+      integer, allocatable :: order(:)
+      integer :: i
+
+      message = ''
+      order = order_of(self)
+      do i = 1, self%count
+         if (self%diagnostics(order(i))%severity /= severity_error) cycle
+         message = self%diagnostics(order(i))%message
+         return
+      end do
+   end function first_error
 
    !> Prints errors and warnings in the order of the deck, each with its card image and a caret; at
    !> most 50 errors.

@@ -1,0 +1,264 @@
+/* Children, signals and memory that runs out: what needs the system's headers, which Fortran
+ * cannot read. Interfaces: system_processes.f90.
+ *
+ * A run may have to end within an increment: because a signal came, or because there is no memory
+ * left. A signal handler may then call nothing but what POSIX.1-2017, 2.4.3 allows in one
+ * (open, write, pwrite, stat, unlink, signal, alarm, _exit), so that all words are prepared before. */
+#define _GNU_SOURCE
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { longest = 4096 };                              /* characters of a path or a sentence */
+enum { status_internal = 3, status_interrupted = 5 }; /* of module errors */
+enum { at_once = 1, after_grace = 2 };                /* of module interruption */
+enum { grace = 2, rest = 2 };   /* seconds of an increment after a signal: to its end, to the run's */
+
+/* report_type of the module; what a child says of itself */
+struct report {
+   int is_whole, lacks_memory, status, increments, iterations, verify_passed, verify_failed;
+   double seconds;
+   char reason[longest];
+};
+
+/* process_end_type of the module */
+struct process_end {
+   int status, signal, is_crash;
+   char signal_name[16];
+   double cpu_seconds, peak_bytes;
+};
+
+static volatile sig_atomic_t caught, times, is_overdue, is_held, ends;
+static char deck[longest], where[longest], listing[longest], kept[longest], working[longest];
+static int shows_progress, report_file = -1;
+static struct report filed;   /* what a child has reported */
+
+/* As fork. What the child prints and reports goes into files that have no name, so that nothing
+ * of them is left when both have ended. The child never outlives its parent. */
+int thercon_start_child(int *messages, int *report)
+{
+   const pid_t parent = getpid();
+   pid_t child;
+
+   *messages = memfd_create("messages", MFD_CLOEXEC);
+   *report = memfd_create("report", MFD_CLOEXEC);
+   if (*messages < 0 || *report < 0) return -1;
+   signal(SIGCHLD, SIG_DFL); /* a caller that ignores it would have the ends of children lost */
+   child = fork();
+   if (child != 0) return child;
+   /* The parent may have ended before the first call. */
+   if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent || dup2(*messages, 1) < 0 ||
+      dup2(*messages, 2) < 0) _exit(status_internal);
+   report_file = *report;
+   return 0;
+}
+
+/* Whether a child has ended, and how; waits for that where it is asked to. */
+int thercon_collect_child(int child, int waits, struct process_end *end)
+{
+   struct rusage usage;
+   const char *name;
+   pid_t ended;
+   int status;
+
+   do ended = wait4(child, &status, waits ? 0 : WNOHANG, &usage);
+   while (ended < 0 && errno == EINTR);
+   if (ended != child) return 0;
+   end->signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+   end->status = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+   end->is_crash = end->signal == SIGSEGV || end->signal == SIGBUS || end->signal == SIGFPE ||
+      end->signal == SIGILL || end->signal == SIGABRT;
+   name = sigabbrev_np(end->signal);
+   if (name) snprintf(end->signal_name, sizeof end->signal_name, "SIG%s", name);
+   else snprintf(end->signal_name, sizeof end->signal_name, "signal %d", end->signal);
+   end->cpu_seconds = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+      1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+   end->peak_bytes = 1024.0 * (double)usage.ru_maxrss;
+   return 1;
+}
+
+/* Passes the signal that came on to a child, or ends it at once. */
+void thercon_signal_child(int child, int kills) { kill(child, kills ? SIGKILL : caught); }
+
+/* Reads a part of a file; returns the number of bytes. */
+int thercon_read(int file, long offset, int length, char *bytes)
+{
+   const ssize_t count = pread(file, bytes, (size_t)length, offset);
+
+   return count < 0 ? 0 : (int)count;
+}
+
+/* A child files its report over the one before; in the first process nothing is done. */
+void thercon_file_report(const struct report *report)
+{
+   filed = *report;
+   if (report_file >= 0) (void)!pwrite(report_file, &filed, sizeof filed, 0);
+}
+
+static void put(int file, const char *words)
+{
+   size_t left = strlen(words);
+   ssize_t count;
+
+   while (left > 0) {
+      count = write(file, words, left);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return;
+      words += count;
+      left -= (size_t)count;
+   }
+}
+
+/* Says why, leaves the files in order and ends the process. */
+static _Noreturn void end_run(int status, const char *reason, const char *more)
+{
+   struct stat found;
+   int file;
+
+   signal(SIGPIPE, SIG_IGN);
+   if (shows_progress) put(2, "\r\033[K");
+   put(2, deck[0] ? deck : "thercon");
+   put(2, ": error: ");
+   put(2, reason);
+   put(2, more);
+   put(2, "\n");
+   if (listing[0] && kept[0] && (file = open(listing, O_WRONLY | O_APPEND)) >= 0) {
+      put(file, "\nENDED EARLY\n-----------\n   ");
+      put(file, reason);
+      put(file, more);
+      put(file, "\n   ");
+      put(file, kept);
+      put(file, "\n");
+   }
+   /* One that the run had not begun yet holds an earlier run, or nothing at all. */
+   if (listing[0] && !kept[0] && stat(listing, &found) == 0 && found.st_size == 0) unlink(listing);
+   if (working[0]) unlink(working);
+   filed.is_whole = 1;
+   filed.status = status;
+   strcpy(filed.reason, reason);
+   if (strlen(reason) + strlen(more) < sizeof filed.reason) strcat(filed.reason, more);
+   if (report_file >= 0) (void)!pwrite(report_file, &filed, sizeof filed, 0);
+   _exit(status);
+}
+
+static _Noreturn void end_by_signal(void)
+{
+   end_run(status_interrupted, caught == SIGINT ? "ended by SIGINT" : "ended by SIGTERM", where);
+}
+
+static void take_signal(int number)
+{
+   caught = number;
+   times = times + 1;
+   if (ends == at_once && !is_held) end_by_signal();
+   if (ends != 0 && times == 1) alarm(grace);
+}
+
+static void take_alarm(int number)
+{
+   (void)number;
+   if (ends != 0 && is_overdue && !is_held) end_by_signal();
+   is_overdue = 1;
+   alarm(rest);
+}
+
+static void handle(int number, void (*handler)(int))
+{
+   struct sigaction action = {0}, former;
+
+   sigaction(number, NULL, &former);
+   if (former.sa_handler == SIG_IGN) return; /* as nohup has it, and shells for their background */
+   action.sa_handler = handler;
+   action.sa_flags = SA_RESTART;
+   sigfillset(&action.sa_mask);
+   sigaction(number, &action, NULL);
+}
+
+/* From now on SIGINT and SIGTERM are remembered, and, where it is asked for, writing to a pipe
+ * that nobody reads is an error of the statement only. */
+void thercon_catch_signals(int outlives_pipes)
+{
+   signal(SIGALRM, SIG_DFL);
+   handle(SIGALRM, take_alarm);
+   handle(SIGINT, take_signal);
+   handle(SIGTERM, take_signal);
+   if (outlives_pipes) signal(SIGPIPE, SIG_IGN);
+}
+
+/* What came: nothing 0, SIGINT 1, SIGTERM 2; how often; whether the increment had its time. */
+void thercon_signals(int *name, int *number, int *overdue)
+{
+   *name = caught == 0 ? 0 : caught == SIGINT ? 1 : 2;
+   *number = times;
+   *overdue = is_overdue;
+}
+
+static void take_words(char *buffer, const char *words)
+{
+   buffer[0] = 0;
+   if (strlen(words) < longest) strcpy(buffer, words);
+}
+
+/* When a signal may end the run from now on, and what is then to be said and done. */
+void thercon_prepare_end(int when, int shows, const char *deck_path, const char *where_words,
+   const char *listing_path, const char *kept_words, const char *working_path)
+{
+   sigset_t all, before;
+
+   sigfillset(&all);
+   sigprocmask(SIG_SETMASK, &all, &before);
+   take_words(deck, deck_path);
+   take_words(where, where_words);
+   take_words(listing, listing_path);
+   take_words(kept, kept_words);
+   take_words(working, working_path);
+   shows_progress = shows;
+   ends = when;
+   if (caught != 0 && ends == at_once && !is_held) end_by_signal();
+   sigprocmask(SIG_SETMASK, &before, NULL);
+}
+
+/* While files are written no signal ends the run. */
+void thercon_hold_end(int holds)
+{
+   is_held = holds;
+   if (!is_held && caught != 0 && ends == at_once) end_by_signal();
+}
+
+/* Memory: the linker has the calls of the program itself, not those of its libraries, come here
+ * (--wrap). Fortran's ALLOCATE would end in a backtrace where there is no memory, and arrays that
+ * the compiler makes in SIGSEGV. */
+void *__real_malloc(size_t bytes);
+void *__real_calloc(size_t count, size_t bytes);
+void *__real_realloc(void *address, size_t bytes);
+
+static void *checked(void *address, double bytes)
+{
+   char words[80];
+
+   if (address != NULL || bytes <= 0.0) return address;
+   snprintf(words, sizeof words, "memory ran out: %.0f MB more could not be had", bytes / 1e6);
+   filed.lacks_memory = 1;
+   end_run(status_internal, words, "");
+}
+
+void *__wrap_malloc(size_t bytes) { return checked(__real_malloc(bytes), (double)bytes); }
+
+void *__wrap_calloc(size_t count, size_t bytes)
+{
+   return checked(__real_calloc(count, bytes), (double)count * (double)bytes);
+}
+
+void *__wrap_realloc(void *former, size_t bytes)
+{
+   return checked(__real_realloc(former, bytes), (double)bytes);
+}
