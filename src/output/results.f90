@@ -49,6 +49,7 @@ module results
       type(string_type), allocatable :: cards(:)              !! card images
       logical :: is_broken = .false.                          !! whether writing has failed
       integer, public :: accepted = 0                         !! increments appended
+      integer, public :: published = 0                        !! of these, in the file in place
    contains
       procedure :: reserve
       procedure :: open => open_results
@@ -247,6 +248,7 @@ contains
       end if
       call self%file%put_in_place(error)
       if (allocated(error)) return
+      self%published = self%accepted
       call self%passes%write_waiting(error)
       if (allocated(error)) return
       call self%increments%write_waiting(error)

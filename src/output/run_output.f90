@@ -19,7 +19,7 @@ module run_output
    use verification, only: verifier_type
    implicit none
    private
-   public :: run_output_type
+   public :: run_output_type, kept_words
 
    !> The output of one run.
    type :: run_output_type
@@ -41,9 +41,10 @@ module run_output
       procedure :: break_off
       procedure :: close => close_output
       procedure :: accepted
+      procedure :: is_begun
       procedure :: listing_path
       procedure :: working_path
-      procedure :: kept_words
+      procedure :: published
       procedure :: failed_checks
    end type run_output_type
 
@@ -130,7 +131,7 @@ contains
 
       if (allocated(record%iterations)) self%failed = record%iterations
       call self%judgement%fail()
-      call self%listing%add_failure(reason, record, self%kept_words())
+      call self%listing%add_failure(reason, record, kept_words(self%results%accepted))
    end subroutine fail
 
    !> Ends the output: publishes what is left, then closes the listing. `run` then holds the
@@ -204,7 +205,14 @@ contains
       if (len(reason) > 0) string = ', but '//reason
    end function finding
 
-   !> Path of the listing, or nothing before it is open.
+   !> Whether the listing holds anything of this run.
+   pure logical function is_begun(self)
+      class(run_output_type), intent(in) :: self   !! the output
+
+      is_begun = self%listing%is_begun()
+   end function is_begun
+
+   !> Path of the listing, or nothing before it is reserved.
    pure function listing_path(self) result(path)
       class(run_output_type), intent(in) :: self   !! the output
       character(:), allocatable :: path
@@ -220,15 +228,22 @@ contains
       path = or_blank(self%results%file%working_path)
    end function working_path
 
-   !> What the results of a run hold that ends now.
-   pure function kept_words(self) result(words)
+   !> Number of increments that the result file in place holds.
+   pure integer function published(self)
       class(run_output_type), intent(in) :: self   !! the output
+
+      published = self%results%published
+   end function published
+
+   !> What the results of a run hold.
+   pure function kept_words(increments) result(words)
+      integer, intent(in) :: increments            !! in the result file
       character(:), allocatable :: words           !! one sentence
 
       words = 'No increment was accepted: this run has no result file and no .sta; those of '// &
          'an earlier run, if there are any, were left.'
-      if (self%accepted() > 0) words = 'The results hold the increments up to number '// &
-         to_text(self%accepted())//'.'
+      if (increments > 0) words = 'The results hold the increments up to number '// &
+         to_text(increments)//'.'
    end function kept_words
 
    !> Number of increments that were accepted.

@@ -21,7 +21,7 @@ module deck_run
    use model, only: model_type
    use records, only: increment_record_type
    use run_description, only: describe_run
-   use run_output, only: run_output_type
+   use run_output, only: kept_words, run_output_type
    use text, only: string_type, to_text
    implicit none
    private
@@ -236,7 +236,11 @@ contains
       self%end%where = where_words(self%simulation%control)
       self%end%listing = self%output%listing_path()
       self%end%working = self%output%working_path()
-      self%end%kept = self%output%kept_words()
+      self%end%kept = ''
+      if (self%output%is_begun()) self%end%kept = kept_words(self%output%published())
+      ! Increments that wait for their publication are lost with the process.
+      if (self%output%published() < self%output%accepted()) self%end%where = self%end%where// &
+         '; the results hold those up to number '//to_text(self%output%published())
       call self%end%prepare()
    end subroutine prepare_end
 
