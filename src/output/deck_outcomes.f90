@@ -1,6 +1,7 @@
 !> How the run of a deck ended, and the short summary of it.
 module deck_outcomes
    use, intrinsic :: iso_c_binding, only: c_int
+   use, intrinsic :: iso_fortran_env, only: output_unit
    use errors, only: error_type, status_deck, status_internal, status_interrupted, status_no_convergence, &
       status_ok, status_verify
    use kinds, only: dp

@@ -23,6 +23,7 @@ module deck_run
    use run_description, only: describe_run
    use run_output, only: kept_words, run_output_type
    use text, only: string_type, to_text
+   use utf8, only: printable
    implicit none
    private
    public :: run_deck, base_name
@@ -232,7 +233,7 @@ contains
 
       self%end%when = when
       self%end%shows_progress = self%output%progress%is_on_line()
-      self%end%deck = self%path
+      self%end%deck = printable(self%path)
       self%end%where = where_words(self%simulation%control)
       self%end%listing = self%output%listing_path()
       self%end%working = self%output%working_path()
@@ -281,11 +282,13 @@ contains
       character(*), intent(in) :: path
       type(string_type), intent(in) :: lines(:)
       type(deck_outcome_type), intent(inout) :: outcome
+      type(error_type), allocatable :: error
       integer :: i
 
       do i = 1, size(lines)
          call print_error(path, lines(i)%value)
-         call outcome%fail(error_type(status=status_verify, message=lines(i)%value))
+         call set_error(error, status_verify, lines(i)%value)
+         call outcome%fail(error)
       end do
    end subroutine report_checks
 
