@@ -2,8 +2,8 @@
 module deck_outcomes
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use errors, only: error_type, status_deck, status_internal, status_interrupted, status_no_convergence, &
-      status_ok, status_verify
+   use errors, only: error_type, status_deck, status_internal, status_interrupted, &
+      status_no_convergence, status_ok, status_verify
    use kinds, only: dp
    use messages, only: print_line
    use processes, only: file_report, reason_of, report_type, set_reason
