@@ -68,7 +68,7 @@ contains
          call set_error(error, status_internal, 'the system starts no further process')
       else if (self%process == 0_c_int) then
          call task%execute(report)
-            flush (error_unit)
+         flush (error_unit)
          report%is_whole = 1_c_int
          call file_report(report)
          call c_exit_at_once(report%status)
