@@ -7,11 +7,11 @@ module doubled_increments
    use films, only: left_films
    use increment_data, only: increment_workspace_type
    use increment_solution, only: recover_fields, solve_pairs
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
    use records, only: increment_record_type
+   use reduced_bodies, only: reduced_bodies_type
    use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
@@ -39,27 +39,27 @@ contains
 
    !> Starts beside a run. The path matters with friction, and with schemes of (3.4) that take
    !> anything from the start of an increment.
-   subroutine start(self, model, operators, state)
+   subroutine start(self, model, bodies, state)
       class(doubled_increments_type), intent(out) :: self        !! the second run
       type(model_type), intent(in) :: model                      !! the model
-      type(interface_operators_type), intent(in) :: operators    !! the bodies, paired
+      type(reduced_bodies_type), intent(in) :: bodies    !! the bodies, paired
       type(solution_state_type), intent(in) :: state             !! state before the first increment
       integer :: s
 
-      self%is_led = any(operators%pairs%friction > 0.0_dp)
+      self%is_led = any(bodies%pairs%friction > 0.0_dp)
       do s = 1, size(model%steps)
          self%is_led = self%is_led .or. (solves_heat(model%steps(s)%analysis) .and. &
-            has_memory(model%steps(s)%scheme) .and. size(operators%pairs%slave) > 0)
+            has_memory(model%steps(s)%scheme) .and. size(bodies%pairs%slave) > 0)
       end do
       if (self%is_led) self%state = state
    end subroutine start
 
    !> Takes note of an accepted increment; at every second one, and at the end of a step, the second
    !> run moves on to its end.
-   subroutine follow(self, model, operators, loads, accepted, record)
+   subroutine follow(self, model, bodies, loads, accepted, record)
       class(doubled_increments_type), intent(inout) :: self      !! the second run
       type(model_type), intent(in) :: model                      !! the model
-      type(interface_operators_type), intent(inout) :: operators !! the bodies; films change them
+      type(reduced_bodies_type), intent(inout) :: bodies !! the bodies; films change them
       type(loads_type), intent(in) :: loads                      !! loads at its end
       type(solution_state_type), intent(in) :: accepted          !! the run's state there
       type(increment_record_type), intent(in) :: record          !! its place in the steps
@@ -91,15 +91,15 @@ contains
       next%film = accepted%film
       next%force_load = accepted%force_load
       if (solves_heat(step%analysis)) then
-         call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, &
+         call bodies%set_film(left_films(step%scheme, self%state%film, next%film), model, &
             error)
       end if
-      if (.not. allocated(error)) call solve_pairs(operators, loads, step, before, &
+      if (.not. allocated(error)) call solve_pairs(bodies, loads, step, before, &
          workspace, next, error)
       self%is_lost = allocated(error)
       if (self%is_lost) return
       if (has_memory(step%scheme) .or. .not. solves_mechanics(step%analysis)) then
-         call recover_fields(operators, loads, step, workspace, self%state, next)
+         call recover_fields(bodies, loads, step, workspace, self%state, next)
       end if
       self%state = next
       self%time = record%time

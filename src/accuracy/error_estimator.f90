@@ -8,7 +8,7 @@ module error_estimator
    use increments, only: simulation_type
    use interface_quantities, only: edge_resolution, quantities_of_state
    use kinds, only: dp
-   use load_courses, only: step_clock_type
+   use load_histories, only: step_clock_type
    use model, only: model_type
    use records, only: increment_record_type, interface_errors_type
    use refined_model, only: refined_model_type
@@ -55,9 +55,9 @@ contains
       self%is_on = model%estimates_errors .and. size(model%contacts) > 0
       if (.not. self%is_on) return
       self%why_not = ''
-      call self%refined%prepare(model, simulation%operators%pairs, error)
+      call self%refined%prepare(model, simulation%bodies%pairs, error)
       if (allocated(error)) self%why_not = error%message
-      call self%doubled%start(model, simulation%operators, simulation%state)
+      call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 
    !> Keeps what an increment starts from.
@@ -84,12 +84,12 @@ contains
          end associate
       end if
       self%step = record%step
-      call self%doubled%follow(model, simulation%operators, simulation%loads, simulation%state, &
+      call self%doubled%follow(model, simulation%bodies, simulation%loads, simulation%state, &
          record)
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
       allocate (values(size(estimated), size(record%contacts)))
-      call quantities_of_state(simulation%operators, simulation%state, &
+      call quantities_of_state(simulation%bodies, simulation%state, &
          model%steps(self%step)%scheme, values)
       call store(values, record%errors)
       if (self%why_not == '') call estimate_mesh(self, model, simulation, values, record)
@@ -139,7 +139,7 @@ contains
             mesh = of_halved_elements*change(:, i)
             where (estimated%is_path_dependent) mesh = ieee_value(1.0_dp, ieee_quiet_nan)
             where (estimated%resolution > 0.0_dp) mesh = of_halved_bands*abs(change(:, i)) + &
-               edge_resolution(simulation%operators%interfaces(i), values(:, i))
+               edge_resolution(simulation%bodies%interfaces(i), values(:, i))
          end associate
       end do
    end subroutine estimate_mesh
@@ -157,7 +157,7 @@ contains
       if (.not. self%doubled%is_led) return
       doubled = ieee_value(1.0_dp, ieee_quiet_nan)
       if (self%doubled%has_doubled .and. .not. self%doubled%is_lost) then
-         call quantities_of_state(simulation%operators, self%doubled%state, &
+         call quantities_of_state(simulation%bodies, self%doubled%state, &
             model%steps(self%step)%scheme, doubled)
       end if
       do i = 1, size(record%errors)

@@ -6,9 +6,9 @@ module interface_quantities
    use contact_states, only: status_open
    use controls, only: thermal_scheme_type
    use increment_records, only: measure_contact
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use records, only: contact_record_type
+   use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: carrying_conductance, solution_state_type
    implicit none
    private
@@ -47,8 +47,8 @@ contains
    end function quantities_of
 
    !> The quantities of all interfaces in a state.
-   subroutine quantities_of_state(operators, state, scheme, values)
-      type(interface_operators_type), intent(in) :: operators   !! the bodies
+   subroutine quantities_of_state(bodies, state, scheme, values)
+      type(reduced_bodies_type), intent(in) :: bodies   !! the bodies
       type(solution_state_type), intent(in) :: state            !! the state
       type(thermal_scheme_type), intent(in) :: scheme           !! by which it was found
       real(dp), intent(out) :: values(:, :)                     !! (quantities, interfaces)
@@ -56,12 +56,12 @@ contains
       integer :: first, i, last
 
       omega = carrying_conductance(state, scheme)
-      associate (pairs => operators%pairs, contact => state%contact)
+      associate (pairs => bodies%pairs, contact => state%contact)
          do i = 1, size(values, 2)
             first = pairs%interface_start(i)
             last = pairs%interface_start(i + 1) - 1
-            values(:, i) = quantities_of(operators%interfaces(i), contact_of( &
-               operators%interfaces(i), pairs%friction(first), contact%status(first:last), &
+            values(:, i) = quantities_of(bodies%interfaces(i), contact_of( &
+               bodies%interfaces(i), pairs%friction(first), contact%status(first:last), &
                contact%gap(first:last), contact%force(first:last), &
                contact%shear_force(first:last), pairs%weight(first:last)*omega(first:last)* &
                state%jump(first:last)))

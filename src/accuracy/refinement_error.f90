@@ -18,18 +18,18 @@ module refinement_error
    use increment_data, only: increment_workspace_type
    use increment_solution, only: recover_fields, solve_pairs
    use increments, only: simulation_type
-   use interface_operators, only: interface_operators_type
    use interface_quantities, only: contact_of, quantities_of, quantities_of_state
    use interruption, only: check_overdue
    use kinds, only: dp
    use linked_relaxation, only: joint_type, relax
-   use load_courses, only: step_clock_type
+   use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
    use pair_rows, only: find_held_axes
-   use refined_pairs, only: refined_pairs_type
    use records, only: contact_record_type
+   use reduced_bodies, only: reduced_bodies_type
    use refined_model, only: refined_model_type
+   use refined_pairs, only: refined_pairs_type
    use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
@@ -74,7 +74,7 @@ contains
 
       call begin(refined, simulation, model, clock, previous, fields, error)
       if (allocated(error)) return
-      call quantities_of_state(simulation%operators, fields%coarse, implicit_scheme, values)
+      call quantities_of_state(simulation%bodies, fields%coarse, implicit_scheme, values)
       step = implicit_step(model%steps(simulation%control%step))
       before = previous
       do k = 1, corrections
@@ -85,7 +85,7 @@ contains
          ! of the conductances before.
          before%omega = fields%coarse%omega
          before%omega_before = fields%coarse%omega
-         call correct(refined, simulation%operators, simulation%loads, step, before, fields, error)
+         call correct(refined, simulation%bodies, simulation%loads, step, before, fields, error)
          if (allocated(error)) return
       end do
       call smooth(refined, step, fields)
@@ -115,9 +115,9 @@ contains
       type(increment_workspace_type) :: workspace
 
       associate (step => model%steps(simulation%control%step), loads => simulation%loads, &
-         operators => simulation%operators)
+         bodies => simulation%bodies)
          call refined%assemble(solves_mechanics(step%analysis), solves_heat(step%analysis), &
-            allocated(operators%thermal_load%value))
+            allocated(bodies%thermal_load%value))
          call refined%loads%move_to(clock, refined%model)
          fields%coarse = simulation%state
          call find_held_axes(refined%pairs, refined%prolong_set(loads%displacement%active, 2))
@@ -128,14 +128,14 @@ contains
             fields%warms = .not. refined%prolong_set(loads%temperature%active, 1)
             fields%film = refined%loads%film_matrix()
             fields%conduction = refined%conduction_with(fields%film)
-            call operators%set_film(simulation%state%film, model, error)
+            call bodies%set_film(simulation%state%film, model, error)
             if (allocated(error)) return
          end if
          if (solves_heat(step%analysis) .and. has_memory(step%scheme)) then
-            call solve_pairs(operators, loads, implicit_step(step), previous, workspace, &
+            call solve_pairs(bodies, loads, implicit_step(step), previous, workspace, &
                fields%coarse, error)
             if (allocated(error)) return
-            call recover_fields(operators, loads, implicit_step(step), workspace, previous, &
+            call recover_fields(bodies, loads, implicit_step(step), workspace, previous, &
                fields%coarse)
          end if
       end associate
@@ -186,9 +186,9 @@ contains
    end function mechanical_load
 
    !> Solves the increment on the old mesh with what is out of balance on the new one.
-   subroutine correct(refined, operators, loads, step, previous, fields, error)
+   subroutine correct(refined, bodies, loads, step, previous, fields, error)
       type(refined_model_type), intent(in) :: refined
-      type(interface_operators_type), intent(in) :: operators
+      type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads
       type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous
@@ -201,16 +201,16 @@ contains
       associate (u => fields%displacement(:size(trial%displacement)), &
          t => fields%temperature(:size(trial%temperature)))
          if (solves_heat(step%analysis)) trial%heat_load = refined%restrict( &
-            heat_out_of_balance(refined, fields), 1) + heat_taken(operators, fields%coarse, t)
+            heat_out_of_balance(refined, fields), 1) + heat_taken(bodies, fields%coarse, t)
          ! Contact forces of both meshes do the same work and cancel.
          if (solves_mechanics(step%analysis)) trial%force_load = refined%restrict( &
             mechanical_load(refined, fields) - refined%stiffness%multiply(fields%displacement), &
-            2) + operators%mechanical%matrix%multiply(u) - &
-            thermal_forces(operators, t)
+            2) + bodies%mechanical%matrix%multiply(u) - &
+            thermal_forces(bodies, t)
       end associate
-      call solve_pairs(operators, loads, step, previous, workspace, trial, error)
+      call solve_pairs(bodies, loads, step, previous, workspace, trial, error)
       if (allocated(error)) return
-      call recover_fields(operators, loads, step, workspace, previous, trial)
+      call recover_fields(bodies, loads, step, workspace, previous, trial)
       fields%displacement = fields%displacement + refined%prolong(trial%displacement - &
          fields%displacement(:size(trial%displacement)), 2)
       fields%temperature = fields%temperature + refined%prolong(trial%temperature - &
@@ -219,14 +219,14 @@ contains
    end subroutine correct
 
    !> K T + F T + what the pairs take, on the old mesh, with the conductances of its last solution.
-   function heat_taken(operators, coarse, temperature) result(heat)
-      type(interface_operators_type), intent(in) :: operators
+   function heat_taken(bodies, coarse, temperature) result(heat)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: coarse
       real(dp), intent(in) :: temperature(:)
       real(dp) :: heat(size(temperature))
 
-      associate (pairs => operators%pairs, t => temperature)
-         heat = heat_residual(operators%thermal%matrix%multiply(t), net_heat(0.0_dp*t, &
+      associate (pairs => bodies%pairs, t => temperature)
+         heat = heat_residual(bodies%thermal%matrix%multiply(t), net_heat(0.0_dp*t, &
             coarse%film, t), pairs, pairs%weight*coarse%omega*(t(pairs%slave) - t(pairs%master)))
       end associate
    end function heat_taken

@@ -2,7 +2,7 @@
 module loads
    use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
-   use load_courses, only: load_course_type, step_clock_type
+   use load_histories, only: load_course_type, step_clock_type
    use load_integrals, only: film_side, unit_forces, unit_heat
    use load_places, only: entries_of, find_places, load_places_type
    use mesh, only: mesh_type

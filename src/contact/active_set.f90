@@ -8,7 +8,6 @@
 !> was, and let go in steps, from the place that each step leads to (proximal point method), until
 !> the set that is found also holds without that. What drives off through all steps is loose.
 module active_set
-   use closing_path, only: follow_closing_path
    use contact_states, only: condition_code, contact_state_type, status_open, status_slip, &
       status_stick
    use contact_system, only: contact_system_type
@@ -17,6 +16,7 @@ module active_set
    use friction, only: next_status
    use idle_pairs, only: find_idle_pairs
    use kinds, only: dp
+   use lemke_path, only: follow_lemke_path
    implicit none
    private
    public :: solve_contact
@@ -71,7 +71,7 @@ contains
       if (size(system%motion, 2) > 0) then
          call hold_softly(system, load, work, state, error)
       else
-         call follow_closing_path(system, load, work, state, error)
+         call follow_lemke_path(system, load, work, state, error)
          if (.not. allocated(error)) call work%solve_set(system, load, state, error)
       end if
    end subroutine find_state
@@ -87,7 +87,7 @@ contains
       type(error_type), allocatable :: error
 
       forward = state
-      call follow_closing_path(system, load, work, forward, error)
+      call follow_lemke_path(system, load, work, forward, error)
       if (allocated(error)) return
       call work%solve_set(system, load, forward, error)
       if (.not. allocated(error)) state = forward
@@ -145,7 +145,7 @@ contains
          soft%hold = hold
          associate (soft_load => load + hold*matmul(system%motion, place))
             call search(system, soft_load, soft, state, error)
-            if (allocated(error)) call follow_closing_path(system, soft_load, soft, state, error)
+            if (allocated(error)) call follow_lemke_path(system, soft_load, soft, state, error)
          end associate
          if (allocated(error)) return
          way = matmul(positions(system, work, state), system%motion) - place

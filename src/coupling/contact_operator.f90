@@ -2,14 +2,14 @@
 !> contact state -> conductance, all on the pairs.
 module contact_operator
    use closing_instant, only: solve_increment
-   use conductance_laws, only: conductance, conductance_slope
+   use conductance_laws, only: conductance, conductance_derivative
    use contact_states, only: contact_state_type, status_open, status_slip
    use errors, only: error_type, status_no_convergence
    use finite_values, only: check_finite
    use increment_data, only: increment_data_type, increment_workspace_type
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use pair_tractions, only: pressures
+   use reduced_bodies, only: reduced_bodies_type
    use tail_factors, only: tail_flops
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
@@ -22,38 +22,38 @@ contains
    !> U: conductance in, workspace%pass%omega, conductance of the resulting contact state out,
    !> workspace%pass%image.
    !> Errors: as solve_increment; jumps or conductances overflow.
-   subroutine contact_operator_pass(operators, data, workspace, jump, state, error)
-      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
+   subroutine contact_operator_pass(bodies, data, workspace, jump, state, error)
+      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
       type(increment_data_type), intent(in) :: data              !! the increment
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(inout) :: state           !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error        !! see above
 
-      call temperature_jumps(operators, data, workspace%pass%omega, workspace, jump)
+      call temperature_jumps(bodies, data, workspace%pass%omega, workspace, jump)
       call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       if (allocated(error)) return
-      call solve_increment(operators%contact, data%previous, &
-         condensed_load(operators, data, jump), workspace%contact, state, error)
+      call solve_increment(bodies%contact, data%previous, &
+         condensed_load(bodies, data, jump), workspace%contact, state, error)
       if (allocated(error)) return
-      workspace%pass%image = law_conductance(operators, state)
+      workspace%pass%image = law_conductance(bodies, state)
       call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
    end subroutine contact_operator_pass
 
    !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first
    !> changed one on are factored again.
-   subroutine temperature_jumps(operators, data, omega, workspace, jump)
-      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
+   subroutine temperature_jumps(bodies, data, omega, workspace, jump)
+      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
       type(increment_data_type), intent(in) :: data              !! the increment
       real(dp), intent(in) :: omega(:)                           !! (m) omega*
       type(increment_workspace_type), intent(inout) :: workspace !! heat in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
-      real(dp) :: x(operators%thermal%map%tail), diagonal(operators%thermal%map%tail)
+      real(dp) :: x(bodies%thermal%map%tail), diagonal(bodies%thermal%map%tail)
       real(dp) :: of_pair(size(omega)), history(size(omega))
       integer :: k
 
-      associate (place => operators%jump_place, weight => operators%pairs%weight, &
-         solver => operators%thermal%solver, tail => workspace%tail, work => workspace%record%work)
+      associate (place => bodies%jump_place, weight => bodies%pairs%weight, &
+         solver => bodies%thermal%solver, tail => workspace%tail, work => workspace%record%work)
          of_pair = contact_diagonal(data%scheme, weight, data%omega_old, omega)
          history = contact_history(data%scheme, weight, data%omega_old, omega, data%jump_old)
          x = workspace%heat%condensed
@@ -77,8 +77,8 @@ contains
    end subroutine temperature_jumps
 
    !> Condensed mechanical load of the increment with given jumps.
-   pure function condensed_load(operators, data, jump) result(load)
-      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+   pure function condensed_load(bodies, data, jump) result(load)
+      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
       type(increment_data_type), intent(in) :: data             !! the increment
       real(dp), intent(in) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       real(dp) :: load(size(data%welded_load))                  !! (mechanical tail) [force]
@@ -86,38 +86,38 @@ contains
 
       load = data%welded_load
       do k = 1, size(jump)
-         if (operators%jump_place(k) > 0) then
-            load = load + operators%jump_load(:, operators%jump_place(k))*jump(k)
+         if (bodies%jump_place(k) > 0) then
+            load = load + bodies%jump_load(:, bodies%jump_place(k))*jump(k)
          end if
       end do
    end function condensed_load
 
    !> chi: the conductance of a contact state, eq. (1.8).
-   pure function law_conductance(operators, state) result(omega)
-      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+   pure function law_conductance(bodies, state) result(omega)
+      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
       type(contact_state_type), intent(in) :: state             !! contact state
       real(dp) :: omega(size(state%status))                     !! (m)
       real(dp) :: pressure(size(state%status))
       integer :: k
 
-      pressure = law_pressure(operators, state)
+      pressure = law_pressure(bodies, state)
       do k = 1, size(omega)
-         omega(k) = conductance(operators%pairs%law(k), state%status(k) /= status_open, &
+         omega(k) = conductance(bodies%pairs%law(k), state%status(k) /= status_open, &
             state%gap(k), pressure(k))
       end do
    end function law_conductance
 
    !> Pressure by which the closed law goes: the printed one.
-   pure function law_pressure(operators, state) result(pressure)
-      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+   pure function law_pressure(bodies, state) result(pressure)
+      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
       type(contact_state_type), intent(in) :: state             !! contact state
       real(dp) :: pressure(size(state%status))                  !! (m) [stress]
       integer :: first, i, last
 
-      do i = 1, size(operators%interfaces)
-         first = operators%pairs%interface_start(i)
-         last = operators%pairs%interface_start(i + 1) - 1
-         pressure(first:last) = pressures(operators%interfaces(i), state%force(first:last), &
+      do i = 1, size(bodies%interfaces)
+         first = bodies%pairs%interface_start(i)
+         last = bodies%pairs%interface_start(i + 1) - 1
+         pressure(first:last) = pressures(bodies%interfaces(i), state%force(first:last), &
             state%status(first:last) /= status_open)
       end do
    end function law_pressure
@@ -135,21 +135,21 @@ contains
    end function kept_contact
 
    !> Nodal forces that temperatures cause; none where no temperature strains.
-   pure function thermal_forces(operators, temperature) result(forces)
-      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+   pure function thermal_forces(bodies, temperature) result(forces)
+      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
       real(dp), intent(in) :: temperature(:)                    !! (nodes) [temperature]
       real(dp) :: forces(2*size(temperature))                   !! (2 nodes) [force]
 
       forces = 0.0_dp
-      if (allocated(operators%thermal_load%value)) then
-         forces = operators%thermal_load%multiply(temperature - operators%initial_temperature)
+      if (allocated(bodies%thermal_load%value)) then
+         forces = bodies%thermal_load%multiply(temperature - bodies%initial_temperature)
       end if
    end function thermal_forces
 
    !> What a few units in the last place of the displacements change in omega, relative: no residual
    !> can be smaller.
-   pure function residual_floor(operators, data, state, omega) result(floor_value)
-      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+   pure function residual_floor(bodies, data, state, omega) result(floor_value)
+      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
       type(increment_data_type), intent(in) :: data             !! the increment
       type(contact_state_type), intent(in) :: state             !! contact state
       real(dp), intent(in) :: omega(:)                          !! (m) its conductance
@@ -160,17 +160,17 @@ contains
 
       floor_value = 0.0_dp
       do k = 1, size(omega)
-         if (omega(k) <= 0.0_dp .or. operators%pairs%weight(k) <= 0.0_dp) cycle
-         associate (weight => operators%pairs%weight(k))
+         if (omega(k) <= 0.0_dp .or. bodies%pairs%weight(k) <= 0.0_dp) cycle
+         associate (weight => bodies%pairs%weight(k))
             change = few*epsilon(1.0_dp)*max(data%displacement_scale, abs(state%gap(k)), &
-               abs(operators%pairs%initial_gap(k) - state%gap(k)))
+               abs(bodies%pairs%initial_gap(k) - state%gap(k)))
             if (state%status(k) /= status_open) then
-               change = change*operators%contact%alone(k)/weight
+               change = change*bodies%contact%alone(k)/weight
             end if
             pressure = state%force(k)/weight
          end associate
-         floor_value = max(floor_value, change/omega(k)*abs(conductance_slope( &
-            operators%pairs%law(k), state%status(k) /= status_open, state%gap(k), pressure)))
+         floor_value = max(floor_value, change/omega(k)*abs(conductance_derivative( &
+            bodies%pairs%law(k), state%status(k) /= status_open, state%gap(k), pressure)))
       end do
    end function residual_floor
 

@@ -8,9 +8,9 @@ module coupled_increment
    use fixed_point, only: predicted_conductance
    use increment_data, only: increment_data_type, increment_workspace_type
    use increment_iteration, only: iterate
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
-   use opening_slopes, only: make_graph, opening_slope
+   use opening_derivatives, only: make_graph, opening_derivative
+   use reduced_bodies, only: reduced_bodies_type
    use resting_pairs, only: contact_scales
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
@@ -30,8 +30,8 @@ contains
 
    !> Conductances, jumps and contact state of an increment.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
-   subroutine solve_coupled(operators, step, previous, data, workspace, next, error)
-      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
+   subroutine solve_coupled(bodies, step, previous, data, workspace, next, error)
+      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
       type(step_type), intent(in) :: step                        !! the step
       type(solution_state_type), intent(in) :: previous          !! state at the start
       type(increment_data_type), intent(inout) :: data           !! receives graphs and scales
@@ -39,22 +39,22 @@ contains
       type(solution_state_type), intent(inout) :: next           !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error        !! see above
 
-      data%scales = contact_scales(operators, data)
-      data%graph = make_graph(operators, data%scales%length)
+      data%scales = contact_scales(bodies, data)
+      data%graph = make_graph(bodies, data%scales%length)
       next%omega_before = previous%omega
       if (step%start%kind == start_both) then
-         call solve_from_both(operators, step, previous, data, workspace, next, error)
+         call solve_from_both(bodies, step, previous, data, workspace, next, error)
       else
-         next%omega = starting_conductance(operators, step, step%start%kind, previous, next)
-         call iterate(operators, step%fixed_point, data, workspace, next, error)
+         next%omega = starting_conductance(bodies, step, step%start%kind, previous, next)
+         call iterate(bodies, step%fixed_point, data, workspace, next, error)
       end if
       if (allocated(error) .or. .not. step%fixed_point%finds_gain) return
-      call judge(operators, data, next, workspace)
+      call judge(bodies, data, next, workspace)
    end subroutine solve_coupled
 
    !> omega*^0 of a start.
-   function starting_conductance(operators, step, kind, previous, next) result(omega)
-      type(interface_operators_type), intent(in) :: operators
+   function starting_conductance(bodies, step, kind, previous, next) result(omega)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(step_type), intent(in) :: step
       integer, intent(in) :: kind
       type(solution_state_type), intent(in) :: previous
@@ -66,17 +66,17 @@ contains
 
       select case (kind)
       case (start_given)
-         do i = 1, size(operators%interfaces)
-            omega(operators%pairs%interface_start(i):operators%pairs%interface_start(i + 1) - 1) = &
+         do i = 1, size(bodies%interfaces)
+            omega(bodies%pairs%interface_start(i):bodies%pairs%interface_start(i + 1) - 1) = &
                step%start%conductance(i)
          end do
       case (start_open, start_closed)
          omega = previous%omega
-         conductor = operators%conductors()
+         conductor = bodies%conductors()
          do k = 1, size(omega)
-            if (operators%jump_place(k) == 0 .or. operators%pairs%weight(k) <= 0.0_dp) cycle
+            if (bodies%jump_place(k) == 0 .or. bodies%pairs%weight(k) <= 0.0_dp) cycle
             omega(k) = end_conductance(merge(1, 2, kind == start_open))*conductor(k)/ &
-               operators%pairs%weight(k)
+               bodies%pairs%weight(k)
          end do
       case default
          ratio = 1.0_dp
@@ -88,8 +88,8 @@ contains
    !> The increment from the last ones, and from both ends of the conductance: do all lead to one
    !> solution? That of the first start that leads to any is the increment's. It is found last, for
    !> the factors to be its own.
-   subroutine solve_from_both(operators, step, previous, data, workspace, next, error)
-      type(interface_operators_type), intent(in) :: operators
+   subroutine solve_from_both(bodies, step, previous, data, workspace, next, error)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(in) :: data
@@ -121,9 +121,9 @@ contains
          integer, intent(in) :: i
 
          next = guess
-         next%omega = starting_conductance(operators, step, kinds(i), previous, next)
+         next%omega = starting_conductance(bodies, step, kinds(i), previous, next)
          workspace = fresh
-         call iterate(operators, step%fixed_point, data, workspace, next, error)
+         call iterate(bodies, step%fixed_point, data, workspace, next, error)
       end subroutine try_start
    end subroutine solve_from_both
 
@@ -154,8 +154,8 @@ contains
    end function differ
 
    !> The gain of the coupling, and what follows from it.
-   subroutine judge(operators, data, next, workspace)
-      type(interface_operators_type), intent(in) :: operators
+   subroutine judge(bodies, data, next, workspace)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: next
       type(increment_workspace_type), intent(inout) :: workspace
@@ -171,7 +171,7 @@ contains
       end associate
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
-      call opening_slope(operators, data, workspace, next%jump, next%contact, slope, body)
+      call opening_derivative(bodies, data, workspace, next%jump, next%contact, slope, body)
       if (.not. allocated(slope)) return
       call find_gain(data%graph, workspace%pass%opening, slope, next%resting, gain, found)
       if (.not. found) return

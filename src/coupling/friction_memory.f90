@@ -3,9 +3,9 @@ module friction_memory
    use contact_states, only: status_open
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use pair_rows, only: tangential_position
+   use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    implicit none
    private
@@ -16,21 +16,21 @@ contains
    !> Slip counts from the instant of closing. Tangential positions that the contact system does not
    !> carry, of pairs that are frictionless or held, are taken from the recovered displacements, and
    !> such a pair closes where it is at that instant on the straight line between its ends.
-   pure subroutine remember_slip(operators, solved, previous, next)
-      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+   pure subroutine remember_slip(bodies, solved, previous, next)
+      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
       type(contact_workspace_type), intent(in) :: solved      !! factors of the solution
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(inout) :: next        !! state at the end, with its fields
       real(dp) :: before
       integer :: k
 
-      associate (pairs => operators%pairs, contact => next%contact)
+      associate (pairs => bodies%pairs, contact => next%contact)
          do k = 1, size(pairs%slave)
-            if (operators%contact%tangent(k) == 0) then
+            if (bodies%contact%tangent(k) == 0) then
                before = tangential_position(pairs, k, previous%displacement)
                contact%tangential(k) = tangential_position(pairs, k, next%displacement)
                contact%reference(k) = before + &
-                  closing_fraction(operators%contact, solved, k, previous%contact%gap(k), &
+                  closing_fraction(bodies%contact, solved, k, previous%contact%gap(k), &
                   contact%force(k))* &
                   (contact%tangential(k) - before)
             end if

@@ -7,11 +7,11 @@ module increment_iteration
    use errors, only: error_type, set_error, status_no_convergence
    use fixed_point, only: accelerator_type
    use increment_data, only: increment_data_type, increment_workspace_type
-   use interface_operators, only: interface_operators_type
    use interruption, only: check_overdue
    use kinds, only: dp
    use newton, only: newton_type
-   use opening_slopes, only: opening_slope, openings
+   use opening_derivatives, only: opening_derivative, openings
+   use reduced_bodies, only: reduced_bodies_type
    use resting_pairs, only: find_residual, settle
    use solution_report, only: solution_report_type, iteration_record_type
    use solution_state, only: solution_state_type
@@ -32,8 +32,8 @@ contains
    !> tells what the failure means.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds;
    !> status_interrupted where a signal left no more time.
-   subroutine iterate(operators, controls, data, workspace, next, error)
-      type(interface_operators_type), intent(in) :: operators    !! the reduced bodies
+   subroutine iterate(bodies, controls, data, workspace, next, error)
+      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
       type(fixed_point_type), intent(in) :: controls             !! *FIXED POINT
       type(increment_data_type), intent(in) :: data              !! the increment
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, passes out
@@ -43,29 +43,29 @@ contains
 
       start = next
       allocate (workspace%record%iterations(0))
-      call use_method(operators, controls, data, workspace, next, error)
+      call use_method(bodies, controls, data, workspace, next, error)
       if (allocated(error) .and. size(workspace%record%iterations) == 0) then
          ! Not even the contact zones of the start were found: those of the last increment may be.
          next%contact = start%contact
          next%omega = data%omega_old
-         call use_method(operators, controls, data, workspace, next, error)
+         call use_method(bodies, controls, data, workspace, next, error)
       end if
       if (.not. allocated(error)) return
       if (controls%method == method_newton) then
-         call name_runaway(operators, data, next%jump, workspace%record, error)
+         call name_runaway(bodies, data, next%jump, workspace%record, error)
       else if (any(data%graph%width > 0.0_dp)) then
          deallocate (error)
          call append(workspace%record%notes, &
             'a pair whose conductance jumps comes to no state by the '// &
             'method of the deck; the increment is handed to NEWTON')
          next = start
-         call use_method(operators, by_newton(controls), data, workspace, next, error)
-         if (allocated(error)) call name_runaway(operators, data, next%jump, workspace%record, &
+         call use_method(bodies, by_newton(controls), data, workspace, next, error)
+         if (allocated(error)) call name_runaway(bodies, data, next%jump, workspace%record, &
             error)
       else if (runs_away(data, next%jump)) then
-         call name_runaway(operators, data, next%jump, workspace%record, error)
+         call name_runaway(bodies, data, next%jump, workspace%record, error)
       else if (.not. workspace%contact%driven) then
-         call explain_failure(operators, by_newton(controls), data, start, workspace, error)
+         call explain_failure(bodies, by_newton(controls), data, start, workspace, error)
       end if
    end subroutine iterate
 
@@ -80,8 +80,8 @@ contains
 
    !> Says of an increment in which another method failed what Newton's finds in it: a solution, or
    !> that the heat runs away.
-   subroutine explain_failure(operators, controls, data, start, workspace, error)
-      type(interface_operators_type), intent(in) :: operators
+   subroutine explain_failure(bodies, controls, data, start, workspace, error)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(fixed_point_type), intent(in) :: controls
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: start
@@ -93,9 +93,9 @@ contains
 
       other = start
       other_workspace = workspace
-      call use_method(operators, controls, data, other_workspace, other, other_error)
+      call use_method(bodies, controls, data, other_workspace, other, other_error)
       if (allocated(other_error)) then
-         call name_runaway(operators, data, other%jump, workspace%record, error)
+         call name_runaway(bodies, data, other%jump, workspace%record, error)
       else
          error%message = error%message//'; *FIXED POINT, METHOD=NEWTON solves it'
       end if
@@ -111,8 +111,8 @@ contains
    end function runs_away
 
    !> Names the interface with the largest jump, in place of an error, where the heat runs away.
-   subroutine name_runaway(operators, data, jump, record, error)
-      type(interface_operators_type), intent(in) :: operators
+   subroutine name_runaway(bodies, data, jump, record, error)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: jump(:)
       type(solution_report_type), intent(inout) :: record
@@ -122,8 +122,8 @@ contains
       if (.not. runs_away(data, jump)) return
       k = findloc(abs(jump) <= huge(1.0_dp), .false., dim=1)
       if (k == 0) k = maxloc(abs(jump), dim=1)
-      i = count(operators%pairs%interface_start <= k)
-      record%runaway = 'thermal runaway in contact pair '//operators%interfaces(i)%name// &
+      i = count(bodies%pairs%interface_start <= k)
+      record%runaway = 'thermal runaway in contact pair '//bodies%interfaces(i)%name// &
          ': the heat that crosses its gap widens it, and the wider gap needs hotter bodies, '// &
          'without limit (thermal strains above 1); a steady state needs less heat, a smaller '// &
          'gap or better conduction'
@@ -131,8 +131,8 @@ contains
    end subroutine name_runaway
 
    !> The iteration by one method.
-   subroutine use_method(operators, controls, data, workspace, next, error)
-      type(interface_operators_type), intent(in) :: operators
+   subroutine use_method(bodies, controls, data, workspace, next, error)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(fixed_point_type), intent(in) :: controls
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
@@ -160,7 +160,7 @@ contains
             if (allocated(error)) exit
             good = next%contact
             pass%iteration = i
-            call contact_operator_pass(operators, data, workspace, next%jump, next%contact, error)
+            call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
             passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
                residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
                g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
@@ -172,10 +172,10 @@ contains
                next%contact = good
                cycle
             end if
-            pass%opening = openings(operators, data%graph, next%contact)
-            call find_residual(data%graph, data%scales, operators%pairs%weight, pass, &
+            pass%opening = openings(bodies, data%graph, next%contact)
+            call find_residual(data%graph, data%scales, bodies%pairs%weight, pass, &
                passes(i)%residual, next%resting)
-            record%residual_floor = residual_floor(operators, data, next%contact, pass%image)
+            record%residual_floor = residual_floor(bodies, data, next%contact, pass%image)
             wanted = max(controls%tolerance, record%residual_floor)
             next%omega = pass%omega
             if (passes(i)%residual <= wanted) exit
@@ -185,13 +185,13 @@ contains
                turns = turns + 1
             if (controls%method /= method_newton .and. any(turns > most_turns .and. &
                data%graph%width > 0.0_dp)) exit
-            call find_slope(operators, data, next, accelerator, workspace)
+            call find_derivative(bodies, data, next, accelerator, workspace)
             call accelerator%next(pass, next%omega)
             pass%omega = next%omega
          end do
          call close_passes(record, passes, i, wanted, error)
          if (allocated(error)) return
-         where (operators%pairs%weight <= 0.0_dp) next%omega = pass%image
+         where (bodies%pairs%weight <= 0.0_dp) next%omega = pass%image
       end associate
       call settle(next%resting, next%contact)
    end subroutine use_method
@@ -230,8 +230,8 @@ contains
    end subroutine close_passes
 
    !> The derivative of a pass, where the accelerator asks for it.
-   subroutine find_slope(operators, data, next, accelerator, workspace)
-      type(interface_operators_type), intent(in) :: operators
+   subroutine find_derivative(bodies, data, next, accelerator, workspace)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: next
       class(accelerator_type), intent(in) :: accelerator
@@ -241,10 +241,11 @@ contains
          if (allocated(pass%slope)) deallocate (pass%slope)
          select type (accelerator)
          type is (newton_type)
-            if (accelerator%asks_slope(pass)) call opening_slope(operators, data, workspace, &
+            if (accelerator%asks_derivative(pass)) call opening_derivative(bodies, data, &
+               workspace, &
                next%jump, next%contact, pass%slope, pass%body)
          end select
       end associate
-   end subroutine find_slope
+   end subroutine find_derivative
 
 end module increment_iteration

@@ -53,7 +53,7 @@ module newton
       real(dp), private :: part = 1.0_dp               !! part of the present step that is tried
       real(dp), private :: time_step = huge(1.0_dp)    !! tau; huge for Newton's method
    contains
-      procedure :: asks_slope
+      procedure :: asks_derivative
       procedure :: next
       procedure :: retreat
    end type newton_type
@@ -61,7 +61,7 @@ module newton
 contains
 
    !> Whether next wants the derivative of this pass: it is taken, and there are laws to follow.
-   pure function asks_slope(self, pass) result(asks)
+   pure function asks_derivative(self, pass) result(asks)
       class(newton_type), intent(in) :: self   !! memory of the method
       type(pass_type), intent(in) :: pass      !! the last pass
       logical :: asks                          !! pass%slope is to be set
@@ -70,7 +70,7 @@ contains
       if (asks) return
       asks = takes(self, pass)
       if (asks) asks = any(abs(self%graph%slope(places_of(self, pass))) > 0.0_dp)
-   end function asks_slope
+   end function asks_derivative
 
    !> Places of a pass; those of the first one by its conductances.
    pure function places_of(self, pass) result(place)

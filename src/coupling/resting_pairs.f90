@@ -5,8 +5,8 @@ module resting_pairs
    use contact_states, only: contact_state_type, status_open, status_slip
    use fixed_point, only: pair_residual, pass_type
    use increment_data, only: contact_scales_type, increment_data_type
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
+   use reduced_bodies, only: reduced_bodies_type
    implicit none
    private
    public :: contact_scales, find_residual, settle
@@ -23,8 +23,8 @@ contains
 
    !> Largest values that are known at the start of an increment. Its load counts by the overlap
    !> that it makes at a pair alone.
-   pure function contact_scales(operators, data) result(scales)
-      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+   pure function contact_scales(bodies, data) result(scales)
+      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
       type(increment_data_type), intent(in) :: data           !! the increment
       type(contact_scales_type) :: scales                     !! largest values, length > 0
       real(dp) :: stiffness
@@ -32,9 +32,9 @@ contains
 
       scales%force = maxval(data%previous%force)
       scales%length = max(data%displacement_scale, maxval(abs(data%previous%gap)))
-      do k = 1, size(operators%contact%normal)
-         associate (place => operators%contact%normal(k))
-            stiffness = operators%contact%alone(k)
+      do k = 1, size(bodies%contact%normal)
+         associate (place => bodies%contact%normal(k))
+            stiffness = bodies%contact%alone(k)
             if (stiffness > 0.0_dp) scales%length = max(scales%length, &
                abs(data%welded_load(place))/stiffness)
          end associate

@@ -3,9 +3,9 @@ module scheme_start
    use balances, only: heat_residual
    use films, only: net_heat
    use increment_data, only: increment_data_type
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
+   use reduced_bodies, only: reduced_bodies_type
    use scheme_properties, only: amplification
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
@@ -22,8 +22,8 @@ contains
 
    !> Warns where heat starts out of equilibrium, (K + G) T /= Q, with a scheme that never damps
    !> that, and notes in the state whether the scheme is such a one.
-   subroutine warn_of_imbalance(operators, loads, data, previous, next, record)
-      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+   subroutine warn_of_imbalance(bodies, loads, data, previous, next, record)
+      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
       type(loads_type), intent(in) :: loads                   !! loads of the increment
       type(increment_data_type), intent(in) :: data           !! scheme, conductance, jumps
       type(solution_state_type), intent(in) :: previous       !! state at the start
@@ -34,7 +34,7 @@ contains
       factor = amplification(data%scheme)
       next%keeps_imbalance = abs(factor) >= undamped
       if (.not. next%keeps_imbalance .or. previous%keeps_imbalance) return
-      imbalance = start_imbalance(operators, loads%temperature%active, data, previous)
+      imbalance = start_imbalance(bodies, loads%temperature%active, data, previous)
       if (imbalance <= equilibrium) return
       next%is_out_of_balance = .true.
       call append(record%warnings, 'increment '//to_text(record%increment)// &
@@ -45,8 +45,8 @@ contains
 
    !> Largest residual of (K + G) T - Q in any row that is not prescribed, at the start of an
    !> increment, relative to the largest rate.
-   pure function start_imbalance(operators, held, data, previous) result(relative)
-      type(interface_operators_type), intent(in) :: operators
+   pure function start_imbalance(bodies, held, data, previous) result(relative)
+      type(reduced_bodies_type), intent(in) :: bodies
       logical, intent(in) :: held(:)
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: previous
@@ -54,12 +54,12 @@ contains
       real(dp) :: conducted(size(held)), residual(size(held)), pair_heat(size(data%omega_old))
       real(dp) :: scale
 
-      conducted = operators%thermal%matrix%multiply(previous%temperature)
-      pair_heat = operators%pairs%weight*data%omega_old*data%jump_old
+      conducted = bodies%thermal%matrix%multiply(previous%temperature)
+      pair_heat = bodies%pairs%weight*data%omega_old*data%jump_old
       residual = heat_residual(conducted, net_heat(previous%heat_load, previous%film, &
-         previous%temperature), operators%pairs, pair_heat)
+         previous%temperature), bodies%pairs, pair_heat)
       scale = max(maxval(abs(conducted)), maxval(abs(previous%heat_load)), &
-         maxval([0.0_dp, abs(pair_heat)]), noise*maxval(abs(operators%thermal%matrix%value))* &
+         maxval([0.0_dp, abs(pair_heat)]), noise*maxval(abs(bodies%thermal%matrix%value))* &
          maxval(abs(previous%temperature)), tiny(1.0_dp))
       relative = maxval([0.0_dp, pack(abs(residual), .not. held)])/scale
    end function start_imbalance

@@ -68,8 +68,8 @@ contains
                open_law_words(interaction%law)//'; closed: '//closed_law_words(interaction%law))
          end associate
       end do
-      do i = 1, size(simulation%operators%interfaces)
-         associate (pairs => simulation%operators%interfaces(i))
+      do i = 1, size(simulation%bodies%interfaces)
+         associate (pairs => simulation%bodies%interfaces(i))
             call line('contact pair '//pairs%name, to_text(size(pairs%slave_node))// &
                ' node pairs, initial gaps '//to_text(minval(pairs%initial_gap))//' to '// &
                to_text(maxval(pairs%initial_gap)))

@@ -16,7 +16,7 @@
 !> the pair: with 1/body the resistance of the bodies it goes like 1/(1/body + 1/omega).
 module conductance_graph
    use conductance_laws, only: conductance, conductance_inverse, conductance_law_type, &
-      conductance_slope, law_clearance, law_pressure
+      conductance_derivative, law_clearance, law_pressure
    use kinds, only: dp
    implicit none
    private
@@ -76,10 +76,10 @@ contains
          slope = (ends(2) - ends(1))/self%width/ &
             product((ends + self%body)*sum(rest_weights(self, place)))
       else if (place < 0.0_dp) then
-         slope = -self%modulus*conductance_slope(self%law, .true., 0.0_dp, &
+         slope = -self%modulus*conductance_derivative(self%law, .true., 0.0_dp, &
             -self%modulus*(place + self%width))
       else
-         slope = conductance_slope(self%law, .false., place, 0.0_dp)
+         slope = conductance_derivative(self%law, .false., place, 0.0_dp)
       end if
    end function slope
 

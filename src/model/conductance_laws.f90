@@ -5,7 +5,8 @@ module conductance_laws
    implicit none
    private
    public :: conductance_law_type, law_none, law_gas, law_power, law_clearance, law_pressure
-   public :: conductance, conductance_slope, conductance_inverse, law_jump, law_jumps, table_jump, &
+   public :: conductance, conductance_derivative, conductance_inverse, law_jump, law_jumps, &
+      table_jump, &
       is_constant
 
    integer, parameter :: law_none = 0        !! this side of the law was not given
@@ -59,7 +60,7 @@ contains
    !> Derivative of omega by the gap of an open pair or by the pressure of a closed one, eq. (1.8),
    !> towards larger gaps or pressures where the law has a kink; 0 below zero, and at p = 0 for
    !> n < 1, where it is not bounded.
-   pure function conductance_slope(law, closed, gap, pressure) result(slope)
+   pure function conductance_derivative(law, closed, gap, pressure) result(slope)
       type(conductance_law_type), intent(in) :: law !! the law
       logical, intent(in) :: closed                 !! whether the pair is closed
       real(dp), intent(in) :: gap                   !! gamma >= 0 [length]
@@ -81,7 +82,7 @@ contains
             slope = line_slope(law%table_gap, law%open_omega, gap)
          end if
       end if
-   end function conductance_slope
+   end function conductance_derivative
 
    !> Gap of an open pair, or pressure of a closed one, that has a given omega; negative where there
    !> is none, or where the law is constant.

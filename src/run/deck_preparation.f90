@@ -45,12 +45,12 @@ contains
       call read_deck(path, command%width, command%settings, cards, report)
       call build_model(cards, verifiable, model, report, error, variation)
       if (.not. (report%has_errors() .or. allocated(error))) then
-         call pair_all(model, simulation%operators%interfaces, report)
+         call pair_all(model, simulation%bodies%interfaces, report)
       end if
       if (.not. (report%has_errors() .or. allocated(error))) then
          call simulation%start(model, error)
          if (.not. allocated(error)) call check_arc_lengths(model, &
-            simulation%operators%interfaces, report)
+            simulation%bodies%interfaces, report)
          call check_supports(cards%last, model, simulation, report)
       end if
       model%warnings = report%warnings()
@@ -91,7 +91,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(string_type), allocatable :: messages(:)
 
-      associate (analysis => model%steps(step)%analysis, points => simulation%operators%pairs)
+      associate (analysis => model%steps(step)%analysis, points => simulation%bodies%pairs)
          if (solves_mechanics(analysis)) then
             call report_over_constrained(model, simulation, loads%displacement%active, step, report)
             call unconstrained_in_step(model, points, loads%displacement%active, messages)
@@ -120,13 +120,13 @@ contains
       logical, intent(in) :: held(:)
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
-      logical :: too_much(size(simulation%operators%pairs%slave))
+      logical :: too_much(size(simulation%bodies%pairs%slave))
       integer :: i, k
 
-      too_much = over_constrained(simulation%operators%pairs, held)
+      too_much = over_constrained(simulation%bodies%pairs, held)
       do i = 1, size(model%contacts)
-         associate (pairs => simulation%operators%interfaces(i), number => model%mesh%node_number, &
-            start => simulation%operators%pairs%interface_start)
+         associate (pairs => simulation%bodies%interfaces(i), number => model%mesh%node_number, &
+            start => simulation%bodies%pairs%interface_start)
             k = findloc(too_much(start(i):start(i + 1) - 1), .true., dim=1)
             if (k == 0) cycle
             call report%error(place_type(image=model%contacts(i)%card), 'step '// &

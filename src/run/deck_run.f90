@@ -1,22 +1,22 @@
 !> One deck to its results.
 module deck_run
+   use batch_table, only: table_name
    use blas_memory, only: reserve_blas_memory
    use cards, only: cards_type
    use clock, only: wall_seconds
    use command_line, only: command_type
-   use batch_table, only: table_name
    use deck_outcomes, only: deck_outcome_type
    use deck_preparation, only: prepare_deck
    use error_estimator, only: error_estimator_type
-   use errors, only: error_type, set_error, status_deck, status_interrupted, &
-      status_internal, status_no_convergence, status_verify
+   use errors, only: error_type, set_error, status_deck, status_interrupted, status_internal, &
+      status_no_convergence, status_verify
    use file_calls, only: make_folder
    use increment_control, only: increment_control_type
    use increments, only: simulation_type
    use interruption, only: caught_signal, end_after_grace, end_at_once, end_by_increments, &
       run_end_type
    use kinds, only: dp
-   use load_courses, only: step_clock_type
+   use load_histories, only: step_clock_type
    use messages, only: print_error
    use model, only: model_type
    use records, only: increment_record_type
@@ -138,7 +138,7 @@ contains
       logical :: is_written
 
       associate (model => self%model, simulation => self%simulation, output => self%output, &
-         pairs => self%simulation%operators%interfaces, points => self%simulation%recovery%points)
+         pairs => self%simulation%bodies%interfaces, points => self%simulation%recovery%points)
          call self%end%hold(.true.)
          call output%start(model, pairs, points%node, points%element_points, self%cards%images, &
             error)
@@ -204,7 +204,7 @@ contains
             end if
             call estimator%end_increment(model, simulation, record)
             call self%end%hold(.true.)
-            call output%accept(record, model, simulation%operators%interfaces, error)
+            call output%accept(record, model, simulation%bodies%interfaces, error)
             call outcome%note(record, output%accepted())
             is_written = .not. allocated(error)
             if (allocated(error)) return

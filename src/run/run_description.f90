@@ -131,9 +131,9 @@ contains
          element = model%mesh%surfaces(model%contacts(i)%slave)%faces(1, 1)
          associate (material => &
             model%materials(model%sections(model%mesh%element_section(element))%material), &
-            pairs => simulation%operators%pairs)
+            pairs => simulation%bodies%pairs)
             conductivity = sqrt(product(material%conductivity))
-            length = maxval(simulation%operators%interfaces(i)%arc_length)
+            length = maxval(simulation%bodies%interfaces(i)%arc_length)
             first = pairs%interface_start(i)
             last = pairs%interface_start(i + 1) - 1
          end associate

@@ -3,11 +3,11 @@ module heat_balance
    use balances, only: heat_residual, imbalance, scheme_pair_heat
    use controls, only: thermal_scheme_type
    use films, only: net_heat, scheme_net_heat
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
    use records, only: increment_record_type
+   use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: carrying_conductance, solution_state_type
    use text, only: append, to_text
    implicit none
@@ -23,8 +23,8 @@ module heat_balance
 contains
 
    !> Heat that enters by loads and prescribed temperatures, and both balances of heat.
-   pure subroutine balance_heat(operators, model, loads, scheme, previous, next, record)
-      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+   pure subroutine balance_heat(bodies, model, loads, scheme, previous, next, record)
+      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
       type(thermal_scheme_type), intent(in) :: scheme         !! coefficients of (3.4)
@@ -34,31 +34,31 @@ contains
       real(dp), allocatable :: conducted(:), heat(:), residual(:), pair_heat(:)
       real(dp) :: scale
 
-      pair_heat = operators%pairs%weight*carrying_conductance(next, scheme)*next%jump
-      conducted = operators%thermal%matrix%multiply(next%temperature)
+      pair_heat = bodies%pairs%weight*carrying_conductance(next, scheme)*next%jump
+      conducted = bodies%thermal%matrix%multiply(next%temperature)
       heat = net_heat(next%heat_load, next%film, next%temperature)
-      residual = heat_residual(conducted, heat, operators%pairs, pair_heat)
+      residual = heat_residual(conducted, heat, bodies%pairs, pair_heat)
       call sum_rates(loads, next%temperature, residual, record)
-      associate (held => loads%temperature%active, weight => operators%pairs%weight, &
+      associate (held => loads%temperature%active, weight => bodies%pairs%weight, &
          body => model%mesh%node_body)
          scale = max(record%heat_in, record%heat_out, abs(sum(pair_heat)), &
             maxval(abs(residual), mask=held), maxval(abs(heat)), &
-            noise*maxval(abs(operators%thermal%matrix%value))*maxval(abs(next%temperature)), &
+            noise*maxval(abs(bodies%thermal%matrix%value))*maxval(abs(next%temperature)), &
             tiny(1.0_dp))
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + heat
-         residual = heat_residual(conducted, heat, operators%pairs, weight*next%omega*next%jump)
+         residual = heat_residual(conducted, heat, bodies%pairs, weight*next%omega*next%jump)
          record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, [.true.], &
             scale)
          associate (whole => scheme%a(1) + scheme%b(1))
             conducted = (scheme%a(1)*conducted + scheme%b(1)* &
-               operators%thermal%matrix%multiply(previous%temperature))/whole
+               bodies%thermal%matrix%multiply(previous%temperature))/whole
             pair_heat = scheme_pair_heat(scheme, weight, next%omega_start, next%omega, &
                previous%jump, next%jump)/whole
             heat = scheme_net_heat(scheme, previous%heat_load, next%heat_load, previous%film, &
                next%film, previous%temperature, next%temperature)/whole
          end associate
-         residual = heat_residual(conducted, heat, operators%pairs, pair_heat)
+         residual = heat_residual(conducted, heat, bodies%pairs, pair_heat)
          record%heat_imbalance = imbalance(conducted, residual, held, body, [.true.], &
             scale)
       end associate

@@ -4,11 +4,11 @@ module increment_checks
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
    use records, only: increment_record_type
+   use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use text, only: append, to_text
    use thermal_matrix, only: contact_diagonal
@@ -89,16 +89,16 @@ contains
    !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
    !> place of whatever error followed from it.
    !> Error: there are such bodies.
-   subroutine check_heat(model, operators, loads, step, next, error)
+   subroutine check_heat(model, bodies, loads, step, next, error)
       type(model_type), intent(in) :: model                       !! the model
-      type(interface_operators_type), intent(in) :: operators     !! the bodies
+      type(reduced_bodies_type), intent(in) :: bodies     !! the bodies
       type(loads_type), intent(in) :: loads                       !! loads of the increment
       integer, intent(in) :: step                                 !! the step
       type(solution_state_type), intent(in) :: next               !! state at its end
       type(error_type), allocatable, intent(inout) :: error       !! see above
       character(:), allocatable :: words
 
-      associate (pairs => operators%pairs)
+      associate (pairs => bodies%pairs)
          words = undetermined_now(model, pairs, loads%temperature%active, step, &
             contact_diagonal(model%steps(step)%scheme, pairs%weight, next%omega_start, &
             next%omega) > 0.0_dp)
@@ -110,9 +110,9 @@ contains
 
    !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
    !> and nothing holds, contact states of which friction allows several.
-   subroutine warn_of_choices(model, operators, contact, loads, next, record, undecided)
+   subroutine warn_of_choices(model, bodies, contact, loads, next, record, undecided)
       type(model_type), intent(in) :: model                     !! the model
-      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
       type(contact_workspace_type), intent(in) :: contact       !! of the solution
       type(loads_type), intent(in) :: loads                     !! supports of the increment
       type(solution_state_type), intent(in) :: next             !! state at its end
@@ -124,7 +124,7 @@ contains
       if (contact%several) words = &
          'with so much friction other contact states satisfy all conditions, too'
       if (size(contact%loose, 2) > 0 .or. any(next%idle)) then
-         free = unconstrained_now(model, operators%pairs, loads%displacement%active, &
+         free = unconstrained_now(model, bodies%pairs, loads%displacement%active, &
             merge(status_open, next%contact%status, next%idle .or. next%resting))
          if (len(free) > 0) words = &
             'the least motion is taken where nothing drives or holds one'//free

@@ -3,7 +3,7 @@
 module increment_control
    use increment_instants, only: cut_size, grown_size, is_smallest, next_end
    use kinds, only: dp
-   use load_courses, only: step_clock_type
+   use load_histories, only: step_clock_type
    use model, only: model_type
    use steps, only: step_type
    use text, only: to_text

@@ -11,13 +11,13 @@ module increment_records
    use element_kinds, only: axisymmetric
    use element_points, only: points_of_elements
    use heat_balance, only: balance_heat, warn_of_heat
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use loads, only: loads_type
    use mesh, only: extent_of
    use model, only: model_type
    use pair_tractions, only: in_contact, pressures, shears
    use records, only: contact_record_type, increment_record_type
+   use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: carrying_conductance, solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use text, only: append, to_text
@@ -37,8 +37,8 @@ contains
    !> Completes the record of an increment, which has its place in the steps and its passes, with
    !> contact state, fields and balances. What the step does not solve stands as the last step that
    !> did left it; stress and flux with their errors are made where needed.
-   pure subroutine complete_record(operators, model, recovery, loads, previous, next, record)
-      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+   pure subroutine complete_record(bodies, model, recovery, loads, previous, next, record)
+      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
       type(model_type), intent(in) :: model                   !! the model
       type(recovery_type), intent(in) :: recovery             !! stress and flux with their errors
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
@@ -52,9 +52,9 @@ contains
       associate (step => model%steps(record%step))
          recovers = needs_recovery(record, model)
          carrying = carrying_conductance(next, step%scheme)
-         allocate (record%contacts(size(operators%interfaces)))
-         do i = 1, size(operators%interfaces)
-            record%contacts(i) = contact_record(operators, solves_heat(step%analysis), i, next, &
+         allocate (record%contacts(size(bodies%interfaces)))
+         do i = 1, size(bodies%interfaces)
+            record%contacts(i) = contact_record(bodies, solves_heat(step%analysis), i, next, &
                carrying)
          end do
          record%fields%temperature = next%temperature
@@ -62,7 +62,7 @@ contains
             if (recovers) call recovery%recover_stress(model, reshape(next%displacement, [2, &
                size(next%temperature)]), next%temperature - model%initial_temperature, &
                record%fields%stress, record%stress_error)
-            call balance_forces(operators, model, loads, next, record)
+            call balance_forces(bodies, model, loads, next, record)
          else
             record%force_imbalance = ieee_value(1.0_dp, ieee_quiet_nan)
             record%contact_violation = record%force_imbalance
@@ -79,7 +79,7 @@ contains
          if (solves_heat(step%analysis)) then
             if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
                record%fields%heat_flux, record%heat_flux_error)
-            call balance_heat(operators, model, loads, step%scheme, previous, next, record)
+            call balance_heat(bodies, model, loads, step%scheme, previous, next, record)
             call warn_of_heat(step%scheme, next, record)
          else
             record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -109,21 +109,21 @@ contains
    end subroutine warn_of_floor
 
    !> Contact state of one interface.
-   pure function contact_record(operators, with_heat, i, next, carrying) result(record)
-      type(interface_operators_type), intent(in) :: operators
+   pure function contact_record(bodies, with_heat, i, next, carrying) result(record)
+      type(reduced_bodies_type), intent(in) :: bodies
       logical, intent(in) :: with_heat
       integer, intent(in) :: i
       type(solution_state_type), intent(in) :: next
       real(dp), intent(in) :: carrying(:)
       type(contact_record_type) :: record
       type(contact_state_type) :: contact
-      logical :: closed(size(operators%interfaces(i)%slave_node)), touches(size(closed))
+      logical :: closed(size(bodies%interfaces(i)%slave_node)), touches(size(closed))
       integer :: first, k, last
 
-      first = operators%pairs%interface_start(i)
-      last = operators%pairs%interface_start(i + 1) - 1
+      first = bodies%pairs%interface_start(i)
+      last = bodies%pairs%interface_start(i + 1) - 1
       contact = kept_contact(next%contact, next%has_mechanics)
-      associate (pairs => operators%interfaces(i))
+      associate (pairs => bodies%interfaces(i))
          record%status = contact%status(first:last)
          where (next%idle(first:last)) record%status = merge(status_slip, status_open, &
             next%resting(first:last))
@@ -131,17 +131,17 @@ contains
          record%smallest_gap = next%smallest_gap(first:last)
          closed = record%status /= status_open
          if (next%has_mechanics) closed = in_contact(pairs, closed, record%gap, &
-            contact%force(first:last), operators%contact%alone(first:last))
+            contact%force(first:last), bodies%contact%alone(first:last))
          touches = closed .and. record%status == status_open
          where (touches)
             record%status = merge(status_stick, status_slip, &
-               operators%pairs%friction(first:last) > 0.0_dp)
+               bodies%pairs%friction(first:last) > 0.0_dp)
             record%gap = 0.0_dp
          end where
-         call measure_contact(pairs, operators%pairs%friction(first), closed, &
+         call measure_contact(pairs, bodies%pairs%friction(first), closed, &
             contact%force(first:last), contact%shear_force(first:last), record)
          record%slip = contact%tangential(first:last) - contact%slip_origin(first:last)
-         if (allocated(operators%thermal%matrix%value)) then
+         if (allocated(bodies%thermal%matrix%value)) then
             record%slave_temperature = next%temperature(pairs%slave_node)
             record%master_temperature = next%temperature(pairs%master_node)
          end if
@@ -149,7 +149,7 @@ contains
          record%conductance = carrying(first:last)
          do k = 1, size(touches)
             if (touches(k)) record%conductance(k) = conductance( &
-               operators%pairs%law(first - 1 + k), .true., 0.0_dp, record%pressure(k))
+               bodies%pairs%law(first - 1 + k), .true., 0.0_dp, record%pressure(k))
          end do
          record%heat_flux = record%conductance*next%jump(first:last)
          record%heat_rate = sum(pairs%weight*record%heat_flux)
@@ -192,8 +192,8 @@ contains
    end function least_displacement
 
    !> Reactions, force balance, and the contact conditions on the recovered displacements.
-   pure subroutine balance_forces(operators, model, loads, next, record)
-      type(interface_operators_type), intent(in) :: operators
+   pure subroutine balance_forces(bodies, model, loads, next, record)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(model_type), intent(in) :: model
       type(loads_type), intent(in) :: loads
       type(solution_state_type), intent(in) :: next
@@ -204,22 +204,22 @@ contains
 
       least = least_displacement(model, next%temperature)
       length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp))
-      if (size(operators%pairs%initial_gap) > 0) then
-         length = max(length, noise*maxval(abs(operators%pairs%initial_gap)))
+      if (size(bodies%pairs%initial_gap) > 0) then
+         length = max(length, noise*maxval(abs(bodies%pairs%initial_gap)))
       end if
-      internal = operators%mechanical%matrix%multiply(next%displacement) - &
-         thermal_forces(operators, next%temperature)
-      residual = force_residual(internal, next%force_load, operators%pairs, next%contact)
+      internal = bodies%mechanical%matrix%multiply(next%displacement) - &
+         thermal_forces(bodies, next%temperature)
+      residual = force_residual(internal, next%force_load, bodies%pairs, next%contact)
       associate (held => loads%displacement%active)
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
-            sum(next%contact%force), noise*maxval(abs(operators%mechanical%matrix%value))* &
-            length, least*maxval(abs(operators%mechanical%matrix%value)), tiny(1.0_dp))
+            sum(next%contact%force), noise*maxval(abs(bodies%mechanical%matrix%value))* &
+            length, least*maxval(abs(bodies%mechanical%matrix%value)), tiny(1.0_dp))
          along_x = all(model%mesh%element_plane /= axisymmetric)
          record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
             [along_x, .true.], scale)
          record%contact_violation = contact_violation(next%displacement, &
-            internal - next%force_load, held, operators%pairs, next%contact, &
-            operators%contact%tangent > 0, length, scale)
+            internal - next%force_load, held, bodies%pairs, next%contact, &
+            bodies%contact%tangent > 0, length, scale)
          record%fields%reaction = reshape(merge(residual, 0.0_dp, held), &
             [2, size(next%temperature)])
       end associate

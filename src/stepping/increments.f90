@@ -12,12 +12,12 @@ module increments
    use increment_records, only: complete_record
    use increment_solution, only: recover_fields, solve_pairs
    use initial_state, only: make_initial_state
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
-   use load_courses, only: step_clock_type
+   use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
    use records, only: add_attempts, increment_record_type, note_failure
+   use reduced_bodies, only: reduced_bodies_type
    use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
@@ -33,7 +33,7 @@ module increments
 
    !> A run: the reduced bodies, the loads and the state, moved on by advance.
    type :: simulation_type
-      type(interface_operators_type) :: operators   !! the bodies reduced to their contact unknowns
+      type(reduced_bodies_type) :: bodies   !! the bodies reduced to their contact unknowns
       type(step_reduction_type) :: reduction        !! what of them is numbered and reduced
       type(recovery_type) :: recovery               !! stress and flux with their errors
       type(loads_type) :: loads                     !! loads and supports
@@ -57,7 +57,7 @@ module increments
 contains
 
    !> Prepares a run, sees whether its steps can all be numbered, and enters the first.
-   !> Errors: as interface_operators' prepare and number.
+   !> Errors: as reduced_bodies' prepare and number.
    subroutine start(self, model, error)
       class(simulation_type), intent(inout) :: self       !! a fresh run
       type(model_type), intent(in) :: model               !! the model
@@ -66,13 +66,13 @@ contains
 
       since = wall_seconds()
       self%undecided = ''
-      call self%operators%prepare(model, error)
+      call self%bodies%prepare(model, error)
       if (allocated(error)) return
       call self%recovery%prepare(model)
       call self%loads%prepare(model)
-      self%state = make_initial_state(model, self%operators)
+      self%state = make_initial_state(model, self%bodies)
       self%seconds%assemble = (wall_seconds() - since)
-      call measure_steps(model, self%operators%pairs, self%loads, self%state, self%sizes, error)
+      call measure_steps(model, self%bodies%pairs, self%loads, self%state, self%sizes, error)
       if (.not. allocated(error)) call enter_step(self, model, error)
    end subroutine start
 
@@ -85,7 +85,7 @@ contains
       call self%control%enter_step(model)
       associate (step => model%steps(self%control%step))
          call self%loads%begin_step(step, self%state%displacement, self%state%temperature)
-         call self%reduction%number(model, step, self%loads, self%operators, error)
+         call self%reduction%number(model, step, self%loads, self%bodies, error)
       end associate
    end subroutine enter_step
 
@@ -94,7 +94,7 @@ contains
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model               !! the model
 
-      call assemble_bodies(model, self%operators, self%seconds)
+      call assemble_bodies(model, self%bodies, self%seconds)
    end subroutine assemble
 
    !> Assembles and reduces the bodies for the present step, where that is not done.
@@ -110,9 +110,9 @@ contains
             call self%loads%move_to(self%control%next_instant(model), model)
             film = left_films(step%scheme, self%state%film, self%loads%film_matrix())
          end if
-         call self%reduction%reduce(model, step, film, self%operators, self%seconds, error)
+         call self%reduction%reduce(model, step, film, self%bodies, self%seconds, error)
       end associate
-      call measure_factors(self%operators, self%sizes)
+      call measure_factors(self%bodies, self%sizes)
    end subroutine reduce
 
    !> Whether all steps are solved.
@@ -260,31 +260,31 @@ contains
          next%film = self%loads%film_matrix()
       end if
       next%force_load = self%loads%nodal_forces()
-      associate (step => model%steps(self%control%step), operators => self%operators)
+      associate (step => model%steps(self%control%step), bodies => self%bodies)
          if (solves_heat(step%analysis)) then
-            call operators%set_film(left_films(step%scheme, self%state%film, next%film), model, &
+            call bodies%set_film(left_films(step%scheme, self%state%film, next%film), model, &
                error)
             if (allocated(error)) return
-            call measure_factors(operators, self%sizes)
+            call measure_factors(bodies, self%sizes)
          end if
          since = wall_seconds()
-         call solve_pairs(operators, self%loads, step, self%state, workspace, next, error)
+         call solve_pairs(bodies, self%loads, step, self%state, workspace, next, error)
          record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
-            call check_heat(model, operators, self%loads, self%control%step, next, error)
+            call check_heat(model, bodies, self%loads, self%control%step, next, error)
          end if
          if (allocated(error)) then
             if (workspace%contact%driven) error%message = error%message// &
-               unconstrained_now(model, operators%pairs, self%loads%displacement%active, &
+               unconstrained_now(model, bodies%pairs, self%loads%displacement%active, &
                next%contact%status)
             return
          end if
-         if (solves_mechanics(step%analysis)) call warn_of_choices(model, operators, &
+         if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &
             workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
-         call recover_fields(operators, self%loads, step, workspace, self%state, next)
-         call complete_record(operators, model, self%recovery, self%loads, self%state, next, record)
+         call recover_fields(bodies, self%loads, step, workspace, self%state, next)
+         call complete_record(bodies, model, self%recovery, self%loads, self%state, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_values(record, error)
          if (allocated(error)) return
@@ -298,7 +298,7 @@ contains
    subroutine release(self)
       class(simulation_type), intent(inout) :: self   !! the run
 
-      call self%operators%release()
+      call self%bodies%release()
    end subroutine release
 
 end module increments

@@ -3,9 +3,9 @@
 module initial_state
    use contact_operator, only: kept_contact, law_conductance
    use contact_states, only: status_open
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
    use model, only: model_type
+   use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    implicit none
    private
@@ -14,27 +14,27 @@ module initial_state
 contains
 
    !> State before the first increment.
-   pure function make_initial_state(model, operators) result(state)
+   pure function make_initial_state(model, bodies) result(state)
       type(model_type), intent(in) :: model                       !! the model
-      type(interface_operators_type), intent(in) :: operators     !! the bodies, paired
+      type(reduced_bodies_type), intent(in) :: bodies     !! the bodies, paired
       type(solution_state_type) :: state                          !! see above
 
-      associate (m => size(operators%pairs%slave), n => size(model%mesh%node_number), &
+      associate (m => size(bodies%pairs%slave), n => size(model%mesh%node_number), &
          contact => state%contact)
          allocate (contact%status(m), source=status_open)
          allocate (contact%direction(m), source=0)
          allocate (contact%reference(m), contact%tangential(m), contact%slip_origin(m), &
             contact%force(m), contact%shear_force(m), source=0.0_dp)
-         contact%gap = operators%pairs%initial_gap
+         contact%gap = bodies%pairs%initial_gap
          state%smallest_gap = contact%gap
          allocate (state%resting(m), state%idle(m), source=.false.)
-         state%omega = law_conductance(operators, kept_contact(contact, has_mechanics=.false.))
+         state%omega = law_conductance(bodies, kept_contact(contact, has_mechanics=.false.))
          state%omega_before = state%omega
          state%omega_start = state%omega
          allocate (state%displacement(2*n), state%heat_load(n), source=0.0_dp)
          state%temperature = model%initial_temperature
-         state%jump = model%initial_temperature(operators%pairs%slave) - &
-            model%initial_temperature(operators%pairs%master)
+         state%jump = model%initial_temperature(bodies%pairs%slave) - &
+            model%initial_temperature(bodies%pairs%master)
       end associate
    end function make_initial_state
 

@@ -4,12 +4,12 @@ module step_reduction
    use clock, only: wall_seconds
    use conductance_laws, only: is_constant
    use errors, only: error_type
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
    use loads, only: loads_type
    use model, only: model_type
    use pair_rows, only: pair_row_type
+   use reduced_bodies, only: reduced_bodies_type
    use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
@@ -35,13 +35,13 @@ contains
 
    !> Numbers the unknowns of a step. A field is numbered again only where it is solved and its
    !> supports differ from those that were numbered last; only then are its factors formed again.
-   !> Error: as interface_operators' number.
-   subroutine number(self, model, step, loads, operators, error)
+   !> Error: as reduced_bodies' number.
+   subroutine number(self, model, step, loads, bodies, error)
       class(step_reduction_type), intent(inout) :: self          !! what is numbered
       type(model_type), intent(in) :: model                      !! the model
       type(step_type), intent(in) :: step                        !! the step
       type(loads_type), intent(in) :: loads                      !! supports of the step
-      type(interface_operators_type), intent(inout) :: operators !! the bodies
+      type(reduced_bodies_type), intent(inout) :: bodies !! the bodies
       type(error_type), allocatable, intent(out) :: error        !! see above
       logical :: heat, mechanics
 
@@ -56,7 +56,7 @@ contains
          if (heat) self%held_temperature = held_temperature
          self%mechanics_is_reduced = self%mechanics_is_reduced .and. .not. mechanics
          self%heat_is_reduced = self%heat_is_reduced .and. .not. heat
-         call operators%number(model, held, held_temperature, mechanics, heat, error)
+         call bodies%number(model, held, held_temperature, mechanics, heat, error)
       end associate
    end subroutine number
 
@@ -69,7 +69,7 @@ contains
       type(solution_state_type), intent(in) :: state        !! state before it
       type(run_size_type), intent(inout) :: sizes           !! receives the numbers of unknowns
       type(error_type), allocatable, intent(out) :: error   !! see above
-      type(interface_operators_type) :: trial
+      type(reduced_bodies_type) :: trial
       type(loads_type) :: given
       type(step_reduction_type) :: reduction
       integer :: step, unknowns
@@ -101,29 +101,29 @@ contains
    end subroutine measure_steps
 
    !> Assembles the bodies, where that is not done.
-   subroutine assemble_bodies(model, operators, seconds)
+   subroutine assemble_bodies(model, bodies, seconds)
       type(model_type), intent(in) :: model                      !! the model
-      type(interface_operators_type), intent(inout) :: operators !! the bodies
+      type(reduced_bodies_type), intent(inout) :: bodies !! the bodies
       type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
       real(dp) :: since
 
-      if (allocated(operators%mechanical%matrix%value)) return
-      if (allocated(operators%thermal%matrix%value)) return
+      if (allocated(bodies%mechanical%matrix%value)) return
+      if (allocated(bodies%thermal%matrix%value)) return
       since = wall_seconds()
-      call operators%assemble(model, any(solves_mechanics(model%steps%analysis)), &
+      call bodies%assemble(model, any(solves_mechanics(model%steps%analysis)), &
          any(solves_heat(model%steps%analysis)), temperatures_strain(model))
       seconds%assemble = seconds%assemble + (wall_seconds() - since)
    end subroutine assemble_bodies
 
    !> Assembles the bodies, where that is not done, and reduces the fields of a step to their
    !> contact unknowns, where that is not done.
-   !> Errors: as interface_operators' reduce.
-   subroutine reduce(self, model, step, film, operators, seconds, error)
+   !> Errors: as reduced_bodies' reduce.
+   subroutine reduce(self, model, step, film, bodies, seconds, error)
       class(step_reduction_type), intent(inout) :: self          !! numbered for the step
       type(model_type), intent(in) :: model                      !! the model
       type(step_type), intent(in) :: step                        !! the step
       type(sparse_matrix_type), intent(in) :: film !! left-hand side of (3.4) [power/temperature]
-      type(interface_operators_type), intent(inout) :: operators !! the bodies
+      type(reduced_bodies_type), intent(inout) :: bodies !! the bodies
       type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
       type(error_type), allocatable, intent(out) :: error        !! see above
       logical :: heat, mechanics
@@ -131,11 +131,11 @@ contains
 
       mechanics = solves_mechanics(step%analysis) .and. .not. self%mechanics_is_reduced
       heat = solves_heat(step%analysis) .and. .not. self%heat_is_reduced
-      call assemble_bodies(model, operators, seconds)
+      call assemble_bodies(model, bodies, seconds)
       since = wall_seconds()
-      if (heat) operators%thermal%added = film
-      call operators%reduce(model, mechanics, heat, solves_heat(step%analysis) .and. &
-         solves_mechanics(step%analysis) .and. .not. all(is_constant(operators%pairs%law)), error)
+      if (heat) bodies%thermal%added = film
+      call bodies%reduce(model, mechanics, heat, solves_heat(step%analysis) .and. &
+         solves_mechanics(step%analysis) .and. .not. all(is_constant(bodies%pairs%law)), error)
       self%mechanics_is_reduced = self%mechanics_is_reduced .or. (mechanics .and. &
          .not. allocated(error))
       self%heat_is_reduced = self%heat_is_reduced .or. (heat .and. .not. allocated(error))
@@ -157,14 +157,14 @@ contains
    end function temperatures_strain
 
    !> Notes the memory of the factors that stand, and their smallest pivot.
-   subroutine measure_factors(operators, sizes)
-      type(interface_operators_type), intent(in) :: operators   !! the reduced bodies
+   subroutine measure_factors(bodies, sizes)
+      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
       type(run_size_type), intent(inout) :: sizes               !! receives both
       integer(long) :: bytes
 
       bytes = 0
-      if (allocated(operators%mechanical%solver)) call measure(operators%mechanical%solver)
-      if (allocated(operators%thermal%solver)) call measure(operators%thermal%solver)
+      if (allocated(bodies%mechanical%solver)) call measure(bodies%mechanical%solver)
+      if (allocated(bodies%thermal%solver)) call measure(bodies%thermal%solver)
       sizes%factor_bytes = max(sizes%factor_bytes, bytes)
    contains
       subroutine measure(solver)

@@ -68,7 +68,7 @@ contains
       call simulation%reduce(model, error)
       if (allocated(error)) return
       nodes = node_indexes(model, self%nodes)
-      associate (pairs => simulation%operators%interfaces)
+      associate (pairs => simulation%bodies%interfaces)
          call values%prepare(size(pairs), size(nodes), size(self%instants))
          do while (.not. simulation%finished(model))
             if (caught_signal() /= '') then

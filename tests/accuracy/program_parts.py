@@ -2,7 +2,7 @@
 that all decks need, which exist for that part only."""
 
 CONTACT_FOLDER = {
-    "active_set", "pair_tractions", "chain_geometry", "closing_instant", "closing_path",
+    "active_set", "pair_tractions", "chain_geometry", "closing_instant", "lemke_path",
     "contact_pairs", "contact_rows", "contact_states", "contact_system", "contact_tangent",
     "contact_workspace", "friction", "pair_checks", "pair_warnings", "surface_chains",
     "unconstrained_motions", "zone_edges",
@@ -10,8 +10,8 @@ CONTACT_FOLDER = {
 COUPLING = {
     "accelerators", "anderson", "conductance_graph", "contact_operator:contact_operator_pass",
     "contact_operator:residual_floor", "contact_tangent", "coupled_increment", "coupling_gains",
-    "fixed_point", "increment_iteration", "interface_operators:form_jump_load", "newton",
-    "opening_slopes", "resting_pairs",
+    "fixed_point", "increment_iteration", "reduced_bodies:form_jump_load", "newton",
+    "opening_derivatives", "resting_pairs",
 }
 PARTS = {
     "heat": {
@@ -19,14 +19,14 @@ PARTS = {
         "element_fields:element_heat_flux",
         "field_recovery:recover_heat_flux", "films", "heat_balance",
         "increment_checks:check_heat", "increment_solution:conduct",
-        "increment_solution:load_heat", "interface_operators:reduce_heat",
-        "interface_operators:set_film", "load_integrals:unit_heat", "loads:card_heat",
+        "increment_solution:load_heat", "reduced_bodies:reduce_heat",
+        "reduced_bodies:set_film", "load_integrals:unit_heat", "loads:card_heat",
         "loads:film_matrix", "loads:heat_load", "point_properties:conductivity_in",
         "scheme_properties", "scheme_start", "thermal_matrix",
     },
     "strain by heat": {
         "contact_operator:thermal_forces", "element_elasticity:element_thermal_load",
-        "interface_operators:condense_thermal_load", "point_properties:thermal_modulus_in",
+        "reduced_bodies:condense_thermal_load", "point_properties:thermal_modulus_in",
         "stiffness_matrix:assemble_thermal_load",
     },
     "mechanics": CONTACT_FOLDER - {
@@ -56,7 +56,7 @@ PARTS = {
     "coupling": COUPLING,
     "rings of pairs": {"contact_constraints:stiffness_alone", "linear_constraints:add_links",
                        "linear_constraints:stiffen_links"},
-    "paths to a contact zone": {"closing_path"},
+    "paths to a contact zone": {"lemke_path"},
     "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",
                                   "unconstrained_motions"},
     "films": {"films", "loads:film_matrix", "loads:integrate_films"},

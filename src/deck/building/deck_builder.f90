@@ -6,27 +6,27 @@ module deck_builder
    use conductance_laws, only: law_none
    use controls, only: method_names
    use deck_builder_contact, only: build_contacts
-   use deck_builder_courses, only: build_amplitudes, build_temperatures
+   use deck_builder_histories, only: build_amplitudes, build_temperatures
    use deck_builder_interactions, only: build_interactions
    use deck_builder_lines, only: build_lines, split_line_sets
    use deck_builder_load_axis, only: build_load_axis
    use deck_builder_materials, only: build_materials
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_options, only: build_options
+   use deck_builder_order, only: apply_order, find_dropped
    use deck_builder_orientations, only: build_orientations
    use deck_builder_sections, only: build_sections
    use deck_builder_sets, only: build_sets
    use deck_builder_steps, only: build_steps
    use deck_builder_surfaces, only: build_surfaces
    use deck_builder_verify, only: build_verifications, check_heat_quantities
-   use deck_builder_order, only: apply_order, find_dropped
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
    use errors, only: error_type
-   use load_checks, only: first_heat
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
+   use load_checks, only: first_heat
    use memory_calls, only: check_memory
    use memory_needs, only: memory_needed
    use mesh, only: set_type

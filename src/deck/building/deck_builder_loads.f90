@@ -4,8 +4,8 @@ module deck_builder_loads
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text
    use card_values, only: check_extra, field_place, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_builder_courses, only: find_amplitude
    use deck_builder_element_loads, only: build_element_load
+   use deck_builder_histories, only: find_amplitude
    use deck_builder_surface_loads, only: build_surface_load
    use deck_context, only: deck_context_type, read_target, report_unknown
    use deck_report, only: deck_report_type

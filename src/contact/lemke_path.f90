@@ -6,7 +6,7 @@
 !> may grow for a while before it falls again. Bodies that are held have bounded displacements
 !> whatever the friction is, so that the path, which cannot return to where it began, arrives at
 !> t = 0 (Lemke's method with its geometric covering vector).
-module closing_path
+module lemke_path
    use contact_states, only: contact_state_type, status_open, status_slip, status_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
@@ -14,7 +14,7 @@ module closing_path
    use kinds, only: dp
    implicit none
    private
-   public :: follow_closing_path
+   public :: follow_lemke_path
 
    integer, parameter :: pieces_per_pair = 40   !! changes of condition before giving up
    real(dp), parameter :: golden = 0.6180339887498949_dp !! spreads the widths, so that no two tie
@@ -31,7 +31,7 @@ contains
 
    !> Contact state under a condensed load, the references of friction being given.
    !> Errors: the supports alone do not hold the bodies; the path does not arrive.
-   subroutine follow_closing_path(system, load, work, state, error)
+   subroutine follow_lemke_path(system, load, work, state, error)
       type(contact_system_type), intent(in) :: system     !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
       type(contact_workspace_type), intent(in) :: work    !! gaps, laws, hold
@@ -68,7 +68,7 @@ contains
          sense = merge(1, -1, piece%slack(entering, k, 2) > 0.0_dp)
       end do
       call set_error(error, status_no_convergence, 'the contact zones do not settle')
-   end subroutine follow_closing_path
+   end subroutine follow_lemke_path
 
    !> Both ends of a piece, with one factorisation.
    !> Error: as solve_set.
@@ -176,4 +176,4 @@ contains
       end select
    end subroutine change_condition
 
-end module closing_path
+end module lemke_path

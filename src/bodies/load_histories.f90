@@ -1,5 +1,5 @@
 !> The course of loads and prescribed values over the steps.
-module load_courses
+module load_histories
    use amplitudes, only: amplitude_type, amplitude_value
    use kinds, only: dp
    implicit none
@@ -134,4 +134,4 @@ contains
       end do
    end subroutine move_to
 
-end module load_courses
+end module load_histories

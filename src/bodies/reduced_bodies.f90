@@ -1,6 +1,6 @@
 !> The bodies reduced once to their contact unknowns: everything that the fixed-point iteration
 !> needs, on the pairs alone.
-module interface_operators
+module reduced_bodies
    use contact_constraints, only: constrain_displacements, constrain_temperatures, in_ring, &
       stiffness_alone
    use contact_pairs, only: contact_pairs_type
@@ -21,14 +21,14 @@ module interface_operators
    use unconstrained_bodies, only: undetermined_beside
    implicit none
    private
-   public :: interface_operators_type
+   public :: reduced_bodies_type
 
    real(dp), parameter :: rounding = 1.0e-15_dp  !! of coordinates, in the extent of the model
    real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
 
    !> The reduced bodies.
-   type :: interface_operators_type
+   type :: reduced_bodies_type
       type(contact_pairs_type), allocatable :: interfaces(:)  !! interfaces in the order of the deck
       type(pair_row_type) :: pairs                            !! all their pairs
       type(field_problem_type) :: thermal                     !! heat, (3.3)
@@ -51,14 +51,14 @@ module interface_operators
       procedure :: set_film
       procedure :: conductors
       procedure :: release
-   end type interface_operators_type
+   end type reduced_bodies_type
 
 contains
 
    !> Pairs the surfaces, unless the caller has already put the pairs in place.
    !> Error: as make_pairs.
    subroutine prepare(self, model, error)
-      class(interface_operators_type), intent(inout) :: self !! empty
+      class(reduced_bodies_type), intent(inout) :: self !! empty
       type(model_type), intent(in) :: model                  !! the model
       type(error_type), allocatable, intent(out) :: error    !! see above
       integer :: i
@@ -79,7 +79,7 @@ contains
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
    !> Error: an over-constrained pair.
    subroutine number(self, model, held, held_temperature, mechanics, heat, error)
-      class(interface_operators_type), intent(inout) :: self !! prepared
+      class(reduced_bodies_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model                  !! the model
       logical, intent(in) :: held(:)                         !! (2 nodes) prescribed displacements
       logical, intent(in) :: held_temperature(:)             !! (nodes) prescribed temperatures
@@ -128,7 +128,7 @@ contains
    !> Reduces the fields that are asked for to the unknowns that were numbered last.
    !> Errors: bodies that nothing holds, a failure of the solver.
    subroutine reduce(self, model, mechanics, heat, coupled, error)
-      class(interface_operators_type), intent(inout) :: self !! numbered
+      class(reduced_bodies_type), intent(inout) :: self !! numbered
       type(model_type), intent(in) :: model                  !! the model
       logical, intent(in) :: mechanics                       !! whether mechanics is reduced anew
       logical, intent(in) :: heat                            !! whether heat is reduced anew
@@ -153,7 +153,7 @@ contains
    !> Reduces the heat problem to the jumps.
    !> Errors: bodies whose temperature nothing determines, a failure of the solver.
    subroutine reduce_heat(self, model, error)
-      class(interface_operators_type), intent(inout) :: self !! numbered
+      class(reduced_bodies_type), intent(inout) :: self !! numbered
       type(model_type), intent(in) :: model                  !! the model
       type(error_type), allocatable, intent(out) :: error    !! see above
 
@@ -172,7 +172,7 @@ contains
    !> Names the bodies that leave the heat problem singular: no prescribed temperature and no film
    !> stands on them or on a body that pairs join to them.
    subroutine name_cold_bodies(self, model, error)
-      type(interface_operators_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(error_type), intent(inout) :: error
       logical :: warm(size(model%mesh%node_body))
@@ -192,7 +192,7 @@ contains
    !> is reduced again.
    !> Errors: as reduce_heat.
    subroutine set_film(self, film, model, error)
-      class(interface_operators_type), intent(inout) :: self !! reduced
+      class(reduced_bodies_type), intent(inout) :: self !! reduced
       type(sparse_matrix_type), intent(in) :: film !! (nodes, nodes) [power/temperature]
       type(model_type), intent(in) :: model                  !! the model
       type(error_type), allocatable, intent(out) :: error    !! see above
@@ -215,7 +215,7 @@ contains
 
    !> Assembles the matrices of the bodies alone, once.
    subroutine assemble(self, model, with_mechanics, with_heat, with_strain)
-      class(interface_operators_type), intent(inout) :: self !! prepared
+      class(reduced_bodies_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model                  !! the model
       logical, intent(in) :: with_mechanics                  !! whether any step solves mechanics
       logical, intent(in) :: with_heat                       !! whether any step solves heat
@@ -231,7 +231,7 @@ contains
 
    !> Condensed mechanical load of a unit jump at each pair.
    subroutine form_jump_load(self)
-      class(interface_operators_type), intent(inout) :: self
+      class(reduced_bodies_type), intent(inout) :: self
       real(dp), allocatable :: temperature(:, :)
       real(dp) :: none(size(self%rigid, 2))
       integer :: first, k, last, tail
@@ -254,7 +254,7 @@ contains
 
    !> Condensed mechanical loads of fields of temperature.
    subroutine condense_thermal_load(self, temperature, condensed)
-      class(interface_operators_type), intent(in) :: self !! the reduced bodies
+      class(reduced_bodies_type), intent(in) :: self !! the reduced bodies
       real(dp), intent(in) :: temperature(:, :) !! (nodes, columns) over the natural state
       real(dp), intent(out) :: condensed(:, :)               !! (mechanical tail, columns)
       real(dp) :: forces(self%thermal_load%row_count, size(temperature, 2))
@@ -269,7 +269,7 @@ contains
    !> Conductance of the bodies about each pair alone; 0 where both temperatures are prescribed. A
    !> pair that closes a ring, whose jump only the others hold, has that of the bodies at its nodes.
    pure function conductors(self) result(conductance)
-      class(interface_operators_type), intent(in) :: self  !! the reduced bodies
+      class(reduced_bodies_type), intent(in) :: self  !! the reduced bodies
       real(dp) :: conductance(size(self%pairs%slave))      !! (m) [power/temperature]
       logical :: ring(size(conductance))
       integer :: k
@@ -287,10 +287,10 @@ contains
 
    !> Frees the factors.
    subroutine release(self)
-      class(interface_operators_type), intent(inout) :: self !! the reduced bodies
+      class(reduced_bodies_type), intent(inout) :: self !! the reduced bodies
 
       call self%thermal%release()
       call self%mechanical%release()
    end subroutine release
 
-end module interface_operators
+end module reduced_bodies

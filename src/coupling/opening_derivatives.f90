@@ -8,18 +8,18 @@
 !>
 !> the condensed load follows by J dtheta, gaps and forces by the contact system with the conditions
 !> that hold.
-module opening_slopes
+module opening_derivatives
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: law_jumps
    use contact_operator, only: law_pressure
    use contact_states, only: contact_state_type, status_open
    use contact_tangent, only: contact_response
    use increment_data, only: increment_data_type, increment_workspace_type
-   use interface_operators, only: interface_operators_type
    use kinds, only: dp
+   use reduced_bodies, only: reduced_bodies_type
    implicit none
    private
-   public :: make_graph, openings, opening_slope
+   public :: make_graph, openings, opening_derivative
 
    !> Smallest stiffness of a pair, of the largest one, that scales its overlap: a pair alone that
    !> holds a body has none.
@@ -28,28 +28,28 @@ module opening_slopes
 contains
 
    !> Graphs of the conductance of all pairs.
-   pure function make_graph(operators, length) result(graph)
-      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+   pure function make_graph(bodies, length) result(graph)
+      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
       real(dp), intent(in) :: length                          !! of a rest, > 0 [length]
       type(conductance_graph_type), allocatable :: graph(:)   !! (m)
-      real(dp) :: stiffness(size(operators%pairs%weight)), weight(size(operators%pairs%weight))
+      real(dp) :: stiffness(size(bodies%pairs%weight)), weight(size(bodies%pairs%weight))
       real(dp), allocatable :: conductor(:)
       integer :: k
 
       allocate (graph(size(weight)))
-      weight = operators%pairs%weight
+      weight = bodies%pairs%weight
       where (weight <= 0.0_dp) weight = maxval(weight)
       do k = 1, size(weight)
-         stiffness(k) = operators%contact%alone(k)
-         graph(k)%law = operators%pairs%law(k)
+         stiffness(k) = bodies%contact%alone(k)
+         graph(k)%law = bodies%pairs%law(k)
       end do
       stiffness = max(stiffness, least_stiffness*maxval(stiffness))
       where (stiffness <= 0.0_dp) stiffness = 1.0_dp
       graph%modulus = stiffness/weight
       if (.not. any([(law_jumps(graph(k)%law), k=1, size(graph))])) return
-      conductor = operators%conductors()
+      conductor = bodies%conductors()
       do k = 1, size(weight)
-         if (operators%pairs%weight(k) <= 0.0_dp .or. operators%jump_place(k) == 0) cycle
+         if (bodies%pairs%weight(k) <= 0.0_dp .or. bodies%jump_place(k) == 0) cycle
          if (.not. law_jumps(graph(k)%law)) cycle
          graph(k)%width = length
          graph(k)%body = conductor(k)/weight(k)
@@ -57,21 +57,21 @@ contains
    end function make_graph
 
    !> Openings of the pairs: gaps, or pressures as overlaps.
-   pure function openings(operators, graph, state) result(opening)
-      type(interface_operators_type), intent(in) :: operators !! the reduced bodies
+   pure function openings(bodies, graph, state) result(opening)
+      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
       type(conductance_graph_type), intent(in) :: graph(:)    !! (m) graphs of the conductance
       type(contact_state_type), intent(in) :: state           !! contact state
       real(dp) :: opening(size(graph))                        !! (m) [length]
 
-      opening = -law_pressure(operators, state)/graph%modulus
+      opening = -law_pressure(bodies, state)/graph%modulus
       where (state%status == status_open) opening = max(state%gap, 0.0_dp)
    end function openings
 
    !> Derivative of the openings by the conductances, for the state that the last pass found with
    !> the given jumps; unallocated where it does not exist. Pairs of weight 0 carry no heat: their
    !> rows stay 0.
-   subroutine opening_slope(operators, data, workspace, jump, state, slope, body)
-      type(interface_operators_type), intent(in) :: operators  !! the reduced bodies
+   subroutine opening_derivative(bodies, data, workspace, jump, state, slope, body)
+      type(reduced_bodies_type), intent(in) :: bodies  !! the reduced bodies
       type(increment_data_type), intent(in) :: data            !! the increment
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
@@ -87,13 +87,13 @@ contains
 
       allocate (slope(size(jump), size(jump)), source=0.0_dp)
       allocate (body(size(jump)), source=1.0_dp)
-      associate (weight => operators%pairs%weight, place => operators%jump_place, &
+      associate (weight => bodies%pairs%weight, place => bodies%jump_place, &
          a => data%scheme%a)
          heat = -weight/a(1)*(a(3)*jump + data%scheme%b(3)*data%jump_old)
          active = pack([(k, k=1, size(jump))], place > 0 .and. abs(heat) > 0.0_dp)
          n = size(active)
          if (n == 0) return
-         allocate (of_jump(operators%thermal%map%tail, n), source=0.0_dp)
+         allocate (of_jump(bodies%thermal%map%tail, n), source=0.0_dp)
          do k = 1, n
             associate (j => active(k))
                of_jump(place(j), k) = heat(j)
@@ -104,8 +104,8 @@ contains
          end do
          where (body <= 0.0_dp) body = 1.0_dp
          allocate (gap(size(jump), n), force(size(jump), n))
-         call contact_response(operators%contact, workspace%contact, state, &
-            matmul(operators%jump_load, of_jump), gap, force, sound)
+         call contact_response(bodies%contact, workspace%contact, state, &
+            matmul(bodies%jump_load, of_jump), gap, force, sound)
          do k = 1, size(jump)
             if (weight(k) <= 0.0_dp) cycle
             if (state%status(k) == status_open) then
@@ -116,6 +116,6 @@ contains
          end do
       end associate
       if (.not. sound) deallocate (slope)
-   end subroutine opening_slope
+   end subroutine opening_derivative
 
-end module opening_slopes
+end module opening_derivatives

@@ -1,5 +1,5 @@
 !> *AMPLITUDE and *INITIAL CONDITIONS: what loads and temperatures start from and follow.
-module deck_builder_courses
+module deck_builder_histories
    use amplitudes, only: amplitude_type
    use card_parameters, only: choose, lacks_parameter, need_parameter, parameter_place
    use card_values, only: check_extra, field_place, need_field
@@ -137,4 +137,4 @@ contains
       end do
    end subroutine build_temperatures
 
-end module deck_builder_courses
+end module deck_builder_histories
