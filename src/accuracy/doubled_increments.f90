@@ -41,7 +41,7 @@ contains
    !> anything from the start of an increment.
    subroutine start(self, model, bodies, state)
       class(doubled_increments_type), intent(out) :: self        !! the second run
-      type(model_type), intent(in) :: model                      !! the model
+      type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies    !! the bodies, paired
       type(solution_state_type), intent(in) :: state             !! state before the first increment
       integer :: s
@@ -58,7 +58,7 @@ contains
    !> run moves on to its end.
    subroutine follow(self, model, bodies, loads, accepted, record)
       class(doubled_increments_type), intent(inout) :: self      !! the second run
-      type(model_type), intent(in) :: model                      !! the model
+      type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(inout) :: bodies !! the bodies; films change them
       type(loads_type), intent(in) :: loads                      !! loads at its end
       type(solution_state_type), intent(in) :: accepted          !! the run's state there

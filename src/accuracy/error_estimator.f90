@@ -48,7 +48,7 @@ contains
    !> Starts beside a run.
    subroutine start(self, model, simulation)
       class(error_estimator_type), intent(inout) :: self  !! fresh
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation     !! the run, started
       type(error_type), allocatable :: error
 
@@ -62,7 +62,7 @@ contains
 
    !> Keeps what an increment starts from.
    subroutine begin_increment(self, simulation)
-      class(error_estimator_type), intent(inout) :: self   !! the estimator
+      class(error_estimator_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation      !! the run, about to advance
 
       if (self%is_on) self%before = simulation%state
@@ -70,10 +70,10 @@ contains
 
    !> Follows an accepted increment; at the end of a step its record receives the errors.
    subroutine end_increment(self, model, simulation, record)
-      class(error_estimator_type), intent(inout) :: self     !! the estimator
-      type(model_type), intent(in) :: model                  !! the model
+      class(error_estimator_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation     !! the run; its state stays
-      type(increment_record_type), intent(inout) :: record   !! the increment
+      type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: values(:, :)
 
       if (.not. self%is_on) return

@@ -48,8 +48,8 @@ contains
 
    !> The quantities of all interfaces in a state.
    subroutine quantities_of_state(bodies, state, scheme, values)
-      type(reduced_bodies_type), intent(in) :: bodies   !! the bodies
-      type(solution_state_type), intent(in) :: state            !! the state
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(solution_state_type), intent(in) :: state
       type(thermal_scheme_type), intent(in) :: scheme           !! by which it was found
       real(dp), intent(out) :: values(:, :)                     !! (quantities, interfaces)
       real(dp) :: omega(size(state%omega))

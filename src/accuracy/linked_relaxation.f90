@@ -25,7 +25,7 @@ contains
    !> Relaxes the free unknowns x of A x + springs = rhs, with what is rigid kept.
    subroutine relax(matrix, joints, rhs, free, steps, x)
       type(sparse_matrix_type), intent(in) :: matrix    !! (n, n) A, both triangles
-      type(joint_type), intent(inout) :: joints(:)      !! joints
+      type(joint_type), intent(inout) :: joints(:)
       real(dp), intent(in) :: rhs(:)                    !! (n) right-hand side
       logical, intent(in) :: free(:)                    !! (n) unknowns that may change
       integer, intent(in) :: steps                      !! number of steps

@@ -50,9 +50,9 @@ contains
    !> Error: as make_pairs.
    subroutine prepare(self, model, pairs, error)
       class(refined_model_type), intent(inout) :: self    !! empty
-      type(model_type), intent(in) :: model               !! the model
-      type(pair_row_type), intent(in) :: pairs            !! its pairs
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(model_type), intent(in) :: model
+      type(pair_row_type), intent(in) :: pairs
+      type(error_type), allocatable, intent(out) :: error
       integer :: i
 
       self%coarse = model%mesh
@@ -129,7 +129,7 @@ contains
 
    !> A field of the old mesh as one of the new mesh.
    pure function prolong(self, values, components) result(refined)
-      class(refined_model_type), intent(in) :: self   !! the refined model
+      class(refined_model_type), intent(in) :: self
       real(dp), intent(in) :: values(:)               !! (components*old nodes)
       integer, intent(in) :: components               !! values of a node
       real(dp) :: refined(components*self%division%nodes_after)
@@ -143,7 +143,7 @@ contains
 
    !> The mean of a quantity of the old pairs about each pair.
    pure function prolong_pairs(self, values) result(refined)
-      class(refined_model_type), intent(in) :: self   !! the refined model
+      class(refined_model_type), intent(in) :: self
       real(dp), intent(in) :: values(:)               !! (old pairs)
       real(dp) :: refined(size(self%old_pair))        !! (m)
 
@@ -152,7 +152,7 @@ contains
 
    !> Forces at the nodes of the new mesh as those of the old one that do the same work.
    pure function restrict(self, values, components) result(coarse)
-      class(refined_model_type), intent(in) :: self   !! the refined model
+      class(refined_model_type), intent(in) :: self
       real(dp), intent(in) :: values(:)               !! (components*nodes)
       integer, intent(in) :: components               !! values of a node
       real(dp) :: coarse(components*self%division%nodes)
@@ -166,7 +166,7 @@ contains
 
    !> Which degrees of freedom of the new mesh are prescribed where those of the old one are.
    pure function prolong_set(self, member, components) result(refined)
-      class(refined_model_type), intent(in) :: self   !! the refined model
+      class(refined_model_type), intent(in) :: self
       logical, intent(in) :: member(:)                !! (components*old nodes)
       integer, intent(in) :: components               !! degrees of freedom of a node
       logical :: refined(components*self%division%nodes_after)

@@ -34,8 +34,8 @@ contains
 
    !> New pairs between two of one state have it; between a closed and an open one they start open.
    subroutine begin(self, refined, contact)
-      class(refined_pairs_type), intent(out) :: self         !! the pairs
-      type(refined_model_type), intent(in) :: refined    !! the refined model
+      class(refined_pairs_type), intent(out) :: self
+      type(refined_model_type), intent(in) :: refined
       type(contact_state_type), intent(in) :: contact    !! state of the old pairs
 
       associate (one => refined%neighbours(1, :), other => refined%neighbours(2, :))
@@ -53,8 +53,8 @@ contains
 
    !> Takes the old pairs' state; their forces are what the new ones leave of those on the old mesh.
    subroutine take_old(self, refined, contact)
-      class(refined_pairs_type), intent(inout) :: self       !! the pairs
-      type(refined_model_type), intent(in) :: refined    !! the refined model
+      class(refined_pairs_type), intent(inout) :: self
+      type(refined_model_type), intent(in) :: refined
       type(contact_state_type), intent(in) :: contact    !! state of the old pairs
       real(dp) :: shared(2*size(refined%coarse%node_number)), on_slave(2)
       integer :: k, old
@@ -94,8 +94,8 @@ contains
 
    !> Forces of friction in slip on both bodies, from the normal forces as they stand.
    pure function slip_forces(self, refined) result(forces)
-      class(refined_pairs_type), intent(in) :: self                      !! the pairs
-      type(refined_model_type), intent(in) :: refined                !! the refined model
+      class(refined_pairs_type), intent(in) :: self
+      type(refined_model_type), intent(in) :: refined
       real(dp) :: forces(2*size(refined%model%mesh%node_number))     !! [force]
       integer :: k
 
@@ -112,10 +112,10 @@ contains
 
    !> Joints that keep the closed new pairs closed, and the stuck ones where the old mesh has them.
    subroutine mechanical_joints(self, refined, displacement, joints)
-      class(refined_pairs_type), intent(in) :: self      !! the pairs
-      type(refined_model_type), intent(in) :: refined    !! the refined model
+      class(refined_pairs_type), intent(in) :: self
+      type(refined_model_type), intent(in) :: refined
       real(dp), intent(in) :: displacement(:) !! (2 nodes) field of the old mesh [length]
-      type(joint_type), allocatable, intent(out) :: joints(:)    !! the joints
+      type(joint_type), allocatable, intent(out) :: joints(:)
       real(dp) :: relative(2)
       integer :: k, n
 
@@ -141,9 +141,9 @@ contains
 
    !> Conductances of all pairs as springs between their temperatures.
    subroutine conducting_joints(self, refined, joints)
-      class(refined_pairs_type), intent(in) :: self      !! the pairs
-      type(refined_model_type), intent(in) :: refined    !! the refined model
-      type(joint_type), allocatable, intent(out) :: joints(:)    !! the joints
+      class(refined_pairs_type), intent(in) :: self
+      type(refined_model_type), intent(in) :: refined
+      type(joint_type), allocatable, intent(out) :: joints(:)
       integer :: k
 
       allocate (joints(size(self%omega)))
@@ -158,8 +158,8 @@ contains
    !> Forces and gaps of the new pairs from the displacements that their joints gave, and the states
    !> that follow: a pair in tension opens, one that overlaps closes.
    subroutine update(self, refined, displacement, load)
-      class(refined_pairs_type), intent(inout) :: self       !! the pairs
-      type(refined_model_type), intent(in) :: refined        !! the refined model
+      class(refined_pairs_type), intent(inout) :: self
+      type(refined_model_type), intent(in) :: refined
       real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
       real(dp), intent(in) :: load(:) !! (2 nodes) forces that the pairs must hold [force]
       real(dp) :: relative(2), on_slave(2)
@@ -219,8 +219,8 @@ contains
    !> Conductances by the laws, with the pressures that the forces give; a pair that rests on the
    !> old mesh keeps the value found there.
    subroutine conduct(self, refined, omega, resting)
-      class(refined_pairs_type), intent(inout) :: self       !! the pairs
-      type(refined_model_type), intent(in) :: refined    !! the refined model
+      class(refined_pairs_type), intent(inout) :: self
+      type(refined_model_type), intent(in) :: refined
       real(dp), intent(in) :: omega(:)                   !! (old pairs) conductance
       logical, intent(in) :: resting(:)                  !! (old pairs) whether it rests
       real(dp) :: pressure
@@ -240,7 +240,7 @@ contains
 
    !> Heat of every pair from slave to master.
    pure function heat(self, pairs, temperature) result(rates)
-      class(refined_pairs_type), intent(in) :: self      !! the pairs
+      class(refined_pairs_type), intent(in) :: self
       type(pair_row_type), intent(in) :: pairs       !! the refined model's
       real(dp), intent(in) :: temperature(:)         !! (nodes) [temperature]
       real(dp) :: rates(size(self%status))           !! (m) [power]

@@ -59,13 +59,13 @@ contains
    !> increment, in the equilibrium of heat there.
    !> Error: the increment has no solution under one of the corrections, or a signal left no time.
    subroutine find_change_by_refinement(refined, simulation, model, clock, previous, change, error)
-      type(refined_model_type), intent(inout) :: refined         !! the refined model
+      type(refined_model_type), intent(inout) :: refined
       type(simulation_type), intent(inout) :: simulation         !! the run at the end; films change
-      type(model_type), intent(in) :: model                      !! the model
+      type(model_type), intent(in) :: model
       type(step_clock_type), intent(in) :: clock                 !! the end of the increment
       type(solution_state_type), intent(in) :: previous          !! state at its start
       real(dp), intent(out) :: change(:, :)                      !! (quantities, interfaces)
-      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(error_type), allocatable, intent(out) :: error
       type(corrected_type) :: fields
       real(dp) :: values(size(change, 1), size(change, 2))
       type(solution_state_type) :: before

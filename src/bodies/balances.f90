@@ -16,7 +16,7 @@ contains
    pure function heat_residual(conducted, load, pairs, pair_heat) result(residual)
       real(dp), intent(in) :: conducted(:)       !! (nodes) K T of the bodies alone [power]
       real(dp), intent(in) :: load(:)            !! (nodes) Q [power]
-      type(pair_row_type), intent(in) :: pairs   !! the pairs
+      type(pair_row_type), intent(in) :: pairs
       real(dp), intent(in) :: pair_heat(:)       !! (m) heat from slave to master [power]
       real(dp) :: residual(size(conducted)) !! (nodes) zero where not prescribed [power]
       integer :: k
@@ -50,7 +50,7 @@ contains
    pure function force_residual(internal, load, pairs, state) result(residual)
       real(dp), intent(in) :: internal(:) !! (2 nodes) K u less the thermal load [force]
       real(dp), intent(in) :: load(:)                !! (2 nodes) applied forces [force]
-      type(pair_row_type), intent(in) :: pairs       !! the pairs
+      type(pair_row_type), intent(in) :: pairs
       type(contact_state_type), intent(in) :: state  !! contact forces
       real(dp) :: residual(size(internal)) !! (2 nodes) zero where not prescribed [force]
       real(dp) :: on_slave(2)
@@ -109,7 +109,7 @@ contains
       real(dp), intent(in) :: displacement(:)        !! (2 nodes) [length]
       real(dp), intent(in) :: unbalanced(:) !! (2 nodes) K u - f without the contact forces [force]
       logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
-      type(pair_row_type), intent(in) :: pairs       !! the pairs
+      type(pair_row_type), intent(in) :: pairs
       type(contact_state_type), intent(in) :: state  !! the state that is checked
       logical, intent(in) :: friction_acts(:) !! (m) whether the tangent is an unknown with friction
       real(dp), intent(in) :: length_scale           !! largest displacement [length]

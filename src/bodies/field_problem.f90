@@ -45,7 +45,7 @@ contains
    subroutine reduce(self, solver_kind, error)
       class(field_problem_type), intent(inout) :: self    !! the problem; its matrix and map are set
       integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
 
       call self%release()
       if (solver_kind == solver_mumps) then
@@ -68,7 +68,7 @@ contains
 
    !> The load of an increment.
    pure function load_of(self, forces, given) result(load)
-      class(field_problem_type), intent(in) :: self       !! the problem
+      class(field_problem_type), intent(in) :: self
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
       real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
       type(field_load_type) :: load                       !! not condensed
@@ -95,7 +95,7 @@ contains
    !> Values of all degrees of freedom under a load.
    function recover(self, load, on_tail) result(values)
       class(field_problem_type), intent(in) :: self       !! the problem, reduced
-      type(field_load_type), intent(in) :: load           !! its load
+      type(field_load_type), intent(in) :: load
       real(dp), intent(in) :: on_tail(:)                  !! (tail) solution on the tail
       real(dp) :: values(self%matrix%row_count)           !! (dofs)
       real(dp) :: solution(self%map%equations, 1)
@@ -107,7 +107,7 @@ contains
    !> Values of all degrees of freedom for unit values of some tail unknowns, without load and with
    !> zero prescribed values.
    subroutine unit_responses(self, first, values)
-      class(field_problem_type), intent(in) :: self       !! the problem
+      class(field_problem_type), intent(in) :: self
       integer, intent(in) :: first                        !! first of the tail unknowns
       real(dp), intent(out) :: values(:, :)               !! (dofs, number of tail unknowns)
       real(dp), allocatable :: zero(:, :), unit(:, :), solution(:, :)
@@ -129,7 +129,7 @@ contains
 
    !> Nodal forces condensed on the tail.
    subroutine condense_forces(self, forces, condensed)
-      class(field_problem_type), intent(in) :: self       !! the problem
+      class(field_problem_type), intent(in) :: self
       real(dp), intent(in) :: forces(:, :)                !! (dofs, columns)
       real(dp), intent(out) :: condensed(:, :)            !! (tail, columns)
       real(dp) :: rhs(self%map%equations, size(forces, 2))
@@ -143,7 +143,7 @@ contains
 
    !> Frees the factors.
    subroutine release(self)
-      class(field_problem_type), intent(inout) :: self    !! the problem
+      class(field_problem_type), intent(inout) :: self
 
       if (.not. allocated(self%solver)) return
       call self%solver%release()

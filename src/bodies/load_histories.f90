@@ -40,7 +40,7 @@ contains
 
    !> Starts with no load given.
    pure subroutine prepare(self, initial, amplitudes)
-      class(load_course_type), intent(inout) :: self !! the loads
+      class(load_course_type), intent(inout) :: self
       real(dp), intent(in) :: initial(:)             !! (n) values before anything is given
       type(amplitude_type), intent(in) :: amplitudes(:)  !! load curves
 
@@ -59,7 +59,7 @@ contains
    !> amplitude on total time moves on; as in CalculiX one on step time ends with its step. A load
    !> that is not given has the present value, from which it ramps once it is.
    pure subroutine begin_step(self, present_value)
-      class(load_course_type), intent(inout) :: self !! the loads
+      class(load_course_type), intent(inout) :: self
       real(dp), intent(in) :: present_value(:)       !! (n) values of loads that are not given
       integer :: i
 
@@ -74,7 +74,7 @@ contains
 
    !> Gives a load for this step.
    pure subroutine give(self, i, value, amplitude, card)
-      class(load_course_type), intent(inout) :: self !! the loads
+      class(load_course_type), intent(inout) :: self
       integer, intent(in) :: i                       !! number of the load
       real(dp), intent(in) :: value !! value at the end of the step, or factor of the amplitude
       integer, intent(in) :: amplitude               !! index of the amplitude, or 0
@@ -89,7 +89,7 @@ contains
    !> Ends a load as OP=NEW does in CalculiX: it goes to its rest over the step where it would ramp,
    !> at once where it follows an amplitude on total time or nothing ramps.
    pure subroutine fade(self, i)
-      class(load_course_type), intent(inout) :: self !! the loads
+      class(load_course_type), intent(inout) :: self
       integer, intent(in) :: i                       !! number of the load
 
       if (self%amplitude(i) > 0) self%start(i) = self%rest(i)
@@ -99,7 +99,7 @@ contains
 
    !> Ends a load at once: what it prescribed is free.
    pure subroutine remove(self, i)
-      class(load_course_type), intent(inout) :: self !! the loads
+      class(load_course_type), intent(inout) :: self
       integer, intent(in) :: i                       !! number of the load
 
       self%active(i) = self%permanent(i)
@@ -110,7 +110,7 @@ contains
 
    !> Moves all loads to an instant of the step.
    pure subroutine move_to(self, clock, amplitudes)
-      class(load_course_type), intent(inout) :: self     !! the loads
+      class(load_course_type), intent(inout) :: self
       type(step_clock_type), intent(in) :: clock         !! the instant
       type(amplitude_type), intent(in) :: amplitudes(:)  !! load curves
       real(dp) :: factor(size(amplitudes)), share

@@ -15,7 +15,7 @@ contains
 
    !> Nodal forces of a unit load; none of a load that is not mechanical.
    pure subroutine unit_forces(model, kind, item, component, nodes, forces)
-      type(model_type), intent(in) :: model            !! the model
+      type(model_type), intent(in) :: model
       integer, intent(in) :: kind                      !! load_* constant of steps
       integer, intent(in) :: item                      !! node or element index
       integer, intent(in) :: component                 !! as said at the kind
@@ -78,7 +78,7 @@ contains
 
    !> Nodal heat rates of a unit load; none of a load that is no heat.
    pure subroutine unit_heat(model, kind, item, component, nodes, heat)
-      type(model_type), intent(in) :: model            !! the model
+      type(model_type), intent(in) :: model
       integer, intent(in) :: kind                      !! load_* constant of steps
       integer, intent(in) :: item                      !! node or element index
       integer, intent(in) :: component                 !! as said at the kind
@@ -104,7 +104,7 @@ contains
 
    !> Integral of psi^p psi^q over a side with a unit film coefficient.
    pure subroutine film_side(model, element, side, nodes, mass)
-      type(model_type), intent(in) :: model            !! the model
+      type(model_type), intent(in) :: model
       integer, intent(in) :: element                   !! element index
       integer, intent(in) :: side                      !! its side
       integer, allocatable, intent(out) :: nodes(:)    !! (n) nodes of the side

@@ -20,7 +20,7 @@ contains
 
    !> Places of all steps.
    pure function find_places(steps) result(places)
-      type(step_type), intent(in) :: steps(:)   !! the steps
+      type(step_type), intent(in) :: steps(:)
       type(load_places_type) :: places          !! each with the entries of its fullest step
       type(load_type), allocatable :: loads(:), all(:)
       integer, allocatable :: ranks(:), order(:)
@@ -99,7 +99,7 @@ contains
 
    !> Whether an entry belongs to the place of the entry before it.
    pure logical function is_repeated(self, i)
-      class(load_places_type), intent(in) :: self   !! the places
+      class(load_places_type), intent(in) :: self
       integer, intent(in) :: i                      !! entry
 
       is_repeated = i > 1

@@ -55,8 +55,8 @@ contains
    !> Starts with nothing given: displacements and loads from zero, temperatures from the initial
    !> ones.
    pure subroutine prepare(self, model)
-      class(loads_type), intent(inout) :: self   !! the loads
-      type(model_type), intent(in) :: model      !! the model
+      class(loads_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
       real(dp), allocatable :: zero(:)
       integer :: s
 
@@ -164,8 +164,8 @@ contains
    !> Takes over what the cards of a step give and end. What is prescribed for the first time, or
    !> again after it was free, ramps from where the node is.
    pure subroutine begin_step(self, step, displacement, temperature)
-      class(loads_type), intent(inout) :: self    !! the loads
-      type(step_type), intent(in) :: step         !! the step
+      class(loads_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
       real(dp), intent(in) :: displacement(:)     !! (2 nodes) at the end of the last step [length]
       real(dp), intent(in) :: temperature(:)      !! (nodes) likewise [temperature]
       integer :: i
@@ -227,9 +227,9 @@ contains
 
    !> Moves everything to an instant.
    pure subroutine move_to(self, clock, model)
-      class(loads_type), intent(inout) :: self    !! the loads
+      class(loads_type), intent(inout) :: self
       type(step_clock_type), intent(in) :: clock  !! the instant
-      type(model_type), intent(in) :: model       !! the model
+      type(model_type), intent(in) :: model
 
       call self%displacement%move_to(clock, model%amplitudes)
       call self%temperature%move_to(clock, model%amplitudes)
@@ -249,7 +249,7 @@ contains
 
    !> Applied nodal forces: concentrated ones and those of pressures, tractions and body forces.
    pure function nodal_forces(self) result(forces)
-      class(loads_type), intent(in) :: self              !! the loads
+      class(loads_type), intent(in) :: self
       real(dp) :: forces(size(self%displacement%value))  !! (2 nodes) [force]
 
       forces = self%unit_forces%multiply(strength(self))
@@ -258,7 +258,7 @@ contains
    !> Nodal heat of sources and fluxes, and of films with the bodies at temperature zero: Q of
    !> (3.3).
    pure function heat_load(self) result(heat)
-      class(loads_type), intent(in) :: self             !! the loads
+      class(loads_type), intent(in) :: self
       real(dp) :: heat(size(self%temperature%value))    !! (nodes) into the bodies [power]
 
       heat = self%unit_heat%multiply(strength(self))
@@ -267,7 +267,7 @@ contains
    !> What the films add to the conduction matrix, with both triangles; without values where no heat
    !> crosses a film.
    pure function film_matrix(self) result(matrix)
-      class(loads_type), intent(in) :: self   !! the loads
+      class(loads_type), intent(in) :: self
       type(sparse_matrix_type) :: matrix      !! (nodes, nodes) [power/temperature]
       type(triplet_list_type) :: list
       real(dp) :: coefficient
@@ -288,7 +288,7 @@ contains
 
    !> Net heat that each data card of a load brings into the bodies; zero for cards of mechanics.
    pure function card_heat(self, temperature) result(rates)
-      class(loads_type), intent(in) :: self     !! the loads
+      class(loads_type), intent(in) :: self
       real(dp), intent(in) :: temperature(:)    !! (nodes) [temperature]
       real(dp) :: rates(self%card_count)        !! (cards) by their running numbers [power]
       real(dp) :: of_place(size(self%places%kind))
@@ -314,7 +314,7 @@ contains
 
    !> Temperatures that *TEMPERATURE gives in a step without heat; other nodes keep theirs.
    pure subroutine set_temperatures(self, temperature)
-      class(loads_type), intent(in) :: self            !! the loads
+      class(loads_type), intent(in) :: self
       real(dp), intent(inout) :: temperature(:)        !! (nodes) [temperature]
       integer :: i
 
@@ -326,8 +326,8 @@ contains
 
    !> Value on the load axis: the prescribed value of LOAD=, or the time.
    pure function axis_value(self, model, time) result(value)
-      class(loads_type), intent(in) :: self       !! the loads
-      type(model_type), intent(in) :: model       !! the model
+      class(loads_type), intent(in) :: self
+      type(model_type), intent(in) :: model
       real(dp), intent(in) :: time                !! total time [time]
       real(dp) :: value                           !! value on the load axis
 

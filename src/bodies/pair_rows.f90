@@ -33,10 +33,10 @@ contains
    !> Pairs the surfaces of one *CONTACT PAIR, with the thickness of the slave's first element.
    !> Error: as make_pairs.
    subroutine pair_surfaces(model, i, pairs, error)
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       integer, intent(in) :: i                            !! index into model%contacts
-      type(contact_pairs_type), intent(out) :: pairs      !! the pairs
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(contact_pairs_type), intent(out) :: pairs
+      type(error_type), allocatable, intent(out) :: error
       real(dp) :: thickness
 
       thickness = 1.0_dp
@@ -51,7 +51,7 @@ contains
    !> Puts the pairs of all interfaces in one row.
    pure function row_of(interfaces, model) result(row)
       type(contact_pairs_type), intent(in) :: interfaces(:) !! in the order of the deck
-      type(model_type), intent(in) :: model                 !! the model
+      type(model_type), intent(in) :: model
       type(pair_row_type) :: row                            !! all their pairs
       integer :: i, first, last, m
 
@@ -96,7 +96,7 @@ contains
    !> Pairs whose normal motion is prescribed: both nodes are held along both axes, or along the one
    !> that is their normal.
    pure function over_constrained(pairs, held) result(too_much)
-      type(pair_row_type), intent(in) :: pairs     !! the pairs
+      type(pair_row_type), intent(in) :: pairs
       logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
       logical :: too_much(size(pairs%slave))       !! (m)
       logical :: both(2)

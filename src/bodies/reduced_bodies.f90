@@ -59,8 +59,8 @@ contains
    !> Error: as make_pairs.
    subroutine prepare(self, model, error)
       class(reduced_bodies_type), intent(inout) :: self !! empty
-      type(model_type), intent(in) :: model                  !! the model
-      type(error_type), allocatable, intent(out) :: error    !! see above
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
       integer :: i
 
       if (.not. allocated(self%interfaces)) then
@@ -80,12 +80,12 @@ contains
    !> Error: an over-constrained pair.
    subroutine number(self, model, held, held_temperature, mechanics, heat, error)
       class(reduced_bodies_type), intent(inout) :: self !! prepared
-      type(model_type), intent(in) :: model                  !! the model
+      type(model_type), intent(in) :: model
       logical, intent(in) :: held(:)                         !! (2 nodes) prescribed displacements
       logical, intent(in) :: held_temperature(:)             !! (nodes) prescribed temperatures
       logical, intent(in) :: mechanics                       !! whether displacements are numbered
       logical, intent(in) :: heat                            !! whether temperatures are numbered
-      type(error_type), allocatable, intent(out) :: error    !! see above
+      type(error_type), allocatable, intent(out) :: error
 
       if (mechanics) then
          call find_held_axes(self%pairs, held)
@@ -129,11 +129,11 @@ contains
    !> Errors: bodies that nothing holds, a failure of the solver.
    subroutine reduce(self, model, mechanics, heat, coupled, error)
       class(reduced_bodies_type), intent(inout) :: self !! numbered
-      type(model_type), intent(in) :: model                  !! the model
+      type(model_type), intent(in) :: model
       logical, intent(in) :: mechanics                       !! whether mechanics is reduced anew
       logical, intent(in) :: heat                            !! whether heat is reduced anew
       logical, intent(in) :: coupled            !! whether heat depends on the mechanics of the step
-      type(error_type), allocatable, intent(out) :: error    !! see above
+      type(error_type), allocatable, intent(out) :: error
 
       self%is_coupled = coupled
       if (mechanics) then
@@ -154,8 +154,8 @@ contains
    !> Errors: bodies whose temperature nothing determines, a failure of the solver.
    subroutine reduce_heat(self, model, error)
       class(reduced_bodies_type), intent(inout) :: self !! numbered
-      type(model_type), intent(in) :: model                  !! the model
-      type(error_type), allocatable, intent(out) :: error    !! see above
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
 
       call self%thermal%reduce(model%solver, error)
       if (allocated(error)) then
@@ -192,10 +192,10 @@ contains
    !> is reduced again.
    !> Errors: as reduce_heat.
    subroutine set_film(self, film, model, error)
-      class(reduced_bodies_type), intent(inout) :: self !! reduced
+      class(reduced_bodies_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: film !! (nodes, nodes) [power/temperature]
-      type(model_type), intent(in) :: model                  !! the model
-      type(error_type), allocatable, intent(out) :: error    !! see above
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
 
       if (same_values(film, self%thermal%added)) return
       self%thermal%added = film
@@ -216,7 +216,7 @@ contains
    !> Assembles the matrices of the bodies alone, once.
    subroutine assemble(self, model, with_mechanics, with_heat, with_strain)
       class(reduced_bodies_type), intent(inout) :: self !! prepared
-      type(model_type), intent(in) :: model                  !! the model
+      type(model_type), intent(in) :: model
       logical, intent(in) :: with_mechanics                  !! whether any step solves mechanics
       logical, intent(in) :: with_heat                       !! whether any step solves heat
       logical, intent(in) :: with_strain !! whether temperatures strain the bodies in any step
@@ -254,7 +254,7 @@ contains
 
    !> Condensed mechanical loads of fields of temperature.
    subroutine condense_thermal_load(self, temperature, condensed)
-      class(reduced_bodies_type), intent(in) :: self !! the reduced bodies
+      class(reduced_bodies_type), intent(in) :: self
       real(dp), intent(in) :: temperature(:, :) !! (nodes, columns) over the natural state
       real(dp), intent(out) :: condensed(:, :)               !! (mechanical tail, columns)
       real(dp) :: forces(self%thermal_load%row_count, size(temperature, 2))
@@ -269,7 +269,7 @@ contains
    !> Conductance of the bodies about each pair alone; 0 where both temperatures are prescribed. A
    !> pair that closes a ring, whose jump only the others hold, has that of the bodies at its nodes.
    pure function conductors(self) result(conductance)
-      class(reduced_bodies_type), intent(in) :: self  !! the reduced bodies
+      class(reduced_bodies_type), intent(in) :: self
       real(dp) :: conductance(size(self%pairs%slave))      !! (m) [power/temperature]
       logical :: ring(size(conductance))
       integer :: k
@@ -287,7 +287,7 @@ contains
 
    !> Frees the factors.
    subroutine release(self)
-      class(reduced_bodies_type), intent(inout) :: self !! the reduced bodies
+      class(reduced_bodies_type), intent(inout) :: self
 
       call self%thermal%release()
       call self%mechanical%release()

@@ -41,7 +41,7 @@ contains
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
       type(contact_workspace_type), intent(inout) :: work !! laws in, factors of the solution out
       type(contact_state_type), intent(inout) :: state    !! guess in, solution out
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
 
       call find_state(system, load, work, state, error)
       if (allocated(error)) return

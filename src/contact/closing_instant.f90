@@ -50,7 +50,7 @@ contains
       real(dp), intent(in) :: load(:)                     !! (tail) condensed load [force]
       type(contact_workspace_type), intent(inout) :: work !! laws and factors of the solution out
       type(contact_state_type), intent(inout) :: state    !! guess in, solution out
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
 
       call settle_laws(system, previous, load, work, state, error)
       if (allocated(error)) work%closing = closing_law_type()

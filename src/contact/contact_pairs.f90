@@ -44,11 +44,11 @@ contains
    !> Errors: surfaces that do not form one line each or that do not fit, unequal numbers of nodes,
    !> nodes that are not opposite, bodies on the wrong side, sides without tributary length.
    subroutine make_pairs(mesh, definition, thickness, pairs, error)
-      type(mesh_type), intent(in) :: mesh                     !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
       real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
-      type(contact_pairs_type), intent(out) :: pairs          !! the pairs
-      type(error_type), allocatable, intent(out) :: error     !! see above
+      type(contact_pairs_type), intent(out) :: pairs
+      type(error_type), allocatable, intent(out) :: error
       type(surface_chain_type) :: slave, master
       logical :: turned_slave, turned_master
       integer :: first, last

@@ -66,7 +66,7 @@ contains
 
    !> Forces, or columns of S, as they enter the rows.
    pure function combine(self, columns) result(rows)
-      class(contact_rows_type), intent(in) :: self    !! the rows
+      class(contact_rows_type), intent(in) :: self
       real(dp), intent(in) :: columns(:, :)           !! (tail, columns)
       real(dp) :: rows(size(columns, 1), size(columns, 2))
       integer :: i

@@ -89,7 +89,7 @@ contains
    pure function slip(self, system, state, k)
       class(contact_workspace_type), intent(in) :: self !! laws of closing
       type(contact_system_type), intent(in) :: system   !! the reduced system
-      type(contact_state_type), intent(in) :: state     !! contact state
+      type(contact_state_type), intent(in) :: state
       integer, intent(in) :: k                          !! the pair
       real(dp) :: slip                                  !! [length]
 
@@ -108,11 +108,11 @@ contains
    !> is set, and the values stay as they are.
    !> Errors: as factor_set; a body is driven away; forces overflow.
    subroutine solve_set(self, system, load, state, error)
-      class(contact_workspace_type), intent(inout) :: self !! the workspace
+      class(contact_workspace_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system      !! the reduced system
       real(dp), intent(in) :: load(:)                      !! (tail) c [force]
       type(contact_state_type), intent(inout) :: state     !! its statuses in, the values out
-      type(error_type), allocatable, intent(out) :: error  !! see above
+      type(error_type), allocatable, intent(out) :: error
       real(dp) :: d(size(load)), lambda(size(load)), residual(size(load), 1)
       real(dp), allocatable :: unbalanced(:, :)
       integer :: k
@@ -257,10 +257,10 @@ contains
    !> Factors the system of an active set, unless that is the set factored last.
    !> Error: the system is singular.
    subroutine factor_set(self, system, state, error)
-      class(contact_workspace_type), intent(inout) :: self !! the workspace
+      class(contact_workspace_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system      !! the reduced system
       type(contact_state_type), intent(in) :: state        !! statuses and directions
-      type(error_type), allocatable, intent(out) :: error  !! see above
+      type(error_type), allocatable, intent(out) :: error
       logical :: singular
 
       if (is_factored(self, state)) return
@@ -301,7 +301,7 @@ contains
 
    !> Factors the rows as they are, bordered by the loose motions.
    pure subroutine factor_rows(self, system, singular)
-      class(contact_workspace_type), intent(inout) :: self !! the workspace
+      class(contact_workspace_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system      !! the reduced system
       logical, intent(out) :: singular                     !! the rows depend on each other
       real(dp) :: rows(size(self%rows%free) + size(self%loose, 2), size(self%rows%free) + &

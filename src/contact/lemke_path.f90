@@ -36,7 +36,7 @@ contains
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
       type(contact_workspace_type), intent(in) :: work    !! gaps, laws, hold
       type(contact_state_type), intent(inout) :: state    !! references in, solution out
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
       type(contact_workspace_type) :: path
       type(piece_type) :: piece
       real(dp) :: step, t

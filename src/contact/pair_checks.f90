@@ -30,7 +30,7 @@ contains
    !> The two lines are of one kind and have equally many nodes; nodes of both are no more than
    !> common ends.
    subroutine check_lines(mesh, definition, slave, master, error)
-      type(mesh_type), intent(in) :: mesh                     !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
       type(surface_chain_type), intent(in) :: slave           !! line of the slave
       type(surface_chain_type), intent(in) :: master !! line of the master, along the slave's
@@ -122,7 +122,7 @@ contains
 
    !> Refuses faces that look the same way.
    subroutine check_sides(mesh, definition, slave, master, turned, compared, error)
-      type(mesh_type), intent(in) :: mesh                 !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition   !! the *CONTACT PAIR
       type(surface_chain_type), intent(in) :: slave       !! line of the slave
       type(surface_chain_type), intent(in) :: master      !! line of the master
@@ -174,7 +174,7 @@ contains
    !> Where surfaces do not fit, the fault may be a face round the corner: puts the blame on the
    !> surface that turns sharply, if only one does.
    subroutine blame_corner(mesh, definition, slave, master, error)
-      type(mesh_type), intent(in) :: mesh                     !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
       type(surface_chain_type), intent(in) :: slave           !! line of the slave
       type(surface_chain_type), intent(in) :: master          !! line of the master
@@ -216,7 +216,7 @@ contains
    !> No node has a negative weight; 0 is that of a corner on the axis or at the tip of quarter
    !> points.
    subroutine check_weights(mesh, name, slave, weight, error)
-      type(mesh_type), intent(in) :: mesh                 !! the mesh
+      type(mesh_type), intent(in) :: mesh
       character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
       integer, intent(in) :: slave(:)                     !! (m) slave nodes
       real(dp), intent(in) :: weight(:)                   !! (m) [length^2]
@@ -231,7 +231,7 @@ contains
 
    !> Refuses a pair whose tangential offset exceeds half of what is allowed it.
    subroutine check_opposite(mesh, name, slave, master, tangent, twice_allowed, error)
-      type(mesh_type), intent(in) :: mesh                 !! the mesh
+      type(mesh_type), intent(in) :: mesh
       character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
       integer, intent(in) :: slave(:), master(:)          !! (m) nodes
       real(dp), intent(in) :: tangent(:, :)               !! (2, m) unit tangents, 0 where none

@@ -21,7 +21,7 @@ contains
    !> Names the pair whose nodes lie farthest beside each other, as a part of the node spacing.
    !> Offsets up to half the gap are those of curved faces that part far from the contact.
    pure function offset_warning(mesh, pairs) result(warning)
-      type(mesh_type), intent(in) :: mesh                !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(contact_pairs_type), intent(in) :: pairs      !! pairs of one interface
       character(:), allocatable :: warning               !! empty where all lie opposite
       real(dp) :: offset(size(pairs%edge)), part(size(pairs%edge)), apart(2)
@@ -46,7 +46,7 @@ contains
 
    !> Names the pair whose faces overlap most, where that is more than the rounding of coordinates.
    pure function overlap_warning(mesh, pairs) result(warning)
-      type(mesh_type), intent(in) :: mesh                !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(contact_pairs_type), intent(in) :: pairs      !! pairs of one interface
       character(:), allocatable :: warning               !! empty where none do
       integer :: k

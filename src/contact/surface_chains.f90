@@ -26,10 +26,10 @@ contains
    !> begins at the corner that precedes all others.
    !> Errors: no sides, sides of 2 and of 3 nodes, sides that do not form one line.
    subroutine chain_faces(mesh, surface, chain, error)
-      type(mesh_type), intent(in) :: mesh                 !! the mesh
-      type(surface_type), intent(in) :: surface           !! the surface
+      type(mesh_type), intent(in) :: mesh
+      type(surface_type), intent(in) :: surface
       type(surface_chain_type), intent(out) :: chain      !! the line
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: leaving(:), sides(:, :)
       integer :: count_sides, first, i, n, side
 

@@ -341,7 +341,7 @@ contains
       character(*), intent(in) :: path                     !! the file; made if it is missing
       integer, intent(out) :: descriptor                   !! the open file, -1 after an error
       logical, intent(out) :: has_lock                     !! false where there are no locks
-      type(error_type), allocatable, intent(out) :: error  !! see above
+      type(error_type), allocatable, intent(out) :: error
       integer(c_int) :: number, opened
 
       number = c_lock(path//c_null_char, opened)

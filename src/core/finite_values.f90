@@ -22,7 +22,7 @@ contains
       real(dp), intent(in) :: values(:)                   !! any values
       character(*), intent(in) :: what                    !! what they are, in the plural
       integer, intent(in) :: status                       !! one of the status_* constants
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
 
       if (all_finite(values)) return
       call set_error(error, status, what//' overflow: values of the deck are too large, or too '// &

@@ -62,7 +62,7 @@ contains
    !> Whether the current increment has had its time after a signal.
    !> Error: status_interrupted.
    subroutine check_overdue(error)
-      type(error_type), allocatable, intent(out) :: error   !! see above
+      type(error_type), allocatable, intent(out) :: error
       integer(c_int) :: signal, times, is_overdue
 
       call c_signals(signal, times, is_overdue)

@@ -28,7 +28,7 @@ contains
    !> Error: status_internal, when it needs more.
    subroutine check_memory(needed, error)
       real(dp), intent(in) :: needed                       !! resident, at its largest [byte]
-      type(error_type), allocatable, intent(out) :: error  !! see above
+      type(error_type), allocatable, intent(out) :: error
       character(source_length, kind=c_char) :: source
       real(dp) :: limit
 

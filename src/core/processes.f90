@@ -56,7 +56,7 @@ contains
    subroutine start(self, task, error)
       class(child_type), intent(out) :: self
       class(task_type), intent(inout) :: task              !! what it does
-      type(error_type), allocatable, intent(out) :: error  !! see above
+      type(error_type), allocatable, intent(out) :: error
       type(report_type) :: report
 
       ! What is buffered here would be printed by the child as well.

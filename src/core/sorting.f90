@@ -92,7 +92,7 @@ contains
 
    !> Makes the index of a list; of equal numbers the first is found.
    pure subroutine build(self, numbers)
-      class(number_index_type), intent(inout) :: self  !! the index
+      class(number_index_type), intent(inout) :: self
       integer, intent(in) :: numbers(:)                !! (n) the list
 
       self%place = sort_order(numbers)
@@ -101,7 +101,7 @@ contains
 
    !> Place of a number in the list by bisection; 0 where the list does not hold it.
    pure function find(self, number) result(place)
-      class(number_index_type), intent(in) :: self  !! the index
+      class(number_index_type), intent(in) :: self
       integer, intent(in) :: number                 !! number that is looked for
       integer :: place                              !! its place, the first of equals
       integer :: low, high, middle
@@ -124,7 +124,7 @@ contains
 
    !> Whether the list holds nothing.
    pure logical function is_empty(self)
-      class(number_index_type), intent(in) :: self  !! the index
+      class(number_index_type), intent(in) :: self
 
       is_empty = .true.
       if (allocated(self%sorted)) is_empty = size(self%sorted) == 0
@@ -132,7 +132,7 @@ contains
 
    !> The largest number of a list that is not empty.
    pure integer function largest(self)
-      class(number_index_type), intent(in) :: self  !! the index
+      class(number_index_type), intent(in) :: self
 
       largest = self%sorted(size(self%sorted))
    end function largest

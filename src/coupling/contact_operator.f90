@@ -23,12 +23,12 @@ contains
    !> workspace%pass%image.
    !> Errors: as solve_increment; jumps or conductances overflow.
    subroutine contact_operator_pass(bodies, data, workspace, jump, state, error)
-      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
-      type(increment_data_type), intent(in) :: data              !! the increment
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(inout) :: state           !! guess in, solution out
-      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(error_type), allocatable, intent(out) :: error
 
       call temperature_jumps(bodies, data, workspace%pass%omega, workspace, jump)
       call check_finite(jump, 'temperature jumps', status_no_convergence, error)
@@ -43,8 +43,8 @@ contains
    !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first
    !> changed one on are factored again.
    subroutine temperature_jumps(bodies, data, omega, workspace, jump)
-      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
-      type(increment_data_type), intent(in) :: data              !! the increment
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: omega(:)                           !! (m) omega*
       type(increment_workspace_type), intent(inout) :: workspace !! heat in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
@@ -78,8 +78,8 @@ contains
 
    !> Condensed mechanical load of the increment with given jumps.
    pure function condensed_load(bodies, data, jump) result(load)
-      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
-      type(increment_data_type), intent(in) :: data             !! the increment
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       real(dp) :: load(size(data%welded_load))                  !! (mechanical tail) [force]
       integer :: k
@@ -94,8 +94,8 @@ contains
 
    !> chi: the conductance of a contact state, eq. (1.8).
    pure function law_conductance(bodies, state) result(omega)
-      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
-      type(contact_state_type), intent(in) :: state             !! contact state
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(contact_state_type), intent(in) :: state
       real(dp) :: omega(size(state%status))                     !! (m)
       real(dp) :: pressure(size(state%status))
       integer :: k
@@ -109,8 +109,8 @@ contains
 
    !> Pressure by which the closed law goes: the printed one.
    pure function law_pressure(bodies, state) result(pressure)
-      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
-      type(contact_state_type), intent(in) :: state             !! contact state
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(contact_state_type), intent(in) :: state
       real(dp) :: pressure(size(state%status))                  !! (m) [stress]
       integer :: first, i, last
 
@@ -136,7 +136,7 @@ contains
 
    !> Nodal forces that temperatures cause; none where no temperature strains.
    pure function thermal_forces(bodies, temperature) result(forces)
-      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
+      type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:)                    !! (nodes) [temperature]
       real(dp) :: forces(2*size(temperature))                   !! (2 nodes) [force]
 
@@ -149,9 +149,9 @@ contains
    !> What a few units in the last place of the displacements change in omega, relative: no residual
    !> can be smaller.
    pure function residual_floor(bodies, data, state, omega) result(floor_value)
-      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
-      type(increment_data_type), intent(in) :: data             !! the increment
-      type(contact_state_type), intent(in) :: state             !! contact state
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
+      type(contact_state_type), intent(in) :: state
       real(dp), intent(in) :: omega(:)                          !! (m) its conductance
       real(dp) :: floor_value                                   !! relative change of omega
       real(dp) :: change, pressure

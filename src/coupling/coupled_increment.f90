@@ -31,13 +31,13 @@ contains
    !> Conductances, jumps and contact state of an increment.
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
    subroutine solve_coupled(bodies, step, previous, data, workspace, next, error)
-      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
-      type(step_type), intent(in) :: step                        !! the step
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous          !! state at the start
       type(increment_data_type), intent(inout) :: data           !! receives graphs and scales
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
       type(solution_state_type), intent(inout) :: next           !! guess in, solution out
-      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(error_type), allocatable, intent(out) :: error
 
       data%scales = contact_scales(bodies, data)
       data%graph = make_graph(bodies, data%scales%length)

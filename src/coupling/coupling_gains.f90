@@ -28,7 +28,7 @@ contains
       real(dp), intent(in) :: opening(:)                    !! (m) openings [length]
       real(dp), intent(in) :: slope(:, :) !! (m, m) derivative of the openings by the conductances
       logical, intent(in) :: resting(:)                     !! (m) pairs that rest
-      type(coupling_gain_type), intent(out) :: gain         !! the gain
+      type(coupling_gain_type), intent(out) :: gain
       logical, intent(out) :: found                         !! whether LAPACK found it
       real(dp) :: u_slope(size(opening), size(opening)), matrix(size(opening), size(opening))
       real(dp), allocatable :: real_part(:), imaginary_part(:)

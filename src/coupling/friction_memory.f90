@@ -17,7 +17,7 @@ contains
    !> carry, of pairs that are frictionless or held, are taken from the recovered displacements, and
    !> such a pair closes where it is at that instant on the straight line between its ends.
    pure subroutine remember_slip(bodies, solved, previous, next)
-      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
+      type(reduced_bodies_type), intent(in) :: bodies
       type(contact_workspace_type), intent(in) :: solved      !! factors of the solution
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(inout) :: next        !! state at the end, with its fields

@@ -33,12 +33,12 @@ contains
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds;
    !> status_interrupted where a signal left no more time.
    subroutine iterate(bodies, controls, data, workspace, next, error)
-      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
-      type(fixed_point_type), intent(in) :: controls             !! *FIXED POINT
-      type(increment_data_type), intent(in) :: data              !! the increment
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(fixed_point_type), intent(in) :: controls
+      type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, passes out
       type(solution_state_type), intent(inout) :: next           !! omega*^0 and guess in
-      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: start
 
       start = next

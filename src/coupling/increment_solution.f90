@@ -36,14 +36,14 @@ contains
    !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds,
    !> loads that overflow.
    subroutine solve_pairs(bodies, loads, step, previous, workspace, next, error)
-      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
+      type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(step_type), intent(in) :: step                        !! the step
+      type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous          !! state at the start
       type(increment_workspace_type), intent(inout) :: workspace !! a fresh one
       !> guess and loads at the end in, solution out
       type(solution_state_type), intent(inout) :: next
-      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(error_type), allocatable, intent(out) :: error
       type(increment_data_type) :: data
 
       data%scheme = step%scheme
@@ -248,9 +248,9 @@ contains
 
    !> Fields of the whole bodies, from the solution on the pairs, and what pairs remember of it.
    subroutine recover_fields(bodies, loads, step, workspace, previous, next)
-      type(reduced_bodies_type), intent(in) :: bodies    !! the reduced bodies
+      type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(step_type), intent(in) :: step                        !! the step
+      type(step_type), intent(in) :: step
       type(increment_workspace_type), intent(inout) :: workspace !! of the solution
       type(solution_state_type), intent(in) :: previous          !! state at the start
       type(solution_state_type), intent(inout) :: next           !! as solve_pairs left it

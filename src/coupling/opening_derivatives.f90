@@ -29,7 +29,7 @@ contains
 
    !> Graphs of the conductance of all pairs.
    pure function make_graph(bodies, length) result(graph)
-      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
+      type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: length                          !! of a rest, > 0 [length]
       type(conductance_graph_type), allocatable :: graph(:)   !! (m)
       real(dp) :: stiffness(size(bodies%pairs%weight)), weight(size(bodies%pairs%weight))
@@ -58,9 +58,9 @@ contains
 
    !> Openings of the pairs: gaps, or pressures as overlaps.
    pure function openings(bodies, graph, state) result(opening)
-      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
+      type(reduced_bodies_type), intent(in) :: bodies
       type(conductance_graph_type), intent(in) :: graph(:)    !! (m) graphs of the conductance
-      type(contact_state_type), intent(in) :: state           !! contact state
+      type(contact_state_type), intent(in) :: state
       real(dp) :: opening(size(graph))                        !! (m) [length]
 
       opening = -law_pressure(bodies, state)/graph%modulus
@@ -71,11 +71,11 @@ contains
    !> the given jumps; unallocated where it does not exist. Pairs of weight 0 carry no heat: their
    !> rows stay 0.
    subroutine opening_derivative(bodies, data, workspace, jump, state, slope, body)
-      type(reduced_bodies_type), intent(in) :: bodies  !! the reduced bodies
-      type(increment_data_type), intent(in) :: data            !! the increment
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
-      type(contact_state_type), intent(in) :: state           !! contact state
+      type(contact_state_type), intent(in) :: state
       real(dp), allocatable, intent(out) :: slope(:, :)       !! (m, m)
       !> (m) conductance that the bodies put in series with each pair, 1 where that means nothing
       real(dp), allocatable, intent(out) :: body(:)

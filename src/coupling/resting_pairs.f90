@@ -24,8 +24,8 @@ contains
    !> Largest values that are known at the start of an increment. Its load counts by the overlap
    !> that it makes at a pair alone.
    pure function contact_scales(bodies, data) result(scales)
-      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
-      type(increment_data_type), intent(in) :: data           !! the increment
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
       type(contact_scales_type) :: scales                     !! largest values, length > 0
       real(dp) :: stiffness
       integer :: k
@@ -49,7 +49,7 @@ contains
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
       type(contact_scales_type), intent(in) :: scales       !! largest values of the increment
       real(dp), intent(in) :: weight(:)                     !! (m) tributary areas [length^2]
-      type(pass_type), intent(in) :: pass                   !! the pass
+      type(pass_type), intent(in) :: pass
       real(dp), intent(out) :: residual                     !! relative
       logical, intent(out) :: resting(:)                    !! (m) pairs that rest
       real(dp) :: by_law(size(graph)), by_rest(size(graph)), pressure(size(graph))
@@ -73,7 +73,7 @@ contains
    !> Leaves nothing of gap, pressure and shear at pairs that rest; they count as closed.
    pure subroutine settle(resting, state)
       logical, intent(in) :: resting(:)                  !! (m) pairs that rest
-      type(contact_state_type), intent(inout) :: state   !! contact state
+      type(contact_state_type), intent(inout) :: state
 
       where (resting .and. state%status == status_open) state%reference = state%tangential
       where (resting)

@@ -23,7 +23,7 @@ contains
    !> Warns where heat starts out of equilibrium, (K + G) T /= Q, with a scheme that never damps
    !> that, and notes in the state whether the scheme is such a one.
    subroutine warn_of_imbalance(bodies, loads, data, previous, next, record)
-      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
+      type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads                   !! loads of the increment
       type(increment_data_type), intent(in) :: data           !! scheme, conductance, jumps
       type(solution_state_type), intent(in) :: previous       !! state at the start

@@ -45,7 +45,7 @@ contains
    !> start.
    pure function carrying_conductance(state, scheme) result(omega)
       type(solution_state_type), intent(in) :: state    !! state at the end of the increment
-      type(thermal_scheme_type), intent(in) :: scheme   !! scheme of (3.4)
+      type(thermal_scheme_type), intent(in) :: scheme
       real(dp) :: omega(size(state%omega))              !! (m) [power/(length^2 temperature)]
 
       omega = state%omega

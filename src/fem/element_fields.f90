@@ -17,7 +17,7 @@ contains
 
    !> Where points of an element lie.
    pure function element_positions(mesh, element, places) result(positions)
-      type(mesh_type), intent(in) :: mesh           !! the mesh
+      type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                !! element index
       real(dp), intent(in) :: places(:, :)          !! (2, points) xi, eta
       real(dp) :: positions(2, size(places, 2))     !! x, y [length]
@@ -33,8 +33,8 @@ contains
 
    !> Axes 1 and 2 of the material at points of an element, as columns.
    pure function element_axes(mesh, sections, orientations, element, places) result(axes)
-      type(mesh_type), intent(in) :: mesh                   !! the mesh
-      type(section_type), intent(in) :: sections(:)         !! sections
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       integer, intent(in) :: element                        !! element index
       real(dp), intent(in) :: places(:, :)                  !! (2, points) xi, eta
@@ -54,9 +54,9 @@ contains
    !> Stress at points of an element along x and y, eq. (1.5).
    pure function element_stress(mesh, sections, materials, orientations, element, places, &
       displacement, temperature) result(stress)
-      type(mesh_type), intent(in) :: mesh                   !! the mesh
-      type(section_type), intent(in) :: sections(:)         !! sections
-      type(material_type), intent(in) :: materials(:)       !! materials
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       integer, intent(in) :: element                        !! element index
       real(dp), intent(in) :: places(:, :)                  !! (2, points) xi, eta
@@ -86,9 +86,9 @@ contains
    !> Heat flux at points of an element along x and y, eq. (1.4).
    pure function element_heat_flux(mesh, sections, materials, orientations, element, places, &
       temperature) result(flux)
-      type(mesh_type), intent(in) :: mesh                   !! the mesh
-      type(section_type), intent(in) :: sections(:)         !! sections
-      type(material_type), intent(in) :: materials(:)       !! materials
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       integer, intent(in) :: element                        !! element index
       real(dp), intent(in) :: places(:, :)                  !! (2, points) xi, eta

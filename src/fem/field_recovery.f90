@@ -30,7 +30,7 @@ contains
    !> Numbers the points: first one per node in the order of the nodes, then further ones for
    !> further sections.
    pure function make_points(mesh) result(points)
-      type(mesh_type), intent(in) :: mesh   !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(point_map_type) :: points        !! the points
       integer :: owner(size(mesh%node_number))
       integer :: element, i, k, n, node
@@ -70,11 +70,11 @@ contains
 
    !> Prepares the recovery points of all elements.
    pure subroutine prepare_samples(mesh, sections, materials, orientations, fields)
-      type(mesh_type), intent(in) :: mesh                   !! the mesh
-      type(section_type), intent(in) :: sections(:)         !! sections
-      type(material_type), intent(in) :: materials(:)       !! materials
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
-      type(point_fields_type), intent(out) :: fields        !! the points
+      type(point_fields_type), intent(out) :: fields
       real(dp) :: points(2, most, kind_count), weights(most, kind_count)
       integer :: i, k
 
@@ -92,7 +92,7 @@ contains
    !> Stress at all recovery points along x and y, eq. (1.5).
    pure subroutine stress_samples(fields, mesh, displacement, temperature, samples)
       type(point_fields_type), intent(in) :: fields   !! of prepare_samples
-      type(mesh_type), intent(in) :: mesh             !! the mesh
+      type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: displacement(:, :)      !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp), intent(out) :: samples(:, :)          !! (4, recovery points) [stress]
@@ -111,7 +111,7 @@ contains
    !> Heat flux at all recovery points along x and y, eq. (1.4).
    pure subroutine heat_flux_samples(fields, mesh, temperature, samples)
       type(point_fields_type), intent(in) :: fields   !! of prepare_samples
-      type(mesh_type), intent(in) :: mesh             !! the mesh
+      type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: temperature(:)          !! (nodes) [temperature]
       real(dp), intent(out) :: samples(:, :)          !! (2, recovery points) [power/length^2]
       real(dp) :: values(most, 2)
@@ -129,11 +129,11 @@ contains
    !> Stress at the points along x and y, eq. (1.5).
    pure function recover_stress(mesh, sections, materials, orientations, points, displacement, &
       temperature) result(stress)
-      type(mesh_type), intent(in) :: mesh                   !! the mesh
-      type(section_type), intent(in) :: sections(:)         !! sections
-      type(material_type), intent(in) :: materials(:)       !! materials
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
-      type(point_map_type), intent(in) :: points            !! the points
+      type(point_map_type), intent(in) :: points
       real(dp), intent(in) :: displacement(:, :)            !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp) :: stress(4, size(points%node))              !! xx, yy, zz, xy [stress]
@@ -149,11 +149,11 @@ contains
    !> Heat flux at the points along x and y, eq. (1.4).
    pure function recover_heat_flux(mesh, sections, materials, orientations, points, temperature) &
       result(flux)
-      type(mesh_type), intent(in) :: mesh                   !! the mesh
-      type(section_type), intent(in) :: sections(:)         !! sections
-      type(material_type), intent(in) :: materials(:)       !! materials
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
-      type(point_map_type), intent(in) :: points            !! the points
+      type(point_map_type), intent(in) :: points
       real(dp), intent(in) :: temperature(:)                !! (nodes) [temperature]
       real(dp) :: flux(2, size(points%node))                !! x, y [power/length^2]
       type(point_fields_type) :: fields
@@ -167,8 +167,8 @@ contains
 
    !> Values at the points: extrapolated in each element to its nodes, then averaged.
    pure function average_samples(mesh, points, samples) result(values)
-      type(mesh_type), intent(in) :: mesh            !! the mesh
-      type(point_map_type), intent(in) :: points     !! the points
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points
       real(dp), intent(in) :: samples(:, :)          !! (components, recovery points), 2 or 4
       real(dp) :: values(size(samples, 1), size(points%node))   !! (components, points)
       real(dp) :: weights(4, 8, kind_count), position(2, 8)

@@ -62,7 +62,7 @@ contains
 
    !> Weights of the values at the sites in the value at a place.
    pure function weights_at(self, place) result(weights)
-      class(fit_type), intent(in) :: self          !! the fit
+      class(fit_type), intent(in) :: self
       real(dp), intent(in) :: place(2)             !! x, y [length]
       real(dp) :: weights(size(self%q, 1))         !! their sum is 1
       real(dp) :: value(cubic_terms), local(2)

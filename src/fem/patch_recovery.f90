@@ -49,7 +49,7 @@ contains
    !> Fits the patches.
    pure subroutine prepare(self, mesh, points, first_sample, position)
       class(patch_recovery_type), intent(inout) :: self !! the weights
-      type(mesh_type), intent(in) :: mesh               !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(point_map_type), intent(in) :: points        !! where averaged fields live
       integer, intent(in) :: first_sample(:)            !! (elements + 1) first recovery point
       real(dp), intent(in) :: position(:, :)            !! (2, recovery points) x, y [length]

@@ -60,10 +60,10 @@ contains
 
    !> Forms what stays.
    pure subroutine prepare(self, mesh, sections, materials, orientations, points, weights, counts)
-      class(point_fields_type), intent(inout) :: self       !! the points
-      type(mesh_type), intent(in) :: mesh                   !! the mesh
-      type(section_type), intent(in) :: sections(:)         !! sections
-      type(material_type), intent(in) :: materials(:)       !! materials
+      class(point_fields_type), intent(inout) :: self
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       real(dp), intent(in) :: points(:, :, :)               !! (2, most, kinds) xi, eta
       real(dp), intent(in) :: weights(:, :)                 !! (most, kinds)
@@ -208,8 +208,8 @@ contains
 
    !> Stress of an element at its points along x and y, eq. (1.5).
    pure subroutine stress(self, mesh, element, displacement, temperature, values)
-      class(point_fields_type), intent(in) :: self   !! the points
-      type(mesh_type), intent(in) :: mesh            !! the mesh
+      class(point_fields_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: displacement(:, :)     !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
@@ -269,8 +269,8 @@ contains
 
    !> Heat flux of an element at its points along x and y, eq. (1.4).
    pure subroutine heat_flux(self, mesh, element, temperature, values)
-      class(point_fields_type), intent(in) :: self   !! the points
-      type(mesh_type), intent(in) :: mesh            !! the mesh
+      class(point_fields_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: temperature(:)         !! (nodes) [temperature]
       real(dp), intent(inout) :: values(most, 2)     !! its points first; x, y [power/length^2]

@@ -35,7 +35,7 @@ contains
    !> eps_zz is eliminated by sigma_zz = 0, and its row and column are zero.
    pure function elasticity_in(plane, material, axes) result(e)
       integer, intent(in) :: plane                  !! plane_strain, ...
-      type(material_type), intent(in) :: material   !! the material
+      type(material_type), intent(in) :: material
       real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
       real(dp) :: e(4, 4)                           !! [stress]
       real(dp) :: across(4)
@@ -55,7 +55,7 @@ contains
    !> sigma_zz = 0.
    pure function thermal_modulus_in(plane, material, axes) result(beta)
       integer, intent(in) :: plane                  !! plane_strain, ...
-      type(material_type), intent(in) :: material   !! the material
+      type(material_type), intent(in) :: material
       real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
       real(dp) :: beta(4)                           !! xx, yy, zz, xy [stress/temperature]
       real(dp) :: e(4, 4)
@@ -70,7 +70,7 @@ contains
 
    !> K of (1.4).
    pure function conductivity_in(material, axes) result(k)
-      type(material_type), intent(in) :: material   !! the material
+      type(material_type), intent(in) :: material
       real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
       real(dp) :: k(2, 2)                           !! [power/(length temperature)]
 

@@ -18,9 +18,9 @@ contains
 
    !> K of all bodies, both triangles.
    pure function assemble_stiffness(mesh, sections, materials, orientations) result(stiffness)
-      type(mesh_type), intent(in) :: mesh                    !! the mesh
-      type(section_type), intent(in) :: sections(:)          !! sections
-      type(material_type), intent(in) :: materials(:)        !! materials
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
       type(sparse_matrix_type) :: stiffness                  !! (2 nodes, 2 nodes) [stress length]
       type(triplet_list_type) :: list
@@ -49,9 +49,9 @@ contains
 
    !> Nodal forces per unit nodal temperature over the natural state, the right-hand side of (1.1).
    pure function assemble_thermal_load(mesh, sections, materials, orientations) result(load)
-      type(mesh_type), intent(in) :: mesh                    !! the mesh
-      type(section_type), intent(in) :: sections(:)          !! sections
-      type(material_type), intent(in) :: materials(:)        !! materials
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
       type(sparse_matrix_type) :: load                       !! (2 nodes, nodes)
       type(triplet_list_type) :: list

@@ -14,7 +14,7 @@ contains
    !> Largest magnitude of a principal strain, thermal strain included, at the points where stress
    !> is recovered.
    pure subroutine largest_strain(mesh, displacement, strain, element)
-      type(mesh_type), intent(in) :: mesh           !! the mesh
+      type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: displacement(:, :)    !! (2, nodes) [length]
       real(dp), intent(out) :: strain               !! [-]
       integer, intent(out) :: element               !! index of the element that has it

@@ -28,9 +28,9 @@ contains
 
    !> K of (3.3), both triangles.
    pure function assemble_conduction(mesh, sections, materials, orientations) result(conduction)
-      type(mesh_type), intent(in) :: mesh                    !! the mesh
-      type(section_type), intent(in) :: sections(:)          !! sections
-      type(material_type), intent(in) :: materials(:)        !! materials
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
       type(sparse_matrix_type) :: conduction                 !! (nodes, nodes) [power/temperature]
       type(triplet_list_type) :: list

@@ -33,7 +33,7 @@ module linear_solver
       !> solver failed.
       subroutine factor_interface(self, lower, tail, error)
          import :: linear_solver_type, sparse_matrix_type, error_type
-         class(linear_solver_type), intent(inout) :: self   !! the solver
+         class(linear_solver_type), intent(inout) :: self
          type(sparse_matrix_type), intent(in) :: lower      !! lower triangle by rows
          integer, intent(in) :: tail                        !! number of tail unknowns
          type(error_type), allocatable, intent(out) :: error !! failure
@@ -42,7 +42,7 @@ module linear_solver
       !> Right-hand sides condensed on the tail: f_tail - K_tail,lead K_lead^-1 f_lead.
       subroutine condense_interface(self, rhs, condensed)
          import :: linear_solver_type, dp
-         class(linear_solver_type), intent(in) :: self      !! the solver
+         class(linear_solver_type), intent(in) :: self
          real(dp), intent(in) :: rhs(:, :)                  !! (order, columns)
          real(dp), intent(out) :: condensed(:, :)           !! (tail, columns)
       end subroutine condense_interface
@@ -51,7 +51,7 @@ module linear_solver
       !> x_tail.
       subroutine recover_interface(self, rhs, on_tail, solution)
          import :: linear_solver_type, dp
-         class(linear_solver_type), intent(in) :: self      !! the solver
+         class(linear_solver_type), intent(in) :: self
          real(dp), intent(in) :: rhs(:, :) !! (order, columns); tail rows are not used
          real(dp), intent(in) :: on_tail(:, :)              !! (tail, columns)
          real(dp), intent(out) :: solution(:, :)            !! (order, columns)
@@ -60,7 +60,7 @@ module linear_solver
       !> Frees what the solver holds outside Fortran.
       subroutine release_interface(self)
          import :: linear_solver_type
-         class(linear_solver_type), intent(inout) :: self   !! the solver
+         class(linear_solver_type), intent(inout) :: self
       end subroutine release_interface
    end interface
 

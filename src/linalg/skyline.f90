@@ -32,7 +32,7 @@ contains
 
    !> Takes over a symmetric matrix.
    pure subroutine set_matrix(self, lower, tail)
-      class(skyline_type), intent(inout) :: self     !! the skyline
+      class(skyline_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower  !! lower triangle by rows, in the final order
       integer, intent(in) :: tail                    !! number of tail columns, the last ones
       integer :: i, j, k

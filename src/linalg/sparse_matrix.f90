@@ -34,7 +34,7 @@ contains
 
    !> y = A x.
    pure function multiply(self, x) result(y)
-      class(sparse_matrix_type), intent(in) :: self !! A
+      class(sparse_matrix_type), intent(in) :: self
       real(dp), intent(in) :: x(:)                  !! (columns)
       real(dp) :: y(self%row_count)                 !! (rows)
       real(dp) :: total
@@ -51,7 +51,7 @@ contains
 
    !> Makes room for entries; what the list held is dropped.
    pure subroutine reserve(self, capacity)
-      class(triplet_list_type), intent(inout) :: self !! the list
+      class(triplet_list_type), intent(inout) :: self
       integer, intent(in) :: capacity                 !! entries expected
 
       self%length = 0
@@ -61,7 +61,7 @@ contains
 
    !> Adds one entry; the list must have room for it.
    pure subroutine add(self, row, column, value)
-      class(triplet_list_type), intent(inout) :: self !! the list
+      class(triplet_list_type), intent(inout) :: self
       integer, intent(in) :: row                      !! row
       integer, intent(in) :: column                   !! column
       real(dp), intent(in) :: value                   !! value
@@ -74,7 +74,7 @@ contains
 
    !> Adds a block, such as an element's matrix.
    pure subroutine add_block(self, rows, columns, block)
-      class(triplet_list_type), intent(inout) :: self !! the list
+      class(triplet_list_type), intent(inout) :: self
       integer, intent(in) :: rows(:)                  !! (m) rows
       integer, intent(in) :: columns(:)               !! (n) columns
       real(dp), intent(in) :: block(:, :)             !! (m, n) values

@@ -55,7 +55,7 @@ contains
 
    !> Solves with the factors.
    pure subroutine solve(self, x)
-      class(tail_factors_type), intent(in) :: self !! the factors
+      class(tail_factors_type), intent(in) :: self
       real(dp), intent(inout) :: x(:)              !! (tail) right-hand side in, solution out
       integer :: j
 

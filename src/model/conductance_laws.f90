@@ -37,7 +37,7 @@ contains
    !> omega of a pair, eq. (1.8). A side that was not given: an open pair carries no heat, a closed
    !> pair has the open law's value at gamma = 0. A negative gap or pressure counts as zero.
    pure function conductance(law, closed, gap, pressure) result(omega)
-      type(conductance_law_type), intent(in) :: law !! the law
+      type(conductance_law_type), intent(in) :: law
       logical, intent(in) :: closed                 !! whether the pair is closed
       real(dp), intent(in) :: gap                   !! gamma >= 0 [length]
       real(dp), intent(in) :: pressure              !! p >= 0 in compression [stress]
@@ -61,7 +61,7 @@ contains
    !> towards larger gaps or pressures where the law has a kink; 0 below zero, and at p = 0 for
    !> n < 1, where it is not bounded.
    pure function conductance_derivative(law, closed, gap, pressure) result(slope)
-      type(conductance_law_type), intent(in) :: law !! the law
+      type(conductance_law_type), intent(in) :: law
       logical, intent(in) :: closed                 !! whether the pair is closed
       real(dp), intent(in) :: gap                   !! gamma >= 0 [length]
       real(dp), intent(in) :: pressure              !! p >= 0 in compression [stress]
@@ -87,7 +87,7 @@ contains
    !> Gap of an open pair, or pressure of a closed one, that has a given omega; negative where there
    !> is none, or where the law is constant.
    pure function conductance_inverse(law, closed, omega) result(at)
-      type(conductance_law_type), intent(in) :: law !! the law
+      type(conductance_law_type), intent(in) :: law
       logical, intent(in) :: closed                 !! whether the pair is closed
       real(dp), intent(in) :: omega                 !! [power/(length^2 temperature)]
       real(dp) :: at                                !! gamma [length] or p [stress]
@@ -123,7 +123,7 @@ contains
 
    !> Jump of omega from the open to the closed side at gamma = p = 0; zero for a continuous law.
    pure function law_jump(law) result(jump)
-      type(conductance_law_type), intent(in) :: law !! the law
+      type(conductance_law_type), intent(in) :: law
       real(dp) :: jump                              !! closed value less open value
 
       jump = conductance(law, .true., 0.0_dp, 0.0_dp) - conductance(law, .false., 0.0_dp, 0.0_dp)
@@ -131,7 +131,7 @@ contains
 
    !> Whether the law jumps at gamma = p = 0 by more than rounding.
    elemental function law_jumps(law) result(jumps)
-      type(conductance_law_type), intent(in) :: law !! the law
+      type(conductance_law_type), intent(in) :: law
       logical :: jumps                              !! both sides have values of their own there
       real(dp), parameter :: rounding = 1.0e-12_dp
 
@@ -141,7 +141,7 @@ contains
 
    !> What omega loses beyond the last gap of a table that ends there; zero for any other law.
    pure function table_jump(law) result(jump)
-      type(conductance_law_type), intent(in) :: law !! the law
+      type(conductance_law_type), intent(in) :: law
       real(dp) :: jump                              !! [power/(length^2 temperature)]
 
       jump = 0.0_dp
@@ -150,7 +150,7 @@ contains
 
    !> Whether omega is the same at every gap and pressure.
    elemental logical function is_constant(law)
-      type(conductance_law_type), intent(in) :: law !! the law
+      type(conductance_law_type), intent(in) :: law
 
       is_constant = .false.
       if (abs(law_jump(law)) > 0.0_dp .or. law%open_kind == law_gas) return

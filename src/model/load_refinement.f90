@@ -16,9 +16,9 @@ contains
 
    !> Refines the loads of all steps.
    subroutine refine_loads(division, mesh, steps)
-      type(division_type), intent(in) :: division   !! the division
+      type(division_type), intent(in) :: division
       type(mesh_type), intent(in) :: mesh           !! the mesh before
-      type(step_type), intent(inout) :: steps(:)    !! the steps
+      type(step_type), intent(inout) :: steps(:)
       type(load_type), allocatable :: refined(:)
       integer :: s
 

@@ -40,7 +40,7 @@ contains
 
    !> Keeps the constants of a property; those of an earlier card of the same property end.
    pure subroutine set_constants(material, property, names, values)
-      type(material_type), intent(inout) :: material    !! the material
+      type(material_type), intent(inout) :: material
       character(*), intent(in) :: property              !! keyword of the card
       character(*), intent(in) :: names(:)              !! (constants) what they are called
       real(dp), intent(in) :: values(:)                 !! (constants) their values

@@ -125,7 +125,7 @@ contains
    !> Index of the new node on a side of an element: next to one of the side's corners where it has
    !> three nodes, at its middle where it has two.
    pure integer function side_node(division, element, side, corner)
-      type(division_type), intent(in) :: division   !! the division
+      type(division_type), intent(in) :: division
       integer, intent(in) :: element                !! the element
       integer, intent(in) :: side                   !! 1..element_corner_count
       integer, intent(in) :: corner                 !! node at the corner
@@ -139,7 +139,7 @@ contains
    !> Index of a new node inside an element: of a quadrilateral 1 at the centre, 1 + f half way to
    !> side f; of a triangle with six nodes i half way between the midside nodes near corner i.
    pure integer function inner_node(division, element, position)
-      type(division_type), intent(in) :: division   !! the division
+      type(division_type), intent(in) :: division
       integer, intent(in) :: element                !! the element
       integer, intent(in) :: position               !! 1..inner_count
 
@@ -176,7 +176,7 @@ contains
 
    !> Values at the old nodes and, by the shape functions, at the new ones.
    pure function refined_values(division, mesh, values) result(refined)
-      type(division_type), intent(in) :: division      !! the division
+      type(division_type), intent(in) :: division
       type(mesh_type), intent(in) :: mesh              !! the mesh before
       real(dp), intent(in) :: values(:)                !! (nodes) values before
       real(dp) :: refined(division%nodes_after)        !! values
@@ -206,7 +206,7 @@ contains
    !> The transpose of refined_values: what acts at the new nodes, shared by the old ones as the
    !> shape functions are.
    pure function restricted_values(division, mesh, values) result(restricted)
-      type(division_type), intent(in) :: division      !! the division
+      type(division_type), intent(in) :: division
       type(mesh_type), intent(in) :: mesh              !! the mesh before
       real(dp), intent(in) :: values(:)                !! (nodes after) values such as forces
       real(dp) :: restricted(division%nodes)           !! values at the old nodes
@@ -238,7 +238,7 @@ contains
    !> Members of a set of nodes, old and new: a new node belongs to it if all nodes of the side, or
    !> of the element, that it lies on do.
    pure function refined_members(division, mesh, member) result(refined)
-      type(division_type), intent(in) :: division      !! the division
+      type(division_type), intent(in) :: division
       type(mesh_type), intent(in) :: mesh              !! the mesh before
       logical, intent(in) :: member(:)                 !! (nodes) whether a node is in the set
       logical :: refined(division%nodes_after)         !! alike

@@ -1,4 +1,4 @@
-!> What is known of a reported quantity besides its value: an entry of the tables in src/quantities,
+!> What is known of a reported quantity besides its value: an entry of the tables in src/records,
 !> which hold the quantities themselves.
 module quantity_types
    use kinds, only: dp

@@ -31,7 +31,7 @@ contains
       type(variation_type), intent(in) :: variation   !! what is other
       integer, intent(inout) :: order                 !! order of the elements
       integer, intent(inout) :: levels                !! refinements that are to be made
-      type(model_type), intent(inout) :: model        !! the model
+      type(model_type), intent(inout) :: model
       integer :: s
 
       model%written_order = order

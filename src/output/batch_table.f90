@@ -79,7 +79,7 @@ contains
    subroutine write_batch(folder, outcomes, error)
       character(*), intent(in) :: folder                   !! folder of the results
       type(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
-      type(error_type), allocatable, intent(out) :: error  !! see above
+      type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: path, working_path, text
       integer :: i
 

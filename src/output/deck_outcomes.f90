@@ -44,7 +44,7 @@ contains
    !> Counts the passes of an increment; the process of a deck of a batch reports them.
    subroutine note(self, record, accepted)
       class(deck_outcome_type), intent(inout) :: self     !! the run
-      type(increment_record_type), intent(in) :: record   !! the increment
+      type(increment_record_type), intent(in) :: record
       integer, intent(in) :: accepted                     !! increments accepted so far
 
       self%increments = accepted

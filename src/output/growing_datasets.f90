@@ -53,7 +53,7 @@ contains
 
    !> Adds rows.
    pure subroutine append(self, values)
-      class(growing_dataset_type), intent(inout) :: self  !! the dataset
+      class(growing_dataset_type), intent(inout) :: self
       real(dp), intent(in) :: values(:)                   !! rows, one after the other
       real(dp), allocatable :: larger(:)
 
@@ -68,7 +68,7 @@ contains
 
    !> Bytes that wait in memory.
    pure function bytes_in(datasets) result(bytes)
-      type(growing_dataset_type), intent(in) :: datasets(:)  !! the datasets
+      type(growing_dataset_type), intent(in) :: datasets(:)
       integer(long) :: bytes                                 !! bytes of their rows in memory
 
       bytes = 8_long*sum(int(datasets%used, long))
@@ -77,7 +77,7 @@ contains
    !> Writes the waiting rows of all datasets.
    !> Error: status_internal, when they cannot be written.
    subroutine flush_sets(datasets, file, error)
-      type(growing_dataset_type), intent(inout) :: datasets(:) !! the datasets
+      type(growing_dataset_type), intent(inout) :: datasets(:)
       integer(hid_t), intent(in) :: file                       !! the open file
       type(error_type), allocatable, intent(out) :: error      !! what went wrong
       integer :: i
@@ -91,7 +91,7 @@ contains
    !> Writes the waiting rows behind those in the file; creates the dataset the first time.
    !> Error: status_internal, when they cannot be written.
    subroutine flush_rows(self, file, error)
-      class(growing_dataset_type), target, intent(inout) :: self !! the dataset
+      class(growing_dataset_type), target, intent(inout) :: self
       integer(hid_t), intent(in) :: file                         !! the open file
       type(error_type), allocatable, intent(out) :: error        !! what went wrong
       integer(hsize_t) :: offset(2), extent(2), whole(2)

@@ -49,7 +49,7 @@ contains
    !> Locks the file, so that no other run of the same name writes it; its contents stay.
    !> Error: status_internal, when it cannot be written or another run has it.
    subroutine reserve(self, path, has_lock, error)
-      class(listing_type), intent(inout) :: self          !! the listing
+      class(listing_type), intent(inout) :: self
       character(*), intent(in) :: path                    !! path of the file
       logical, intent(out) :: has_lock                    !! false where there are no locks
       type(error_type), allocatable, intent(out) :: error !! what went wrong
@@ -61,11 +61,11 @@ contains
    !> Begins the reserved listing: heading, echo of the deck, defaults, what is modelled.
    !> Error: status_internal, when the file cannot be written.
    subroutine open_listing(self, model, pairs, cards, run, error)
-      class(listing_type), intent(inout) :: self          !! the listing
-      type(model_type), intent(in) :: model               !! the model
+      class(listing_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(string_type), intent(in) :: cards(:)           !! card images as read
-      type(run_summary_type), intent(in) :: run           !! the run
+      type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call empty_file(self%descriptor, self%path, error)
@@ -83,7 +83,7 @@ contains
 
    !> Whether the file holds anything of this run.
    pure logical function is_begun(self)
-      class(listing_type), intent(in) :: self             !! the listing
+      class(listing_type), intent(in) :: self
 
       is_begun = allocated(self%warnings)
    end function is_begun
@@ -102,9 +102,9 @@ contains
    !> Adds the block of an accepted increment, with its PRINT tables where these are due.
    !> Error: status_internal, when the file cannot be written.
    subroutine add(self, record, model, pairs, error)
-      class(listing_type), intent(inout) :: self          !! the listing
-      type(increment_record_type), intent(in) :: record   !! the increment
-      type(model_type), intent(in) :: model               !! the model
+      class(listing_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
@@ -136,7 +136,7 @@ contains
    !> Says why the run ended early; prints the attempts at an increment that failed, and the passes
    !> of the last one.
    subroutine add_failure(self, reason, record, kept)
-      class(listing_type), intent(inout) :: self             !! the listing
+      class(listing_type), intent(inout) :: self
       character(*), intent(in) :: reason                     !! what went wrong
       type(increment_record_type), intent(in) :: record      !! that increment; empty for none
       character(*), intent(in) :: kept                       !! what the results hold, a sentence
@@ -153,7 +153,7 @@ contains
    !> Ends the listing, where it is open, with the reason why the run cannot go on; whether there is
    !> room for that is not asked.
    subroutine break_off(self, reason)
-      class(listing_type), intent(inout) :: self             !! the listing
+      class(listing_type), intent(inout) :: self
       character(*), intent(in) :: reason                     !! what went wrong
       type(error_type), allocatable :: ignored
 
@@ -165,8 +165,8 @@ contains
 
    !> Takes the warnings of the run as a whole.
    subroutine warn(self, warnings)
-      class(listing_type), intent(inout) :: self             !! the listing
-      type(string_type), intent(in) :: warnings(:)           !! the warnings
+      class(listing_type), intent(inout) :: self
+      type(string_type), intent(in) :: warnings(:)
       integer :: i
 
       do i = 1, size(warnings)
@@ -177,8 +177,8 @@ contains
    !> Ends the listing that is open: verdicts, times, zone diagrams, all warnings again.
    !> Error: status_internal, when its end cannot be written.
    subroutine finish(self, model, pairs, outcomes, run, error)
-      class(listing_type), intent(inout) :: self          !! the listing
-      type(model_type), intent(in) :: model               !! the model
+      class(listing_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(outcome_type), intent(in) :: outcomes(:)       !! what came of the *VERIFY cards
       type(run_summary_type), intent(in) :: run           !! the whole run
@@ -207,7 +207,7 @@ contains
 
    !> Frees the file; one in which nothing was written is removed. One that is not reserved stays.
    subroutine close_listing(self)
-      class(listing_type), intent(inout) :: self          !! the listing
+      class(listing_type), intent(inout) :: self
 
       call self%text%close()
       if (self%descriptor >= 0) call unlock_file(self%path, self%descriptor)

@@ -22,7 +22,7 @@ contains
    !> relative to stress and heat flux, at the end of a step.
    subroutine print_body_errors(unit, record)
       integer, intent(in) :: unit                         !! unit of the listing
-      type(increment_record_type), intent(in) :: record   !! the increment
+      type(increment_record_type), intent(in) :: record
       type(quantity_type), allocatable :: errors(:)
       real(dp), allocatable :: values(:)
       character(:), allocatable :: line
@@ -50,7 +50,7 @@ contains
    subroutine print_interface_errors(unit, name, errors)
       integer, intent(in) :: unit                          !! unit of the listing
       character(*), intent(in) :: name                     !! name of the interface
-      type(interface_errors_type), intent(in) :: errors    !! its errors
+      type(interface_errors_type), intent(in) :: errors
       real(dp) :: total(size(estimated))
       integer :: q, width
 

@@ -24,7 +24,7 @@ contains
    !> Prints which increment it is and how it converged.
    subroutine print_increment(unit, record)
       integer, intent(in) :: unit                         !! unit of the listing
-      type(increment_record_type), intent(in) :: record   !! the increment
+      type(increment_record_type), intent(in) :: record
       integer :: passes
 
       write (unit, '(/, a, i0, a, i0, 4a)') 'INCREMENT ', record%increment, '   STEP ', &
@@ -141,7 +141,7 @@ contains
    !> Prints what balances, and the work of the re-factorisation.
    subroutine print_balances(unit, record, analysis)
       integer, intent(in) :: unit                         !! unit of the listing
-      type(increment_record_type), intent(in) :: record   !! the increment
+      type(increment_record_type), intent(in) :: record
       integer, intent(in) :: analysis                     !! one of the analysis_* constants
 
       if (history_line(needs_nothing, record) /= '') write (unit, '(a)') &

@@ -17,9 +17,9 @@ contains
    !> Prints the summary.
    subroutine print_model(unit, model, pairs, run)
       integer, intent(in) :: unit                         !! unit of the listing
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
-      type(run_summary_type), intent(in) :: run           !! the run
+      type(run_summary_type), intent(in) :: run
       integer :: i
 
       call print_title(unit, 'WHAT IS MODELLED')

@@ -17,8 +17,8 @@ contains
    !> Prints the tables that are due at an increment.
    subroutine print_requested(unit, record, model)
       integer, intent(in) :: unit                         !! unit of the listing
-      type(increment_record_type), intent(in) :: record   !! the increment
-      type(model_type), intent(in) :: model               !! the model
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
       integer :: i
 
       associate (step => model%steps(record%step))

@@ -77,7 +77,7 @@ contains
    !> Prints what came of the *VERIFY cards.
    subroutine print_verdicts(unit, checks, outcomes)
       integer, intent(in) :: unit                    !! unit of the listing
-      type(verify_type), intent(in) :: checks(:)     !! the checks
+      type(verify_type), intent(in) :: checks(:)
       type(outcome_type), intent(in) :: outcomes(:)  !! what came of each
       integer :: i
 

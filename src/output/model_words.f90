@@ -12,7 +12,7 @@ contains
 
    !> The constants of a material.
    pure function material_words(material) result(words)
-      type(material_type), intent(in) :: material   !! the material
+      type(material_type), intent(in) :: material
       character(:), allocatable :: words            !! such as Young's modulus 2E5, ...
       integer :: i
 
@@ -43,7 +43,7 @@ contains
 
    !> The open side of a law.
    pure function open_law_words(law) result(words)
-      type(conductance_law_type), intent(in) :: law   !! the law
+      type(conductance_law_type), intent(in) :: law
       character(:), allocatable :: words              !! such as A/(B + gap), A = 1, B = 1E-3
 
       select case (law%open_kind)
@@ -59,7 +59,7 @@ contains
 
    !> The closed side of a law.
    pure function closed_law_words(law) result(words)
-      type(conductance_law_type), intent(in) :: law   !! the law
+      type(conductance_law_type), intent(in) :: law
       character(:), allocatable :: words              !! such as C0 + C1 p^n, C0 = 1, C1 = 2, n = 1
 
       select case (law%closed_kind)

@@ -24,7 +24,7 @@ contains
    !> Error: status_internal, when the system opens no file in memory.
    subroutine open_text(self, error)
       class(printed_text_type), intent(inout) :: self     !! the text, empty
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
       character(200) :: reason
       integer :: status
 
@@ -37,7 +37,7 @@ contains
 
    !> Takes all lines that were printed since the last time.
    subroutine take(self, lines)
-      class(printed_text_type), intent(inout) :: self   !! the text
+      class(printed_text_type), intent(inout) :: self
       character(:), allocatable, intent(out) :: lines   !! with their ends, and printable
       character(:), allocatable :: contents, reason
       integer :: first, length, n
@@ -77,7 +77,7 @@ contains
 
    !> Ends the text; what was not taken is lost.
    subroutine close_text(self)
-      class(printed_text_type), intent(inout) :: self   !! the text
+      class(printed_text_type), intent(inout) :: self
 
       if (self%descriptor < 0) return
       close (self%unit)

@@ -66,7 +66,7 @@ contains
    !> Takes an increment that was accepted.
    subroutine take(self, record)
       class(progress_type), intent(inout) :: self         !! the line
-      type(increment_record_type), intent(in) :: record   !! the increment
+      type(increment_record_type), intent(in) :: record
       integer :: zones(3), i
 
       if (.not. self%is_shown) return

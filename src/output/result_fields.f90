@@ -52,7 +52,7 @@ contains
 
    !> Prepares the datasets.
    subroutine start(self, pairs, point_node, cells, has, expected)
-      class(field_results_type), intent(inout) :: self   !! the fields
+      class(field_results_type), intent(inout) :: self
       type(contact_pairs_type), intent(in) :: pairs(:)   !! pairs of every interface
       integer, intent(in) :: point_node(:)               !! (points) node index of each point
       integer, intent(in) :: cells                       !! number of elements
@@ -90,8 +90,8 @@ contains
 
    !> Adds the fields of an increment.
    subroutine append(self, record, pairs)
-      class(field_results_type), intent(inout) :: self   !! the fields
-      type(increment_record_type), intent(in) :: record  !! the increment
+      class(field_results_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
       type(contact_pairs_type), intent(in) :: pairs(:)   !! pairs of every interface
       integer :: i
 
@@ -115,7 +115,7 @@ contains
    !> Creates the groups that the datasets go into.
    !> Error: status_internal, when HDF5 refuses.
    subroutine create_groups(self, file, error)
-      class(field_results_type), intent(in) :: self       !! the fields
+      class(field_results_type), intent(in) :: self
       integer(hid_t), intent(in) :: file                  !! the open file
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
@@ -129,7 +129,7 @@ contains
    !> Gives the offsets of Steps all their names, once their datasets are in the file.
    !> Error: status_internal, when HDF5 refuses.
    subroutine write_links(self, file, error)
-      class(field_results_type), intent(in) :: self       !! the fields
+      class(field_results_type), intent(in) :: self
       integer(hid_t), intent(in) :: file                  !! the open file
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(*), parameter :: zeros = steps_group//'PartOffsets'
@@ -163,7 +163,7 @@ contains
    !> Writes the number of increments that the file holds.
    !> Error: status_internal, when HDF5 refuses.
    subroutine write_count(self, file, error)
-      class(field_results_type), intent(in) :: self       !! the fields
+      class(field_results_type), intent(in) :: self
       integer(hid_t), intent(in) :: file                  !! the open file
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 

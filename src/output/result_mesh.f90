@@ -33,7 +33,7 @@ contains
    !> Error: status_internal, when HDF5 refuses.
    subroutine write_result_mesh(file, model, point_node, element_points, error)
       integer(hid_t), intent(in) :: file                  !! the open file
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(error_type), allocatable, intent(out) :: error !! what went wrong

@@ -19,7 +19,7 @@ contains
    subroutine write_run(file, run, model, seconds_write, error)
       integer(hid_t), intent(in) :: file                  !! the open file
       type(run_summary_type), intent(in) :: run           !! the run so far
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       real(dp), intent(in) :: seconds_write               !! writing not yet in run [s]
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 

@@ -95,7 +95,7 @@ contains
    !> Adds an increment.
    subroutine append_history(self, record)
       class(history_results_type), intent(inout) :: self  !! the group
-      type(increment_record_type), intent(in) :: record   !! the increment
+      type(increment_record_type), intent(in) :: record
       real(dp), allocatable :: values(:)
       integer :: i
 
@@ -233,7 +233,7 @@ contains
    subroutine append_errors(self, time, errors)
       class(error_results_type), intent(inout) :: self        !! the group
       real(dp), intent(in) :: time                            !! total time [time]
-      type(interface_errors_type), intent(in) :: errors(:)    !! (interfaces)
+      type(interface_errors_type), intent(in) :: errors(:)
       integer :: i, q
 
       call self%sets(1)%append([time])

@@ -81,7 +81,7 @@ contains
    !> Error: status_internal, when HDF5 does not start.
    subroutine open_results(self, model, pairs, point_node, element_points, cards, error)
       class(results_type), intent(inout) :: self          !! the writer
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
@@ -111,8 +111,8 @@ contains
    !> Error: status_internal, when a file cannot be written.
    subroutine append(self, record, model, pairs, run, error)
       class(results_type), intent(inout) :: self          !! the writer
-      type(increment_record_type), intent(in) :: record   !! the increment
-      type(model_type), intent(in) :: model               !! the model
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(run_summary_type), intent(in) :: run           !! the run so far
       type(error_type), allocatable, intent(out) :: error !! what went wrong
@@ -150,7 +150,7 @@ contains
    !> Error: status_internal, when a file cannot be written.
    subroutine finish(self, model, pairs, run, failed, error)
       class(results_type), intent(inout) :: self          !! the writer
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(iteration_record_type), intent(in) :: failed(:) !! passes of the increment that failed

@@ -40,8 +40,8 @@ contains
    !> Takes an accepted increment.
    subroutine take(self, record, model, pairs)
       class(run_judgement_type), intent(inout) :: self    !! what was seen
-      type(increment_record_type), intent(in) :: record   !! the increment
-      type(model_type), intent(in) :: model               !! the model
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       real(dp) :: strain
       integer :: element, i
@@ -80,7 +80,7 @@ contains
    !> What is to be said of the run.
    pure function warnings(self, model, pairs) result(lines)
       class(run_judgement_type), intent(in) :: self       !! what was seen
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(string_type), allocatable :: lines(:)          !! one a warning
       integer :: i

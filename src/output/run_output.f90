@@ -54,7 +54,7 @@ contains
    !> against other runs of the same name. They are left as they are; close the output in any case.
    !> Error: status_internal, when one cannot be written, or another run writes them.
    subroutine reserve(self, path, error)
-      class(run_output_type), intent(inout) :: self       !! the output
+      class(run_output_type), intent(inout) :: self
       character(*), intent(in) :: path                    !! path of the results without extension
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       logical :: has_lock
@@ -70,8 +70,8 @@ contains
    !> touches no other file yet. `run` is filled in before, but for its times and verdicts.
    !> Error: status_internal, when the listing cannot be written or HDF5 does not start.
    subroutine start(self, model, pairs, point_node, element_points, cards, error)
-      class(run_output_type), intent(inout) :: self       !! the output
-      type(model_type), intent(in) :: model               !! the model
+      class(run_output_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points of each element
@@ -92,9 +92,9 @@ contains
    !> Takes an accepted increment.
    !> Error: status_internal, when a file cannot be written.
    subroutine accept(self, record, model, pairs, error)
-      class(run_output_type), intent(inout) :: self       !! the output
-      type(increment_record_type), intent(in) :: record   !! the increment
-      type(model_type), intent(in) :: model               !! the model
+      class(run_output_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       real(dp) :: since
@@ -125,7 +125,7 @@ contains
 
    !> Takes why the run ended early, and the increment at which it did not converge.
    subroutine fail(self, reason, record)
-      class(run_output_type), intent(inout) :: self          !! the output
+      class(run_output_type), intent(inout) :: self
       character(*), intent(in) :: reason                     !! what went wrong, one sentence
       type(increment_record_type), intent(in) :: record      !! attempts and passes; empty for none
 
@@ -138,8 +138,8 @@ contains
    !> verdicts.
    !> Error: status_internal, when a file cannot be written.
    subroutine finish(self, model, pairs, error)
-      class(run_output_type), intent(inout) :: self       !! the output
-      type(model_type), intent(in) :: model               !! the model
+      class(run_output_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: warnings(:)
@@ -162,7 +162,7 @@ contains
 
    !> Ends the listing with the reason why the other files could not be written.
    subroutine break_off(self, reason)
-      class(run_output_type), intent(inout) :: self       !! the output
+      class(run_output_type), intent(inout) :: self
       character(*), intent(in) :: reason                  !! what went wrong, one sentence
 
       call self%progress%clear()
@@ -171,7 +171,7 @@ contains
 
    !> Frees the files.
    subroutine close_output(self)
-      class(run_output_type), intent(inout) :: self       !! the output
+      class(run_output_type), intent(inout) :: self
 
       call self%listing%close()
    end subroutine close_output
@@ -179,7 +179,7 @@ contains
    !> One line for each *VERIFY card that failed.
    function failed_checks(self, model) result(lines)
       class(run_output_type), intent(in) :: self        !! the output, finished
-      type(model_type), intent(in) :: model             !! the model
+      type(model_type), intent(in) :: model
       type(string_type), allocatable :: lines(:)        !! what was expected and what was found
       integer :: i
 
@@ -207,14 +207,14 @@ contains
 
    !> Whether the listing holds anything of this run.
    pure logical function is_begun(self)
-      class(run_output_type), intent(in) :: self   !! the output
+      class(run_output_type), intent(in) :: self
 
       is_begun = self%listing%is_begun()
    end function is_begun
 
    !> Path of the listing, or nothing before it is reserved.
    pure function listing_path(self) result(path)
-      class(run_output_type), intent(in) :: self   !! the output
+      class(run_output_type), intent(in) :: self
       character(:), allocatable :: path
 
       path = or_blank(self%listing%path)
@@ -222,7 +222,7 @@ contains
 
    !> Path of the file that is renamed once it is whole, or nothing before it has a name.
    pure function working_path(self) result(path)
-      class(run_output_type), intent(in) :: self   !! the output
+      class(run_output_type), intent(in) :: self
       character(:), allocatable :: path
 
       path = or_blank(self%results%file%working_path)
@@ -230,7 +230,7 @@ contains
 
    !> Number of increments that the result file in place holds.
    pure integer function published(self)
-      class(run_output_type), intent(in) :: self   !! the output
+      class(run_output_type), intent(in) :: self
 
       published = self%results%published
    end function published
@@ -248,7 +248,7 @@ contains
 
    !> Number of increments that were accepted.
    pure function accepted(self) result(number)
-      class(run_output_type), intent(in) :: self   !! the output
+      class(run_output_type), intent(in) :: self
       integer :: number                            !! increments
 
       number = self%results%accepted

@@ -39,7 +39,7 @@ contains
 
    !> Makes this the `.sta` file; nothing is touched yet.
    subroutine start_increments(self, path)
-      class(status_file_type), intent(inout) :: self  !! the file
+      class(status_file_type), intent(inout) :: self
       character(*), intent(in) :: path                !! its path
 
       self%path = path
@@ -50,7 +50,7 @@ contains
 
    !> Makes this the `.cvg` file; nothing is touched yet.
    subroutine start_iterations(self, path)
-      class(status_file_type), intent(inout) :: self  !! the file
+      class(status_file_type), intent(inout) :: self
       character(*), intent(in) :: path                !! its path
       integer :: i
 
@@ -70,7 +70,7 @@ contains
    !> Adds the line of an accepted increment.
    subroutine add_increment(self, record)
       class(status_file_type), intent(inout) :: self      !! the `.sta` file
-      type(increment_record_type), intent(in) :: record   !! the increment
+      type(increment_record_type), intent(in) :: record
       character(line_length) :: line
 
       write (line, '(i0, t12, i4, 2a, i12, i11, 3a)') record%increment, record%step, &
@@ -119,7 +119,7 @@ contains
    !> Tries whether the file can be written, and leaves it as it is.
    !> Error: status_internal, when it cannot.
    subroutine reserve(self, error)
-      class(status_file_type), intent(in) :: self         !! the file
+      class(status_file_type), intent(in) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call try_file(self%path, error)
@@ -128,7 +128,7 @@ contains
    !> Empties the file of an earlier run and leaves it with its heading.
    !> Error: status_internal, when it cannot be written.
    subroutine empty(self, error)
-      class(status_file_type), intent(inout) :: self      !! the file
+      class(status_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call open_new_file(self%path, self%descriptor, error)
@@ -139,7 +139,7 @@ contains
    !> Writes the lines that wait; the file was emptied before.
    !> Error: status_internal, when they cannot be written.
    subroutine write_waiting(self, error)
-      class(status_file_type), intent(inout) :: self      !! the file
+      class(status_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(:), allocatable :: text
       integer :: i
@@ -154,7 +154,7 @@ contains
 
    !> Closes the file.
    subroutine close_file(self)
-      class(status_file_type), intent(inout) :: self   !! the file
+      class(status_file_type), intent(inout) :: self
 
       if (self%descriptor >= 0) call close_descriptor(self%descriptor)
       self%descriptor = -1

@@ -35,7 +35,7 @@ contains
    !> Prepares the outcomes: a check that is never reached fails.
    subroutine start(self, model)
       class(verifier_type), intent(inout) :: self   !! the checks
-      type(model_type), intent(in) :: model         !! the model
+      type(model_type), intent(in) :: model
       integer :: i
 
       allocate(self%outcomes(size(model%verifications)))
@@ -47,8 +47,8 @@ contains
    !> Judges the checks that name the time of an increment.
    subroutine judge(self, record, model, pairs, point_node)
       class(verifier_type), intent(inout) :: self         !! the checks
-      type(increment_record_type), intent(in) :: record   !! the increment
-      type(model_type), intent(in) :: model               !! the model
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
       type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
       real(dp), allocatable :: values(:)

@@ -20,9 +20,9 @@ contains
 
    !> The values that a check is about: one, or those of a set, of which the worst counts.
    subroutine values_asked_for(check, record, mesh, pairs, point_node, values, reason)
-      type(verify_type), intent(in) :: check               !! the check
-      type(increment_record_type), intent(in) :: record    !! the increment
-      type(mesh_type), intent(in) :: mesh                  !! the mesh
+      type(verify_type), intent(in) :: check
+      type(increment_record_type), intent(in) :: record
+      type(mesh_type), intent(in) :: mesh
       type(contact_pairs_type), intent(in) :: pairs(:)     !! pairs of every interface
       integer, intent(in) :: point_node(:)                 !! (points) node index of each point
       real(dp), allocatable, intent(out) :: values(:)      !! unallocated where there are none

@@ -48,7 +48,7 @@ contains
 
    !> Names the files; nothing is touched yet.
    subroutine start(self, path)
-      class(working_file_type), intent(inout) :: self  !! the file
+      class(working_file_type), intent(inout) :: self
       character(*), intent(in) :: path                 !! path of the file in place
 
       self%path = path
@@ -77,7 +77,7 @@ contains
    !> Opens the working copy: a new one at first, later a copy of the file in place.
    !> Error: status_internal, when it cannot be written.
    subroutine open_working(self, is_new, error)
-      class(working_file_type), intent(inout) :: self     !! the file
+      class(working_file_type), intent(inout) :: self
       logical, intent(out) :: is_new                      !! whether it is empty
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
@@ -99,7 +99,7 @@ contains
    !> Closes the working copy.
    !> Error: status_internal, when the rest cannot be written.
    subroutine close_working(self, error)
-      class(working_file_type), intent(inout) :: self     !! the file
+      class(working_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       self%is_open = .false.
@@ -110,7 +110,7 @@ contains
    !> Error: status_internal, when the system refuses. The copy then stays, under a name that no
    !> later run takes for a leftover, and the message says where.
    subroutine put_in_place(self, error)
-      class(working_file_type), intent(inout) :: self     !! the file
+      class(working_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(error_type), allocatable :: still_there
       character(:), allocatable :: kept
@@ -130,7 +130,7 @@ contains
    !> Whether an increment that has just been accepted is to be published: where that keeps the cost
    !> of it below a tenth of the run time, or where increments are long.
    function is_due(self) result(due)
-      class(working_file_type), intent(inout) :: self  !! the file
+      class(working_file_type), intent(inout) :: self
       logical :: due                                   !! whether it does
       real(dp) :: now
 
@@ -142,7 +142,7 @@ contains
 
    !> Books time that was spent on publishing.
    subroutine charge(self, since, ended)
-      class(working_file_type), intent(inout) :: self  !! the file
+      class(working_file_type), intent(inout) :: self
       real(dp), intent(in) :: since                    !! when the work began [s]
       logical, intent(in) :: ended                     !! whether the file is in place now
 
@@ -155,7 +155,7 @@ contains
 
    !> Gives the system's reason to an error of HDF5, which tells none.
    subroutine explain(self, error)
-      class(working_file_type), intent(in) :: self                    !! the file
+      class(working_file_type), intent(in) :: self
       type(error_type), allocatable, intent(inout) :: error           !! the error, if there is one
       character(:), allocatable :: reason
 
@@ -167,7 +167,7 @@ contains
 
    !> Drops the working copy, where there is one.
    subroutine discard(self)
-      class(working_file_type), intent(inout) :: self  !! the file
+      class(working_file_type), intent(inout) :: self
       type(error_type), allocatable :: ignored
 
       if (self%is_open) call self%close(ignored)

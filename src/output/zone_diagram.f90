@@ -52,8 +52,8 @@ contains
 
    !> Adds an increment.
    subroutine add(self, record, status)
-      class(zone_diagram_type), intent(inout) :: self    !! the diagram
-      type(increment_record_type), intent(in) :: record  !! the increment
+      class(zone_diagram_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
       integer, intent(in) :: status(:)                   !! (pairs) status of the pairs
 
       if (self%rows == 0) call resize(self, size(status), 64)
@@ -84,7 +84,7 @@ contains
 
    !> Prints the diagram, in several panels where the pairs do not fit side by side.
    subroutine print_diagram(self, unit, pairs)
-      class(zone_diagram_type), intent(in) :: self     !! the diagram
+      class(zone_diagram_type), intent(in) :: self
       integer, intent(in) :: unit                      !! unit of the listing
       type(contact_pairs_type), intent(in) :: pairs    !! pairs of the interface
       integer :: m, panels, width, first, last, row, k

@@ -146,7 +146,7 @@ contains
 
    !> All estimated errors together; those of the iteration count with the sign of the others.
    pure function total_errors(errors) result(total)
-      type(interface_errors_type), intent(in) :: errors    !! errors of an interface
+      type(interface_errors_type), intent(in) :: errors
       real(dp) :: total(size(estimated))                   !! as the errors of the mesh
 
       total = errors%mesh + errors%increment

@@ -37,7 +37,7 @@ contains
    !> A quantity at every point.
    pure function point_values(name, fields, point_node) result(values)
       character(*), intent(in) :: name                !! one of of_nodes or of_points
-      type(field_record_type), intent(in) :: fields   !! the fields
+      type(field_record_type), intent(in) :: fields
       integer, intent(in) :: point_node(:)            !! (points) node index of each point
       !> (values of each, points) in one row; empty where the step has none, and for a name that is
       !> not known.
@@ -86,7 +86,7 @@ contains
    !> A quantity of every element.
    pure function element_values(name, record) result(values)
       character(*), intent(in) :: name                     !! one of of_elements
-      type(increment_record_type), intent(in) :: record    !! the increment
+      type(increment_record_type), intent(in) :: record
       real(dp), allocatable :: values(:)                   !! (elements), or none
 
       allocate (values(0))

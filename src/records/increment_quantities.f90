@@ -48,7 +48,7 @@ contains
    !> A quantity of an increment.
    pure function history_value(name, record) result(value)
       character(*), intent(in) :: name                     !! one of of_history
-      type(increment_record_type), intent(in) :: record    !! the increment
+      type(increment_record_type), intent(in) :: record
       real(dp) :: value                                    !! NaN for a name that is not known
       integer :: passes
 
@@ -92,7 +92,7 @@ contains
    !> A quantity of the bodies.
    pure function body_values(name, record) result(values)
       character(*), intent(in) :: name                     !! one of of_bodies
-      type(increment_record_type), intent(in) :: record    !! the increment
+      type(increment_record_type), intent(in) :: record
       real(dp), allocatable :: values(:)                   !! (bodies), or none
 
       allocate (values(0))
@@ -108,7 +108,7 @@ contains
    !> A quantity of a pass.
    elemental function pass_value(name, pass) result(value)
       character(*), intent(in) :: name                     !! one of of_passes
-      type(iteration_record_type), intent(in) :: pass      !! the pass
+      type(iteration_record_type), intent(in) :: pass
       real(dp) :: value                                    !! NaN for a name that is not known
 
       select case (name)

@@ -139,7 +139,7 @@ contains
 
    !> Notes that the last attempt at an increment failed.
    pure subroutine note_failure(record, increment_size, reason)
-      type(increment_record_type), intent(inout) :: record   !! the increment
+      type(increment_record_type), intent(inout) :: record
       real(dp), intent(in) :: increment_size                 !! size of the attempt [time]
       character(*), intent(in) :: reason                     !! what failed
       type(attempt_record_type), allocatable :: more(:)

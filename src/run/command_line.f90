@@ -66,7 +66,7 @@ contains
    !> Error: status_deck, with what is wrong.
    subroutine read_command(command, error)
       type(command_type), intent(out) :: command          !! what is asked for
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: word
       integer :: i
 

@@ -32,10 +32,10 @@ contains
    subroutine prepare_deck(path, command, cards, model, simulation, error, variation)
       character(*), intent(in) :: path                    !! the deck as given
       type(command_type), intent(in) :: command           !! options of the command line
-      type(cards_type), intent(out) :: cards              !! its cards
-      type(model_type), intent(out) :: model              !! its model
+      type(cards_type), intent(out) :: cards
+      type(model_type), intent(out) :: model
       type(simulation_type), intent(inout) :: simulation  !! a fresh run
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
       type(variation_type), intent(in), optional :: variation   !! what is other than in the deck
       type(deck_report_type) :: report
       type(progress_type) :: progress

@@ -21,7 +21,7 @@ contains
    !> Pairs the surfaces of every *CONTACT PAIR; reports those that cannot be paired, and warns of
    !> those that may not be meant so.
    subroutine pair_all(model, interfaces, report)
-      type(model_type), intent(in) :: model                  !! the model
+      type(model_type), intent(in) :: model
       !> (interfaces) their pairs
       type(contact_pairs_type), allocatable, intent(out) :: interfaces(:)
       type(deck_report_type), intent(inout) :: report        !! receives errors and warnings

@@ -18,9 +18,9 @@ contains
    !> Fills in the summary of a run, but for its times and verdicts.
    subroutine describe_run(path, model, simulation, run)
       character(*), intent(in) :: path                 !! deck as the command line names it
-      type(model_type), intent(in) :: model            !! the model
+      type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation  !! the run, started
-      type(run_summary_type), intent(inout) :: run     !! the summary
+      type(run_summary_type), intent(inout) :: run
 
       run%version = program_version
       run%deck_path = path

@@ -37,8 +37,8 @@ contains
 
    !> Forms what stays.
    subroutine prepare(self, model)
-      class(recovery_type), intent(out) :: self   !! the recovery
-      type(model_type), intent(in) :: model       !! the model
+      class(recovery_type), intent(out) :: self
+      type(model_type), intent(in) :: model
       real(dp) :: points(2, most, kind_count), weights(most, kind_count)
       real(dp), allocatable :: position(:, :)
       integer :: counts(kind_count), e
@@ -59,12 +59,12 @@ contains
 
    !> Stress, averaged at the points, and its estimated error.
    pure subroutine recover_stress(self, model, displacement, temperature, stress, estimate)
-      class(recovery_type), intent(in) :: self             !! the recovery
-      type(model_type), intent(in) :: model                !! the model
+      class(recovery_type), intent(in) :: self
+      type(model_type), intent(in) :: model
       real(dp), intent(in) :: displacement(:, :)           !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp), allocatable, intent(out) :: stress(:, :)   !! (4, points) xx, yy, zz, xy [stress]
-      type(error_record_type), intent(out) :: estimate     !! its error
+      type(error_record_type), intent(out) :: estimate
       type(element_error_type) :: errors(size(model%mesh%element_kind))
       real(dp), allocatable :: samples(:, :), smooth(:, :)
       real(dp) :: values(most, 4), scale
@@ -86,11 +86,11 @@ contains
 
    !> Heat flux, averaged at the points, and its estimated error.
    pure subroutine recover_heat_flux(self, model, temperature, flux, estimate)
-      class(recovery_type), intent(in) :: self             !! the recovery
-      type(model_type), intent(in) :: model                !! the model
+      class(recovery_type), intent(in) :: self
+      type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)               !! (nodes) [temperature]
       real(dp), allocatable, intent(out) :: flux(:, :)     !! (2, points) x, y [power/length^2]
-      type(error_record_type), intent(out) :: estimate     !! its error
+      type(error_record_type), intent(out) :: estimate
       type(element_error_type) :: errors(size(model%mesh%element_kind))
       real(dp), allocatable :: samples(:, :), smooth(:, :)
       real(dp) :: values(most, 2), scale

@@ -15,8 +15,8 @@ contains
    !> Whether the result file takes the fields of an increment: every n-th of a step and its last,
    !> of n = 0 the last alone.
    pure logical function fields_are_due(record, model)
-      type(increment_record_type), intent(in) :: record   !! the increment
-      type(model_type), intent(in) :: model               !! the model
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
 
       fields_are_due = record%last_of_step .or. &
          is_nth(model%steps(record%step)%field_frequency, record)
@@ -25,16 +25,16 @@ contains
    !> Whether a table of the listing is due: at every n-th increment of a step and its last.
    pure logical function table_is_due(frequency, record)
       integer, intent(in) :: frequency                    !! n; 0 never
-      type(increment_record_type), intent(in) :: record   !! the increment
+      type(increment_record_type), intent(in) :: record
 
       table_is_due = frequency > 0 .and. (record%last_of_step .or. is_nth(frequency, record))
    end function table_is_due
 
    !> Whether a check is judged on an increment.
    pure logical function is_judged(check, record, model)
-      type(verify_type), intent(in) :: check              !! the check
-      type(increment_record_type), intent(in) :: record   !! the increment
-      type(model_type), intent(in) :: model               !! the model
+      type(verify_type), intent(in) :: check
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
 
       if (check%at_last) then
          is_judged = record%last_of_step .and. record%step == size(model%steps)
@@ -47,8 +47,8 @@ contains
    !> Whether anything asks for stress, heat flux or their errors. The last increment of a step
    !> always does: the listing tells its errors, and steps without mechanics keep its stress.
    pure logical function needs_recovery(record, model)
-      type(increment_record_type), intent(in) :: record   !! the increment
-      type(model_type), intent(in) :: model               !! the model
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
       integer :: i
 
       needs_recovery = record%last_of_step .or. fields_are_due(record, model)

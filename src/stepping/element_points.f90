@@ -18,8 +18,8 @@ contains
 
    !> One record for each *EL PRINT of a step; empty where its table is not due.
    pure function points_of_elements(model, step, state, increment) result(records)
-      type(model_type), intent(in) :: model                     !! the model
-      type(step_type), intent(in) :: step                       !! the step
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: state            !! state at the end
       type(increment_record_type), intent(in) :: increment      !! place of the increment
       type(element_points_record_type), allocatable :: records(:)

@@ -24,8 +24,8 @@ contains
 
    !> Heat that enters by loads and prescribed temperatures, and both balances of heat.
    pure subroutine balance_heat(bodies, model, loads, scheme, previous, next, record)
-      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
-      type(model_type), intent(in) :: model                   !! the model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(model_type), intent(in) :: model
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
       type(thermal_scheme_type), intent(in) :: scheme         !! coefficients of (3.4)
       type(solution_state_type), intent(in) :: previous       !! state at the start

@@ -25,8 +25,8 @@ contains
    !> The recovered displacements keep the contact conditions.
    !> Error: they do not.
    subroutine check_violation(record, error)
-      type(increment_record_type), intent(in) :: record     !! the increment
-      type(error_type), allocatable, intent(out) :: error   !! see above
+      type(increment_record_type), intent(in) :: record
+      type(error_type), allocatable, intent(out) :: error
 
       if (record%contact_violation <= sound_violation) return
       call set_error(error, status_no_convergence, &
@@ -37,8 +37,8 @@ contains
    !> The heat rates of the discrete equations balance.
    !> Error: they do not, the temperatures being so large that they have no digits left for them.
    subroutine check_balance(record, error)
-      type(increment_record_type), intent(in) :: record     !! the increment
-      type(error_type), allocatable, intent(out) :: error   !! see above
+      type(increment_record_type), intent(in) :: record
+      type(error_type), allocatable, intent(out) :: error
 
       if (record%heat_imbalance <= sound_imbalance) return
       call set_error(error, status_no_convergence, 'heat in and heat out differ by '// &
@@ -49,8 +49,8 @@ contains
    !> The fields and the contact state of an increment are numbers.
    !> Error: status_no_convergence, something overflowed.
    subroutine check_values(record, error)
-      type(increment_record_type), intent(in) :: record     !! the increment
-      type(error_type), allocatable, intent(out) :: error   !! see above
+      type(increment_record_type), intent(in) :: record
+      type(error_type), allocatable, intent(out) :: error
       integer :: i
 
       associate (fields => record%fields)
@@ -90,12 +90,12 @@ contains
    !> place of whatever error followed from it.
    !> Error: there are such bodies.
    subroutine check_heat(model, bodies, loads, step, next, error)
-      type(model_type), intent(in) :: model                       !! the model
-      type(reduced_bodies_type), intent(in) :: bodies     !! the bodies
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads                       !! loads of the increment
       integer, intent(in) :: step                                 !! the step
       type(solution_state_type), intent(in) :: next               !! state at its end
-      type(error_type), allocatable, intent(inout) :: error       !! see above
+      type(error_type), allocatable, intent(inout) :: error
       character(:), allocatable :: words
 
       associate (pairs => bodies%pairs)
@@ -111,8 +111,8 @@ contains
    !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
    !> and nothing holds, contact states of which friction allows several.
    subroutine warn_of_choices(model, bodies, contact, loads, next, record, undecided)
-      type(model_type), intent(in) :: model                     !! the model
-      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
       type(contact_workspace_type), intent(in) :: contact       !! of the solution
       type(loads_type), intent(in) :: loads                     !! supports of the increment
       type(solution_state_type), intent(in) :: next             !! state at its end

@@ -38,7 +38,7 @@ contains
    !> Enters the next step.
    pure subroutine enter_step(self, model)
       class(increment_control_type), intent(inout) :: self   !! place in the steps
-      type(model_type), intent(in) :: model                  !! the model
+      type(model_type), intent(in) :: model
 
       if (self%step > 0) self%step_start = self%step_start + model%steps(self%step)%period
       self%step = self%step + 1
@@ -74,7 +74,7 @@ contains
    !> Whether the present step is solved to its end.
    pure logical function step_is_over(self, model)
       class(increment_control_type), intent(in) :: self   !! place in the steps
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
 
       step_is_over = self%step_time >= model%steps(self%step)%period
    end function step_is_over
@@ -82,7 +82,7 @@ contains
    !> The end of the next increment.
    pure function next_instant(self, model) result(clock)
       class(increment_control_type), intent(in) :: self   !! place in the steps
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       type(step_clock_type) :: clock                      !! the instant
 
       associate (step => model%steps(self%step))
@@ -98,7 +98,7 @@ contains
    !> time on an instant of the deck.
    pure integer function planned(self, model)
       class(increment_control_type), intent(in) :: self   !! place in the steps
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       real(dp), parameter :: rounding = 1.0e-6_dp
       real(dp) :: left(size(model%steps))
 
@@ -112,7 +112,7 @@ contains
    !> Goes on behind an increment that converged.
    pure subroutine accept(self, model, clock)
       class(increment_control_type), intent(inout) :: self   !! place in the steps
-      type(model_type), intent(in) :: model                  !! the model
+      type(model_type), intent(in) :: model
       type(step_clock_type), intent(in) :: clock             !! its end
 
       self%step_time = clock%step_time
@@ -127,7 +127,7 @@ contains
    !> Whether an increment that failed may be tried again with a smaller size.
    pure logical function can_cut_back(self, model, failed)
       class(increment_control_type), intent(in) :: self   !! place in the steps
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       real(dp), intent(in) :: failed                      !! size that failed [time]
 
       associate (step => model%steps(self%step))
@@ -138,7 +138,7 @@ contains
    !> Makes the next attempt shorter than one that failed.
    pure subroutine cut_back(self, model, failed)
       class(increment_control_type), intent(inout) :: self   !! place in the steps
-      type(model_type), intent(in) :: model                  !! the model
+      type(model_type), intent(in) :: model
       real(dp), intent(in) :: failed                         !! size that failed [time]
 
       self%cut_backs = self%cut_backs + 1
@@ -148,7 +148,7 @@ contains
    !> Says where the run ends, and why the increment is not tried again.
    pure function why_not_again(self, model, failed) result(words)
       class(increment_control_type), intent(in) :: self   !! place in the steps
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
       real(dp), intent(in) :: failed                      !! size that failed [time]
       character(:), allocatable :: words                  !! part of a sentence
 

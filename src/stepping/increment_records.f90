@@ -38,13 +38,13 @@ contains
    !> contact state, fields and balances. What the step does not solve stands as the last step that
    !> did left it; stress and flux with their errors are made where needed.
    pure subroutine complete_record(bodies, model, recovery, loads, previous, next, record)
-      type(reduced_bodies_type), intent(in) :: bodies !! the reduced bodies
-      type(model_type), intent(in) :: model                   !! the model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(model_type), intent(in) :: model
       type(recovery_type), intent(in) :: recovery             !! stress and flux with their errors
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(in) :: next           !! state at the end
-      type(increment_record_type), intent(inout) :: record    !! the record
+      type(increment_record_type), intent(inout) :: record
       real(dp) :: carrying(size(next%omega))
       logical :: recovers
       integer :: i

@@ -60,8 +60,8 @@ contains
    !> Errors: as reduced_bodies' prepare and number.
    subroutine start(self, model, error)
       class(simulation_type), intent(inout) :: self       !! a fresh run
-      type(model_type), intent(in) :: model               !! the model
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
       real(dp) :: since
 
       since = wall_seconds()
@@ -92,7 +92,7 @@ contains
    !> Assembles the bodies, where that is not done.
    subroutine assemble(self, model)
       class(simulation_type), intent(inout) :: self       !! the run, started
-      type(model_type), intent(in) :: model               !! the model
+      type(model_type), intent(in) :: model
 
       call assemble_bodies(model, self%bodies, self%seconds)
    end subroutine assemble
@@ -101,8 +101,8 @@ contains
    !> Errors: as step_reduction's reduce.
    subroutine reduce(self, model, error)
       class(simulation_type), intent(inout) :: self       !! the run, started
-      type(model_type), intent(in) :: model               !! the model
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
       type(sparse_matrix_type) :: film
 
       associate (step => model%steps(self%control%step))
@@ -118,7 +118,7 @@ contains
    !> Whether all steps are solved.
    pure function finished(self, model) result(done)
       class(simulation_type), intent(in) :: self   !! the run
-      type(model_type), intent(in) :: model        !! the model
+      type(model_type), intent(in) :: model
       logical :: done                              !! nothing is left
 
       done = self%control%step == size(model%steps) .and. self%control%step_is_over(model)
@@ -130,9 +130,9 @@ contains
    !> that nothing holds, a failed self-check.
    subroutine advance(self, model, record, error)
       class(simulation_type), intent(inout) :: self         !! the run
-      type(model_type), intent(in) :: model                 !! the model
-      type(increment_record_type), intent(out) :: record    !! the increment
-      type(error_type), allocatable, intent(out) :: error   !! see above
+      type(model_type), intent(in) :: model
+      type(increment_record_type), intent(out) :: record
+      type(error_type), allocatable, intent(out) :: error
       type(increment_record_type) :: before
       type(solution_state_type) :: next
       type(step_clock_type) :: clock

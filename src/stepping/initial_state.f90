@@ -15,7 +15,7 @@ contains
 
    !> State before the first increment.
    pure function make_initial_state(model, bodies) result(state)
-      type(model_type), intent(in) :: model                       !! the model
+      type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies     !! the bodies, paired
       type(solution_state_type) :: state                          !! see above
 

@@ -38,11 +38,11 @@ contains
    !> Error: as reduced_bodies' number.
    subroutine number(self, model, step, loads, bodies, error)
       class(step_reduction_type), intent(inout) :: self          !! what is numbered
-      type(model_type), intent(in) :: model                      !! the model
-      type(step_type), intent(in) :: step                        !! the step
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step
       type(loads_type), intent(in) :: loads                      !! supports of the step
-      type(reduced_bodies_type), intent(inout) :: bodies !! the bodies
-      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(reduced_bodies_type), intent(inout) :: bodies
+      type(error_type), allocatable, intent(out) :: error
       logical :: heat, mechanics
 
       associate (held => loads%displacement%active, held_temperature => loads%temperature%active)
@@ -63,12 +63,12 @@ contains
    !> Numbers every step in turn, for the largest problems and for mistakes in its supports.
    !> Error: as number.
    subroutine measure_steps(model, pairs, loads, state, sizes, error)
-      type(model_type), intent(in) :: model                 !! the model
+      type(model_type), intent(in) :: model
       type(pair_row_type), intent(in) :: pairs              !! pairs of all interfaces
       type(loads_type), intent(in) :: loads                 !! loads before the first step
       type(solution_state_type), intent(in) :: state        !! state before it
       type(run_size_type), intent(inout) :: sizes           !! receives the numbers of unknowns
-      type(error_type), allocatable, intent(out) :: error   !! see above
+      type(error_type), allocatable, intent(out) :: error
       type(reduced_bodies_type) :: trial
       type(loads_type) :: given
       type(step_reduction_type) :: reduction
@@ -102,8 +102,8 @@ contains
 
    !> Assembles the bodies, where that is not done.
    subroutine assemble_bodies(model, bodies, seconds)
-      type(model_type), intent(in) :: model                      !! the model
-      type(reduced_bodies_type), intent(inout) :: bodies !! the bodies
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(inout) :: bodies
       type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
       real(dp) :: since
 
@@ -120,12 +120,12 @@ contains
    !> Errors: as reduced_bodies' reduce.
    subroutine reduce(self, model, step, film, bodies, seconds, error)
       class(step_reduction_type), intent(inout) :: self          !! numbered for the step
-      type(model_type), intent(in) :: model                      !! the model
-      type(step_type), intent(in) :: step                        !! the step
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step
       type(sparse_matrix_type), intent(in) :: film !! left-hand side of (3.4) [power/temperature]
-      type(reduced_bodies_type), intent(inout) :: bodies !! the bodies
+      type(reduced_bodies_type), intent(inout) :: bodies
       type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
-      type(error_type), allocatable, intent(out) :: error        !! see above
+      type(error_type), allocatable, intent(out) :: error
       logical :: heat, mechanics
       real(dp) :: since
 
@@ -158,7 +158,7 @@ contains
 
    !> Notes the memory of the factors that stand, and their smallest pivot.
    subroutine measure_factors(bodies, sizes)
-      type(reduced_bodies_type), intent(in) :: bodies   !! the reduced bodies
+      type(reduced_bodies_type), intent(in) :: bodies
       type(run_size_type), intent(inout) :: sizes               !! receives both
       integer(long) :: bytes
 

@@ -36,7 +36,7 @@ contains
 
    !> Solves the row and leaves its values in a file.
    subroutine execute(self, report)
-      class(row_task_type), intent(inout) :: self   !! the row
+      class(row_task_type), intent(inout) :: self
       type(report_type), intent(inout) :: report    !! how it ended
       type(cards_type) :: cards
       type(model_type) :: model

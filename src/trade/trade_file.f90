@@ -24,8 +24,8 @@ contains
    !> Error: status_internal, when the file cannot be written.
    subroutine write_trade(path, trade, error)
       character(*), intent(in) :: path                     !! the file
-      type(trade_type), intent(in) :: trade                !! the trade
-      type(error_type), allocatable, intent(out) :: error  !! see above
+      type(trade_type), intent(in) :: trade
+      type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: text
       integer :: i
 

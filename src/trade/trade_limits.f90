@@ -40,7 +40,7 @@ contains
 
    !> Notes that a row was left out; rows that differ in their increments share a line.
    pure subroutine note_left_out(row, reason, lines)
-      type(trade_row_type), intent(in) :: row                        !! the row
+      type(trade_row_type), intent(in) :: row
       character(*), intent(in) :: reason                             !! why
       type(string_type), allocatable, intent(inout) :: lines(:)      !! receives it
       character(:), allocatable :: mesh, words

@@ -46,10 +46,10 @@ contains
    !> Errors: status_interrupted after a signal; status_internal where no process can be started.
    subroutine run(self, trade, first, last, error)
       class(measurement_type), intent(inout) :: self      !! what the runs have in common
-      type(trade_type), intent(inout) :: trade            !! the trade
+      type(trade_type), intent(inout) :: trade
       integer, intent(in) :: first                        !! first row to be run
       integer, intent(in) :: last                         !! last row to be run
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
       type(slot_type) :: slots(self%jobs)
       integer :: queue((last - first + 1)*maxval(runs_within))
       integer :: queued, next, s, i

@@ -128,7 +128,7 @@ contains
 
    !> Index of the row of the grid with these elements, mesh and increments; 0 for none.
    pure integer function find_row(trade, order, level, factor)
-      type(trade_type), intent(in) :: trade   !! the trade
+      type(trade_type), intent(in) :: trade
       integer, intent(in) :: order            !! order of the elements
       integer, intent(in) :: level            !! refinements
       real(dp), intent(in) :: factor          !! factor on the increments

@@ -47,7 +47,7 @@ contains
 
    !> Makes room; nothing is there yet.
    pure subroutine prepare(self, interfaces, nodes, instants)
-      class(row_values_type), intent(inout) :: self   !! the values
+      class(row_values_type), intent(inout) :: self
       integer, intent(in) :: interfaces               !! number of contact pairs of surfaces
       integer, intent(in) :: nodes                    !! nodes whose temperature is compared
       integer, intent(in) :: instants                 !! instants at which rows are compared
@@ -59,7 +59,7 @@ contains
 
    !> Takes what there is at an instant.
    subroutine sample(self, record, pairs, nodes, instant)
-      class(row_values_type), intent(inout) :: self         !! the values
+      class(row_values_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record     !! the increment that ends there
       type(contact_pairs_type), intent(in) :: pairs(:)      !! pairs of every interface
       integer, intent(in) :: nodes(:)                       !! (nodes) indexes
@@ -109,7 +109,7 @@ contains
 
    !> Writes the values into a file, which a parent process reads.
    subroutine save_values(self, path)
-      class(row_values_type), intent(in) :: self   !! the values
+      class(row_values_type), intent(in) :: self
       character(*), intent(in) :: path             !! the file
       integer :: unit, io
 
@@ -129,9 +129,9 @@ contains
    !> Reads what save_values wrote, and removes the file.
    !> Error: status_internal, when there is no whole file.
    subroutine load_values(self, path, error)
-      class(row_values_type), intent(inout) :: self          !! the values
+      class(row_values_type), intent(inout) :: self
       character(*), intent(in) :: path                       !! the file
-      type(error_type), allocatable, intent(out) :: error    !! see above
+      type(error_type), allocatable, intent(out) :: error
       integer :: unit, io, n(4)
       logical :: has_figures
 

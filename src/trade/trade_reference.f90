@@ -39,7 +39,7 @@ contains
    !> increments.
    pure subroutine find_reference(trade, reference)
       type(trade_type), intent(in) :: trade              !! the trade, run
-      type(reference_type), intent(out) :: reference     !! the reference
+      type(reference_type), intent(out) :: reference
       type(sequences_type) :: rows
       type(limit_type) :: limit
       logical :: differs

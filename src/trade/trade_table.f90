@@ -19,7 +19,7 @@ contains
    subroutine print_trade(unit, name, trade)
       integer, intent(in) :: unit               !! where to
       character(*), intent(in) :: name          !! the deck
-      type(trade_type), intent(in) :: trade     !! the trade
+      type(trade_type), intent(in) :: trade
       integer :: i, q
 
       write (unit, '(3a)') name, ': speed against accuracy; errors in %, those of the reference', &
@@ -53,7 +53,7 @@ contains
    subroutine print_imbalances(unit, name, trade)
       integer, intent(in) :: unit               !! where to
       character(*), intent(in) :: name          !! the deck
-      type(trade_type), intent(in) :: trade     !! the trade
+      type(trade_type), intent(in) :: trade
       character(:), allocatable :: rows
       integer :: i
 
@@ -155,7 +155,7 @@ contains
 
    !> Elements of a row by their order.
    pure function elements_of(row) result(name)
-      type(trade_row_type), intent(in) :: row   !! the row
+      type(trade_row_type), intent(in) :: row
       character(2) :: name                      !! Q8 or Q4
 
       name = merge('Q8', 'Q4', row%order == 2)

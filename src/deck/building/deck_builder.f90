@@ -48,9 +48,9 @@ contains
    subroutine build_model(cards, verifiable, model, report, error, variation)
       type(cards_type), intent(in) :: cards               !! the cards, as read_deck left them
       type(quantity_type), intent(in) :: verifiable(:)    !! what *VERIFY may name
-      type(model_type), intent(out) :: model              !! the model
+      type(model_type), intent(out) :: model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
-      type(error_type), allocatable, intent(out) :: error !! see above
+      type(error_type), allocatable, intent(out) :: error
       !> What is to be other than the cards say, once they are found sound
       type(variation_type), intent(in), optional :: variation
       type(deck_context_type) :: context

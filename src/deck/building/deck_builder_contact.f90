@@ -22,7 +22,7 @@ contains
 
    !> Takes all contact pairs and their clearances.
    subroutine build_contacts(cards, context, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(model_type), intent(inout) :: model             !! receives the pairs
       type(deck_report_type), intent(inout) :: report      !! receives errors

@@ -20,7 +20,7 @@ contains
 
    !> Takes one *FIXED POINT; what it does not say stays as it was.
    subroutine build_fixed_point(card, report, fixed_point)
-      type(keyword_card_type), intent(in) :: card             !! the card
+      type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report         !! receives errors
       type(fixed_point_type), intent(inout) :: fixed_point    !! receives the controls
       type(fixed_point_type) :: before
@@ -54,8 +54,8 @@ contains
 
    !> Takes one *THERMAL SCHEME; after an error the scheme stays as it was.
    subroutine build_thermal_scheme(cards, card, report, scheme)
-      type(cards_type), intent(in) :: cards                   !! the cards
-      type(keyword_card_type), intent(in) :: card             !! the card
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report         !! receives errors
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
       character(:), allocatable :: kind

@@ -26,7 +26,7 @@ contains
 
    !> Takes the elasticity of a material.
    subroutine build_elasticity(cards, card, context, report, material)
-      type(cards_type), intent(in) :: cards               !! the cards
+      type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card         !! *ELASTIC, with a data card
       type(deck_context_type), intent(inout) :: context   !! receives a note
       type(deck_report_type), intent(inout) :: report     !! receives errors

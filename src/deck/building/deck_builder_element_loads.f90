@@ -22,7 +22,7 @@ contains
    !> Takes one data card.
    subroutine build_element_load(keyword, data, request, film_amplitude, model, context, report)
       character(*), intent(in) :: keyword                  !! DLOAD, DFLUX or FILM
-      type(data_card_type), intent(in) :: data             !! the card
+      type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
       type(model_type), intent(in) :: model                !! mesh and sets

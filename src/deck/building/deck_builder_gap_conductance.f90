@@ -17,8 +17,8 @@ contains
    !> Takes one *GAP CONDUCTANCE, CLEARANCE, which has the meaning that it has in Abaqus: beyond the
    !> last row no heat crosses.
    subroutine build_gap_clearance(cards, card, context, report, law)
-      type(cards_type), intent(in) :: cards                !! the cards
-      type(keyword_card_type), intent(in) :: card          !! the card
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(conductance_law_type), intent(inout) :: law     !! receives the open side
@@ -37,8 +37,8 @@ contains
    !> Takes one *GAP CONDUCTANCE into a law of its own: whether it holds is seen when all laws of
    !> the interaction are known.
    subroutine build_gap_conductance(cards, card, name, context, report, law)
-      type(cards_type), intent(in) :: cards                !! the cards
-      type(keyword_card_type), intent(in) :: card          !! the card
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors

@@ -20,8 +20,8 @@ contains
 
    !> Takes one *GAP LAW.
    subroutine build_gap_law(cards, card, name, context, report, law)
-      type(cards_type), intent(in) :: cards                !! the cards
-      type(keyword_card_type), intent(in) :: card          !! the card
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors
@@ -109,8 +109,8 @@ contains
    !> Rows of conductance and what it belongs to; those of *GAP CONDUCTANCE may have a temperature
    !> behind it.
    subroutine read_table(cards, card, noun, report, abscissas, omega)
-      type(cards_type), intent(in) :: cards                !! the cards
-      type(keyword_card_type), intent(in) :: card          !! the card
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
       type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp), allocatable, intent(out) :: abscissas(:)   !! (rows) gap or pressure, ascending

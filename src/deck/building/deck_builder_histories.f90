@@ -20,7 +20,7 @@ contains
 
    !> Takes all amplitudes.
    subroutine build_amplitudes(cards, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(model_type), intent(inout) :: model             !! receives the amplitudes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k, n
@@ -40,7 +40,7 @@ contains
 
    !> Index of an amplitude by its name; 0 for an unknown one.
    pure integer function find_amplitude(amplitudes, name)
-      type(amplitude_type), intent(in) :: amplitudes(:)   !! amplitudes
+      type(amplitude_type), intent(in) :: amplitudes(:)
       character(*), intent(in) :: name                    !! name in upper case
 
       do find_amplitude = size(amplitudes), 1, -1
@@ -107,7 +107,7 @@ contains
 
    !> Takes all initial temperatures.
    subroutine build_temperatures(cards, context, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives the requests
       type(model_type), intent(in) :: model                !! mesh and its sets
       type(deck_report_type), intent(inout) :: report      !! receives errors

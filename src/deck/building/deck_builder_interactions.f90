@@ -27,7 +27,7 @@ contains
 
    !> Takes all surface interactions; a law belongs to the last *SURFACE INTERACTION before it.
    subroutine build_interactions(cards, context, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(model_type), intent(inout) :: model             !! receives the interactions
       type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
@@ -66,7 +66,7 @@ contains
 
    !> Index of a surface interaction by its name; 0 for an unknown one.
    pure integer function find_interaction(interactions, name)
-      type(interaction_type), intent(in) :: interactions(:)   !! interactions
+      type(interaction_type), intent(in) :: interactions(:)
       character(*), intent(in) :: name                        !! name in upper case
 
       do find_interaction = size(interactions), 1, -1

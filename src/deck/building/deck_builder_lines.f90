@@ -28,7 +28,7 @@ contains
 
    !> Number of data cards of all *ELEMENT, of lines or of all others.
    pure integer function element_card_count(cards, of_lines)
-      type(cards_type), intent(in) :: cards   !! the cards
+      type(cards_type), intent(in) :: cards
       logical, intent(in) :: of_lines         !! whether those of lines are counted
       integer :: k
 
@@ -43,7 +43,7 @@ contains
 
    !> Takes the lines, in the order of the deck; the nodes are known.
    subroutine build_lines(cards, context, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives the lines
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name

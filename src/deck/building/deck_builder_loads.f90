@@ -24,8 +24,8 @@ contains
 
    !> Takes one card of loads or prescribed values.
    subroutine build_load_card(cards, card, step, model, context, report)
-      type(cards_type), intent(in) :: cards                !! the cards
-      type(keyword_card_type), intent(in) :: card          !! the keyword card
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
       type(model_type), intent(inout) :: model   !! mesh, sets, amplitudes; the step takes OP=NEW
       type(deck_context_type), intent(inout) :: context    !! receives the requests

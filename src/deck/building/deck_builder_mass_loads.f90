@@ -16,7 +16,7 @@ contains
 
    !> Magnitude and direction; along x and along y the gravity is a load of its own.
    subroutine build_gravity(data, request, context, report, valid)
-      type(data_card_type), intent(in) :: data             !! the card
+      type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
       type(deck_context_type), intent(inout) :: context    !! receives the requests
       type(deck_report_type), intent(inout) :: report      !! receives errors
@@ -40,7 +40,7 @@ contains
    !> a plane turns. Round a point (x0, y0) the force is that round the origin less (x0, y0) times
    !> the density, which makes four loads of a place.
    subroutine build_rotation(data, request, context, report, valid)
-      type(data_card_type), intent(in) :: data             !! the card
+      type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
       type(deck_context_type), intent(inout) :: context    !! receives the requests
       type(deck_report_type), intent(inout) :: report      !! receives errors

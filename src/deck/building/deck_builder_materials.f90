@@ -19,7 +19,7 @@ contains
 
    !> Takes all materials; a property belongs to the last *MATERIAL before it.
    subroutine build_materials(cards, context, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives places and notes
       type(model_type), intent(inout) :: model             !! receives the materials
       type(deck_report_type), intent(inout) :: report      !! receives errors
@@ -55,7 +55,7 @@ contains
 
    !> Index of a material by its name; 0 for an unknown one.
    pure integer function find_material(materials, name)
-      type(material_type), intent(in) :: materials(:)   !! materials
+      type(material_type), intent(in) :: materials(:)
       character(*), intent(in) :: name                  !! name in upper case
 
       do find_material = size(materials), 1, -1

@@ -24,7 +24,7 @@ contains
 
    !> Number of data cards of all keyword cards of a name.
    pure integer function data_card_count(cards, name)
-      type(cards_type), intent(in) :: cards   !! the cards
+      type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name        !! name as in the table of keywords
       integer :: k
 
@@ -38,7 +38,7 @@ contains
 
    !> Takes the nodes, in the order of the deck.
    subroutine build_nodes(cards, context, mesh, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives the numbers
       type(mesh_type), intent(inout) :: mesh               !! receives the nodes
       type(deck_report_type), intent(inout) :: report      !! receives errors
@@ -174,7 +174,7 @@ contains
    !> Takes the elements, in the order of the deck; one of a type that cannot be used keeps its
    !> number only.
    subroutine build_elements(cards, context, mesh, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives the numbers
       type(mesh_type), intent(inout) :: mesh               !! receives the elements
       type(deck_report_type), intent(inout) :: report      !! receives errors

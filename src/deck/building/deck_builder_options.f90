@@ -19,7 +19,7 @@ contains
 
    !> Takes *HEADING, *OPTIONS, *SOLVER and *REFINE.
    subroutine build_options(cards, context, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives plane, order, levels, axis
       type(model_type), intent(inout) :: model             !! receives heading, units, solver
       type(deck_report_type), intent(inout) :: report      !! receives errors

@@ -18,7 +18,7 @@ contains
 
    !> Takes all orientations.
    subroutine build_orientations(cards, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(model_type), intent(inout) :: model             !! receives the orientations
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k, n
@@ -41,7 +41,7 @@ contains
 
    !> Index of an orientation by its name; 0 for an unknown one.
    pure integer function find_orientation(orientations, name)
-      type(orientation_type), intent(in) :: orientations(:)   !! orientations
+      type(orientation_type), intent(in) :: orientations(:)
       character(*), intent(in) :: name                        !! name in upper case
 
       do find_orientation = size(orientations), 1, -1

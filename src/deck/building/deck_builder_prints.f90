@@ -32,8 +32,8 @@ contains
    !> Takes *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
    !> former steps.
    subroutine build_print(cards, card, is_first, context, mesh, report, requests)
-      type(cards_type), intent(in) :: cards               !! the cards
-      type(keyword_card_type), intent(in) :: card         !! the keyword card
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: is_first                     !! first of its keyword in its step
       type(deck_context_type), intent(in) :: context      !! whether the sets are sound
       type(mesh_type), intent(in) :: mesh                 !! has the sets
@@ -158,7 +158,7 @@ contains
 
    !> FREQUENCY=n, default 1.
    subroutine read_frequency(card, report, frequency)
-      type(keyword_card_type), intent(in) :: card       !! keyword card
+      type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(inout) :: frequency               !! n, at least 0
 

@@ -23,7 +23,7 @@ contains
 
    !> Takes all sections, and gives the elements theirs.
    subroutine build_sections(cards, context, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives notes, whether all is sound
       type(model_type), intent(inout) :: model             !! receives the sections
       type(deck_report_type), intent(inout) :: report      !! receives errors

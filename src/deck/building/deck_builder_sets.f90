@@ -27,11 +27,11 @@ contains
    !> is one set.
    subroutine build_sets(noun, cards, context, mesh, report, sets)
       character(*), intent(in) :: noun                           !! node or element
-      type(cards_type), intent(in) :: cards                      !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(in) :: context             !! numbers -> indexes
       type(mesh_type), intent(in) :: mesh  !! for nodes: has the element sets and surfaces
       type(deck_report_type), intent(inout) :: report            !! receives errors
-      type(set_type), allocatable, intent(out) :: sets(:)        !! the sets
+      type(set_type), allocatable, intent(out) :: sets(:)
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
       type(number_index_type) :: numbers

@@ -17,8 +17,8 @@ contains
 
    !> Takes one *START; after an error the start stays as it was.
    subroutine build_start(cards, card, model, report, start)
-      type(cards_type), intent(in) :: cards              !! the cards
-      type(keyword_card_type), intent(in) :: card        !! the card
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
       type(model_type), intent(in) :: model              !! its contact pairs
       type(deck_report_type), intent(inout) :: report    !! receives errors
       type(start_type), intent(inout) :: start           !! receives the start

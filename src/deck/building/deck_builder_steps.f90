@@ -28,7 +28,7 @@ contains
 
    !> Takes all steps, in their order.
    subroutine build_steps(cards, context, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives requests and notes
       type(model_type), intent(inout) :: model             !! receives the steps
       type(deck_report_type), intent(inout) :: report      !! receives errors

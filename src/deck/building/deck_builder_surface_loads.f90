@@ -20,7 +20,7 @@ contains
 
    !> Takes one data card.
    subroutine build_surface_load(data, request, model, context, report)
-      type(data_card_type), intent(in) :: data             !! the card
+      type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       type(model_type), intent(in) :: model                !! surfaces
       type(deck_context_type), intent(inout) :: context    !! receives the requests

@@ -20,7 +20,7 @@ contains
 
    !> Takes all surfaces.
    subroutine build_surfaces(cards, context, mesh, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives their places
       type(mesh_type), intent(inout) :: mesh               !! receives the surfaces
       type(deck_report_type), intent(inout) :: report      !! receives errors

@@ -22,7 +22,7 @@ contains
 
    !> Takes all checks.
    subroutine build_verifications(cards, context, model, report)
-      type(cards_type), intent(in) :: cards                !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(in) :: context       !! numbers of nodes
       type(model_type), intent(inout) :: model             !! receives the checks
       type(deck_report_type), intent(inout) :: report      !! receives errors

@@ -33,7 +33,7 @@ contains
 
    !> Reads the constants of a property, eight on a card, and the temperature behind the last.
    subroutine read_constants(cards, card, names, context, report, constants, valid)
-      type(cards_type), intent(in) :: cards               !! the cards
+      type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card         !! the property, with a data card
       character(*), intent(in) :: names(:)                !! (constants) what they are called
       type(deck_context_type), intent(inout) :: context   !! receives a note
@@ -78,7 +78,7 @@ contains
 
    !> Reports constants that must be positive and are not.
    subroutine refuse_not_positive(cards, card, names, constants, which, report)
-      type(cards_type), intent(in) :: cards               !! the cards
+      type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card         !! the property
       character(*), intent(in) :: names(:)                !! (constants) what they are called
       real(dp), intent(in) :: constants(:)                !! (constants) as read

@@ -18,7 +18,7 @@ contains
    !> Checks the requests before the model is refined.
    subroutine check_boundaries(context, model, used, report)
       type(deck_context_type), intent(in) :: context       !! requests
-      type(model_type), intent(in) :: model                !! the model
+      type(model_type), intent(in) :: model
       logical, intent(in) :: used(0:)                      !! (0:nodes) whether elements have them
       type(deck_report_type), intent(inout) :: report      !! receives warnings
       integer :: i, card

@@ -30,7 +30,7 @@ contains
    !> Checks the model before it is refined.
    subroutine check_model(context, model, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
-      type(model_type), intent(in) :: model                !! the model
+      type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: uses(4, size(model%mesh%element_number))
       logical :: turned(size(model%mesh%element_number))

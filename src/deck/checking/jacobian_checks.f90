@@ -22,7 +22,7 @@ contains
    !> clockwise are reported once.
    subroutine check_jacobians(context, mesh, turned, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
-      type(mesh_type), intent(in) :: mesh                  !! the mesh
+      type(mesh_type), intent(in) :: mesh
       logical, intent(out) :: turned(:)                    !! (elements) whether it goes clockwise
       type(deck_report_type), intent(inout) :: report      !! receives errors
       logical :: inverted(size(mesh%element_number))

@@ -20,7 +20,7 @@ contains
    !> Checks the requests before the model is refined.
    subroutine check_loads(context, model, uses, report)
       type(deck_context_type), intent(in) :: context       !! requests
-      type(model_type), intent(in) :: model                !! the model
+      type(model_type), intent(in) :: model
       integer, intent(in) :: uses(:, :)  !! (4, elements) elements that meet at each side
       type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
       logical :: used(0:size(model%mesh%node_number))

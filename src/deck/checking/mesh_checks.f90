@@ -27,7 +27,7 @@ contains
    !> Elements are all axisymmetric or none is; the radius is not negative.
    subroutine check_planes(context, mesh, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
-      type(mesh_type), intent(in) :: mesh                  !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: e, q, first
       logical :: turns(size(mesh%element_plane))
@@ -60,7 +60,7 @@ contains
    !> free.
    subroutine check_sides(context, mesh, turned, uses, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
-      type(mesh_type), intent(in) :: mesh                  !! the mesh
+      type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: turned(:)                     !! (elements) whether it goes clockwise
       integer, intent(out) :: uses(:, :)  !! (4, elements) elements that meet at each side
       type(deck_report_type), intent(inout) :: report      !! receives errors

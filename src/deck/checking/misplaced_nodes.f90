@@ -19,7 +19,7 @@ contains
    !> Finds the nodes, any one of which could be moved to make the most inverted elements sound that
    !> an element shares with others.
    subroutine find_misplaced(mesh, valid, inverted, element, nodes)
-      type(mesh_type), intent(in) :: mesh            !! the mesh
+      type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: valid(:)                !! (elements) whether all nodes are known
       logical, intent(in) :: inverted(:)             !! (elements) those that are to be explained
       integer, intent(in) :: element                 !! one of them

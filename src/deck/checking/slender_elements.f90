@@ -21,7 +21,7 @@ contains
    !> Jacobian.
    subroutine check_slenderness(context, mesh, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
-      type(mesh_type), intent(in) :: mesh                  !! the mesh
+      type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report      !! receives errors and a warning
       real(dp) :: least, ratio
       integer :: e, worst, count_doubtful

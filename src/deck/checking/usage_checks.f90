@@ -22,7 +22,7 @@ contains
    !> Warns of definitions without use and of amplitudes that end long before their step. The deck
    !> has no errors, of which these may only be the consequence.
    subroutine check_usage(cards, context, model, report)
-      type(cards_type), intent(in) :: cards               !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(in) :: context      !! requests
       type(model_type), intent(in) :: model               !! amplitudes and steps
       type(deck_report_type), intent(inout) :: report     !! receives warnings

@@ -31,7 +31,7 @@ contains
 
    !> Whether a card has a parameter.
    pure logical function has_parameter(card, name)
-      type(keyword_card_type), intent(in) :: card   !! keyword card
+      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name              !! name as in the table of keywords
 
       has_parameter = position(card, name) > 0
@@ -39,7 +39,7 @@ contains
 
    !> Whether a card is without a parameter, and not because of an error that is reported already.
    pure logical function lacks_parameter(card, name)
-      type(keyword_card_type), intent(in) :: card   !! keyword card
+      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name              !! name as in the table of keywords
 
       lacks_parameter = .not. (has_parameter(card, name) .or. card%flawed)
@@ -47,7 +47,7 @@ contains
 
    !> Value of a parameter as written; empty where the card does not have it.
    pure function parameter_text(card, name) result(value)
-      type(keyword_card_type), intent(in) :: card   !! keyword card
+      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name              !! name as in the table of keywords
       character(:), allocatable :: value            !! value without quotes
 
@@ -57,7 +57,7 @@ contains
 
    !> Place of the value of a parameter; that of the card where it does not have it.
    pure function parameter_place(card, name) result(place)
-      type(keyword_card_type), intent(in) :: card   !! keyword card
+      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name              !! name as in the table of keywords
       type(place_type) :: place                     !! where the value stands
 
@@ -67,7 +67,7 @@ contains
 
    !> Value of a parameter that the card must have.
    subroutine need_parameter(card, name, report, value)
-      type(keyword_card_type), intent(in) :: card             !! keyword card
+      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                        !! name as in the table of keywords
       type(deck_report_type), intent(inout) :: report         !! receives the error
       character(:), allocatable, intent(out) :: value   !! value in upper case; empty after an error
@@ -116,7 +116,7 @@ contains
 
    !> Takes one of several words.
    subroutine choose(card, name, choices, report, choice)
-      type(keyword_card_type), intent(in) :: card              !! keyword card
+      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
       character(*), intent(in) :: choices                      !! words, separated by slashes
       type(deck_report_type), intent(inout) :: report          !! receives the error

@@ -33,7 +33,7 @@ contains
 
    !> Whether a data card has a field that is not empty.
    pure logical function has_field(data, i)
-      type(data_card_type), intent(in) :: data   !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position, from 1
 
       has_field = i <= size(data%fields)
@@ -42,7 +42,7 @@ contains
 
    !> A field as written; empty where the card does not have it.
    pure function field_text(data, i) result(string)
-      type(data_card_type), intent(in) :: data   !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position, from 1
       character(:), allocatable :: string        !! the field
 
@@ -52,7 +52,7 @@ contains
 
    !> Whether the text of a field is not known, which is reported already.
    pure logical function is_undefined(data, i)
-      type(data_card_type), intent(in) :: data   !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position, from 1
 
       is_undefined = i <= size(data%fields)
@@ -61,7 +61,7 @@ contains
 
    !> Place of a field; the end of the card where it does not have it.
    pure function field_place(data, i) result(place)
-      type(data_card_type), intent(in) :: data   !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position, from 1
       type(place_type) :: place                  !! where it stands
 
@@ -71,7 +71,7 @@ contains
 
    !> Reports the first field that a card has too many.
    subroutine check_extra(data, most, layout, report)
-      type(data_card_type), intent(in) :: data            !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: most                         !! most fields
       character(*), intent(in) :: layout                  !! what a card of its keyword holds
       type(deck_report_type), intent(inout) :: report     !! receives the error
@@ -84,7 +84,7 @@ contains
    !> 0,155 for 0.155: that one is written without a point and an exponent, this one is digits with
    !> or without an exponent. Zeros alone are no decimals that matter.
    pure logical function may_be_decimals(data, i)
-      type(data_card_type), intent(in) :: data   !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position of the field, from 1
       character(:), allocatable :: decimals
       real(dp) :: number
@@ -100,7 +100,7 @@ contains
    !> Warns of a field that is read and means nothing where it may be the decimals of the field
    !> before it.
    subroutine check_unneeded(data, i, what, report)
-      type(data_card_type), intent(in) :: data            !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                            !! position of the field, from 2
       character(*), intent(in) :: what                    !! what the field is, with its article
       type(deck_report_type), intent(inout) :: report     !! receives the warning
@@ -116,7 +116,7 @@ contains
    !> As check_unneeded for the temperature behind a property: a plausible one is no decimals,
    !> unless it stands directly behind the comma of `0,`.
    subroutine check_unneeded_temperature(data, i, report)
-      type(data_card_type), intent(in) :: data            !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                            !! position of the field, from 2
       type(deck_report_type), intent(inout) :: report     !! receives the warning
       real(dp) :: temperature

@@ -12,7 +12,7 @@ contains
 
    !> Takes three fields in a row; of fields that are missing the first is reported.
    subroutine need_vector(data, first, what, report, vector, valid)
-      type(data_card_type), intent(in) :: data             !! the card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: first                         !! position of the first field
       character(*), intent(in) :: what                     !! what they are
       type(deck_report_type), intent(inout) :: report      !! receives the error
@@ -29,7 +29,7 @@ contains
 
    !> Reads a magnitude and the components of a direction, of which z may be left out and must be 0.
    subroutine need_plane_vector(data, first, report, vector, valid)
-      type(data_card_type), intent(in) :: data             !! the card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: first                         !! position of the magnitude
       type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp), intent(out) :: vector(2)                   !! x and y, zero after an error

@@ -58,7 +58,7 @@ contains
 
    !> Adds a keyword card.
    subroutine add_keyword(cards, card)
-      type(cards_type), intent(inout) :: cards       !! the cards
+      type(cards_type), intent(inout) :: cards
       type(keyword_card_type), intent(in) :: card    !! what is added
 
       if (.not. allocated(cards%keywords)) allocate(cards%keywords(64))
@@ -73,7 +73,7 @@ contains
 
    !> Adds a data card to the last keyword card.
    subroutine add_data(cards, fields, end)
-      type(cards_type), intent(inout) :: cards                    !! the cards
+      type(cards_type), intent(inout) :: cards
       type(field_type), allocatable, intent(inout) :: fields(:)   !! fields, handed over
       type(place_type), intent(in) :: end                         !! where a missing field would be
 
@@ -89,7 +89,7 @@ contains
 
    !> Adds fields to the last data card.
    subroutine extend_data(cards, fields)
-      type(cards_type), intent(inout) :: cards       !! the cards
+      type(cards_type), intent(inout) :: cards
       type(field_type), intent(in) :: fields(:)      !! what is added; empty ones are left out
       type(field_type), allocatable :: all(:)
       integer :: i, n
@@ -111,7 +111,7 @@ contains
 
    !> Adds a note for the listing.
    subroutine add_note(notes, line)
-      type(string_type), allocatable, intent(inout) :: notes(:)   !! the notes
+      type(string_type), allocatable, intent(inout) :: notes(:)
       character(*), intent(in) :: line                            !! what is added, once
       integer :: i
 
@@ -125,7 +125,7 @@ contains
 
    !> Cuts the lists to what they hold, once reading has ended.
    subroutine trim_cards(cards)
-      type(cards_type), intent(inout) :: cards       !! the cards
+      type(cards_type), intent(inout) :: cards
 
       if (.not. allocated(cards%keywords)) allocate(cards%keywords(0))
       if (.not. allocated(cards%data)) allocate(cards%data(0))

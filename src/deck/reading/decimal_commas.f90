@@ -14,7 +14,7 @@ contains
    !> blank behind it, and other commas of the card have one, or no field of the card has a point. 0
    !> where there is none.
    pure integer function decimal_comma(data)
-      type(data_card_type), intent(in) :: data   !! data card
+      type(data_card_type), intent(in) :: data
       integer :: i
       logical :: differs
 
@@ -49,7 +49,7 @@ contains
 
    !> Reports a decimal comma.
    subroutine report_decimal_comma(data, i, report)
-      type(data_card_type), intent(in) :: data            !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                            !! what decimal_comma found
       type(deck_report_type), intent(inout) :: report     !! receives the error
 

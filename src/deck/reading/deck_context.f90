@@ -69,7 +69,7 @@ contains
 
    !> Notes a default that was used or a card that is not needed.
    subroutine note(self, line)
-      class(deck_context_type), intent(inout) :: self   !! the context
+      class(deck_context_type), intent(inout) :: self
       character(*), intent(in) :: line                  !! the note; each is kept once
 
       call add_note(self%notes, line)
@@ -77,7 +77,7 @@ contains
 
    !> Index of a set by its name, whatever its case; 0 for an unknown one.
    pure integer function find_set(sets, name)
-      type(set_type), intent(in) :: sets(:)   !! sets
+      type(set_type), intent(in) :: sets(:)
       character(*), intent(in) :: name        !! name
 
       do find_set = size(sets), 1, -1
@@ -87,7 +87,7 @@ contains
 
    !> The names of sets.
    pure function set_names(sets) result(names)
-      type(set_type), intent(in) :: sets(:)             !! sets
+      type(set_type), intent(in) :: sets(:)
       type(string_type) :: names(size(sets))            !! their names
       integer :: i
 
@@ -132,7 +132,7 @@ contains
 
    !> Reads the field of a card that names one node or element by its number, or a set by its name.
    subroutine read_target(data, position, noun, numbers, sets, report, item, set, valid)
-      type(data_card_type), intent(in) :: data          !! data card
+      type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
       character(*), intent(in) :: noun                  !! node or element
       type(number_index_type), intent(in) :: numbers    !! numbers -> indexes

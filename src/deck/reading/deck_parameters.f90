@@ -31,7 +31,7 @@ contains
 
    !> Takes what the command line sets.
    subroutine take_settings(self, settings, report)
-      class(deck_parameters_type), intent(inout) :: self   !! the parameters
+      class(deck_parameters_type), intent(inout) :: self
       type(string_type), intent(in) :: settings(:)         !! each NAME=VALUE
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: i, equals
@@ -54,8 +54,8 @@ contains
 
    !> Takes one field `name = value` of a *PARAMETER card; a value that --set replaces is noted.
    subroutine define(self, field, notes, report)
-      class(deck_parameters_type), intent(inout) :: self   !! the parameters
-      type(field_type), intent(in) :: field                !! the field
+      class(deck_parameters_type), intent(inout) :: self
+      type(field_type), intent(in) :: field
       type(string_type), allocatable, intent(inout) :: notes(:)   !! lines for the listing
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, value
@@ -85,8 +85,8 @@ contains
 
    !> Replaces each <name> in a field by its value; one that is not known leaves no text.
    subroutine substitute(self, field, report)
-      class(deck_parameters_type), intent(in) :: self      !! the parameters
-      type(field_type), intent(inout) :: field             !! the field
+      class(deck_parameters_type), intent(in) :: self
+      type(field_type), intent(inout) :: field
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: done, rest, name
       integer :: left, right, known, column
@@ -134,7 +134,7 @@ contains
 
    !> Reports settings that no *PARAMETER of the deck takes.
    subroutine check_settings(self, report)
-      class(deck_parameters_type), intent(in) :: self      !! the parameters
+      class(deck_parameters_type), intent(in) :: self
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: i
 

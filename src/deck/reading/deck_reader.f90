@@ -23,7 +23,7 @@ contains
       character(*), intent(in) :: path                  !! the deck as given
       integer, intent(in) :: width                      !! --width, 0 for none
       type(string_type), intent(in) :: settings(:)      !! --set, each NAME=VALUE
-      type(cards_type), intent(out) :: cards            !! its cards
+      type(cards_type), intent(out) :: cards
       type(deck_report_type), intent(out) :: report     !! what is wrong with it
       type(card_lines_type) :: open_lines
       type(string_type), allocatable :: none(:)

@@ -54,7 +54,7 @@ contains
 
    !> Reports an error. Errors of one group are told once, with their number.
    subroutine error(self, place, message, group)
-      class(deck_report_type), intent(inout) :: self  !! the report
+      class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
       character(*), intent(in), optional :: group     !! the group, such as node 6
@@ -75,7 +75,7 @@ contains
    !> Reports that something is not there, unless an error that is reported already explains it;
    !> one name is told once.
    subroutine missing(self, place, message, noun, name)
-      class(deck_report_type), intent(inout) :: self  !! the report
+      class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
       character(*), intent(in), optional :: noun      !! kind of what is not there, such as node set
@@ -91,7 +91,7 @@ contains
 
    !> Remembers that a reported error may hide the definition of things of a kind, or of a name.
    subroutine lose(self, word)
-      class(deck_report_type), intent(inout) :: self  !! the report
+      class(deck_report_type), intent(inout) :: self
       character(*), intent(in) :: word                !! the kind in lower case, the name in upper
 
       call append(self%lost, word)
@@ -99,7 +99,7 @@ contains
 
    !> Remembers that a file of the deck could not be read, which may define anything.
    subroutine lose_file(self)
-      class(deck_report_type), intent(inout) :: self  !! the report
+      class(deck_report_type), intent(inout) :: self
 
       self%lost_file = .true.
    end subroutine lose_file
@@ -107,7 +107,7 @@ contains
    !> Whether a reported error may hide the definition of things of a kind or of a name; without
    !> both: of anything at all.
    pure logical function has_lost(self, noun, name)
-      class(deck_report_type), intent(in) :: self     !! the report
+      class(deck_report_type), intent(in) :: self
       character(*), intent(in), optional :: noun      !! the kind, such as node set
       character(*), intent(in), optional :: name      !! the name, in any case
       integer :: i
@@ -122,7 +122,7 @@ contains
 
    !> Reports a warning.
    subroutine warning(self, place, message)
-      class(deck_report_type), intent(inout) :: self  !! the report
+      class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
 
@@ -131,21 +131,21 @@ contains
 
    !> Whether the deck has an error.
    pure logical function has_errors(self)
-      class(deck_report_type), intent(in) :: self     !! the report
+      class(deck_report_type), intent(in) :: self
 
       has_errors = self%errors > 0
    end function has_errors
 
    !> Number of errors so far.
    pure integer function error_count(self)
-      class(deck_report_type), intent(in) :: self     !! the report
+      class(deck_report_type), intent(in) :: self
 
       error_count = self%errors
    end function error_count
 
    !> The warnings as printed, without images, in the order of the deck.
    function warnings(self) result(lines)
-      class(deck_report_type), intent(in) :: self     !! the report
+      class(deck_report_type), intent(in) :: self
       type(string_type), allocatable :: lines(:)      !! one a warning
       integer, allocatable :: order(:)
       integer :: i, n
@@ -162,7 +162,7 @@ contains
 
    !> The first error in the order of the deck, without its place.
    function first_error(self) result(message)
-      class(deck_report_type), intent(in) :: self     !! the report
+      class(deck_report_type), intent(in) :: self
       character(:), allocatable :: message            !! one sentence; empty for none
       integer, allocatable :: order(:)
       integer :: i
@@ -179,7 +179,7 @@ contains
    !> Prints errors and warnings in the order of the deck, each with its card image and a caret; at
    !> most 50 errors.
    subroutine print_report(self, unit)
-      class(deck_report_type), intent(in) :: self     !! the report
+      class(deck_report_type), intent(in) :: self
       integer, intent(in) :: unit                     !! open for formatted output
       integer, allocatable :: order(:)
       integer :: i, errors

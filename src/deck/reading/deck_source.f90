@@ -32,7 +32,7 @@ contains
 
    !> Adds one card image.
    subroutine add_image(self, file, line, image)
-      class(deck_source_type), intent(inout) :: self  !! the source
+      class(deck_source_type), intent(inout) :: self
       integer, intent(in) :: file                     !! index into paths
       integer, intent(in) :: line                     !! line in that file, from 1
       character(*), intent(in) :: image               !! the line, without its end
@@ -72,7 +72,7 @@ contains
    !> The lines of a text file, with ends of line in the manner of Unix or Windows.
    subroutine read_lines(path, lines, fault)
       character(*), intent(in) :: path                          !! file
-      type(string_type), allocatable, intent(out) :: lines(:)   !! its lines
+      type(string_type), allocatable, intent(out) :: lines(:)
       character(:), allocatable, intent(out) :: fault           !! why it is not read; else empty
       character(:), allocatable :: contents
       integer :: i, n, first, last

@@ -15,7 +15,7 @@ contains
 
    !> Number of keyword cards of a name.
    pure integer function card_count(cards, name)
-      type(cards_type), intent(in) :: cards   !! the cards
+      type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name        !! name as in the table of keywords
       integer :: k
 
@@ -27,7 +27,7 @@ contains
 
    !> Whether a misspelt or refused keyword stands for another one.
    pure logical function has_stand_in(cards, name)
-      type(cards_type), intent(in) :: cards   !! the cards
+      type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name        !! name as in the table of keywords
       integer :: k
 
@@ -39,7 +39,7 @@ contains
 
    !> Checks the order of the cards, the number of data cards, and what must not be missing.
    subroutine check_structure(cards, report)
-      type(cards_type), intent(in) :: cards               !! the cards
+      type(cards_type), intent(in) :: cards
       type(deck_report_type), intent(inout) :: report     !! receives errors
       logical :: step_open, after_step
       integer :: k

@@ -33,7 +33,7 @@ contains
    !> Begins a keyword card, which may have a format.
    subroutine begin(self, card, element_fields, report, valid)
       class(fixed_cards_type), intent(inout) :: self      !! receives the format
-      type(keyword_card_type), intent(in) :: card         !! the keyword card
+      type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: element_fields               !! of an *ELEMENT; 0 for an unknown type
       type(deck_report_type), intent(inout) :: report     !! receives an error
       logical, intent(out) :: valid                       !! false after it: data cannot be read

@@ -29,7 +29,7 @@ contains
    subroutine cut_line(line, image, format, most, edit, fields, sound, report)
       character(*), intent(in) :: line                            !! card image
       integer, intent(in) :: image                                !! its running number
-      type(card_format_type), intent(in) :: format                !! the format
+      type(card_format_type), intent(in) :: format
       integer, intent(in) :: most                                 !! fields that are due
       integer, intent(inout) :: edit                              !! where the format goes on
       type(field_type), allocatable, intent(out) :: fields(:)     !! the fields of this line

@@ -31,7 +31,7 @@ contains
 
    !> Adds a request.
    subroutine add(self, request)
-      class(request_list_type), intent(inout) :: self   !! the list
+      class(request_list_type), intent(inout) :: self
       type(request_type), intent(in) :: request         !! what is added
       type(request_type), allocatable :: more(:)
 
