@@ -84,40 +84,38 @@ contains
       case ('status')
          values = real(contact%status, dp)
       case ('gap')
-         values = or_nan(contact%gap)
+         values = or_nan(contact%gap, size(pairs%slave_node))
       case ('pressure')
-         values = or_nan(contact%pressure)
+         values = or_nan(contact%pressure, size(pairs%slave_node))
       case ('shear')
-         values = or_nan(contact%shear)
+         values = or_nan(contact%shear, size(pairs%slave_node))
       case ('slip')
-         values = or_nan(contact%slip)
+         values = or_nan(contact%slip, size(pairs%slave_node))
       case ('slave_temperature')
-         values = or_nan(contact%slave_temperature)
+         values = or_nan(contact%slave_temperature, size(pairs%slave_node))
       case ('master_temperature')
-         values = or_nan(contact%master_temperature)
+         values = or_nan(contact%master_temperature, size(pairs%slave_node))
       case ('conductance')
-         values = or_nan(contact%conductance)
+         values = or_nan(contact%conductance, size(pairs%slave_node))
       case ('heat_flux')
-         values = or_nan(contact%heat_flux)
+         values = or_nan(contact%heat_flux, size(pairs%slave_node))
       case default
          allocate (values(0))
       end select
-
-   contains
-
-      pure function or_nan(given) result(filled)
-         real(dp), allocatable, intent(in) :: given(:)
-         real(dp), allocatable :: filled(:)
-
-         if (allocated(given)) then
-            filled = given
-         else
-            allocate (filled(size(pairs%slave_node)), &
-               source=ieee_value(1.0_dp, ieee_quiet_nan))
-         end if
-      end function or_nan
-
    end function contact_values
+
+   !> Values, or a NaN for each of n pairs where there are none.
+   pure function or_nan(given, n) result(filled)
+      real(dp), allocatable, intent(in) :: given(:)
+      integer, intent(in) :: n
+      real(dp), allocatable :: filled(:)
+
+      if (allocated(given)) then
+         filled = given
+      else
+         allocate (filled(n), source=ieee_value(1.0_dp, ieee_quiet_nan))
+      end if
+   end function or_nan
 
    !> A quantity of the pairs that the mesh gives.
    pure function geometry_values(name, pairs, node_number) result(values)

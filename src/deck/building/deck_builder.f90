@@ -55,7 +55,7 @@ contains
       type(variation_type), intent(in), optional :: variation
       type(deck_context_type) :: context
       type(set_type), allocatable :: sets(:)
-      integer :: i, deck_nodes, errors
+      integer :: i, errors
 
       if (size(cards%keywords) == 0) return
       context%verifiable = verifiable
@@ -95,25 +95,39 @@ contains
       if (.not. report%has_errors()) then
          if (present(variation)) call apply_variation(variation, context%order, context%levels, &
             model)
-         call drop_idle_heat(context, model, report)
-         call check_heat_quantities(verifiable, model, report)
-         call apply_loads(context, model, report)
-         deck_nodes = size(model%mesh%node_number)
-         call apply_temperatures(context, deck_nodes, .true., model)
-         model%memory_needed = memory_needed(model, context%levels, context%order)
-         call check_memory(model%memory_needed, error)
+         call complete_model(cards, context, model, report, error)
          if (allocated(error)) return
-         call refine(model, context%levels)
-         call apply_temperatures(context, deck_nodes, .false., model)
-         call apply_boundaries(context, model)
-         call apply_order(context, model, report)
-         if (.not. report%has_errors()) call check_usage(cards, context, model, report)
-         call find_bodies(model%mesh)
-         call note_defaults(cards, context, model)
       end if
       call take_notes(context, model)
       model%warnings = report%warnings()
    end subroutine build_model
+
+   !> Refines the sound model of a deck, and puts its loads on the mesh.
+   !> Error: as check_memory.
+   subroutine complete_model(cards, context, model, report, error)
+      type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(inout) :: context
+      type(model_type), intent(inout) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(error_type), allocatable, intent(out) :: error
+      integer :: deck_nodes
+
+      call drop_idle_heat(context, model, report)
+      call check_heat_quantities(context%verifiable, model, report)
+      call apply_loads(context, model, report)
+      deck_nodes = size(model%mesh%node_number)
+      call apply_temperatures(context, deck_nodes, .true., model)
+      model%memory_needed = memory_needed(model, context%levels, context%order)
+      call check_memory(model%memory_needed, error)
+      if (allocated(error)) return
+      call refine(model, context%levels)
+      call apply_temperatures(context, deck_nodes, .false., model)
+      call apply_boundaries(context, model)
+      call apply_order(context, model, report)
+      if (.not. report%has_errors()) call check_usage(cards, context, model, report)
+      call find_bodies(model%mesh)
+      call note_defaults(cards, context, model)
+   end subroutine complete_model
 
    !> A step in which, and before which, no temperature is prescribed and no heat loaded solves
    !> none. That is rarely meant.
