@@ -39,6 +39,8 @@ def run(deck):
 
 def increments_in(sta):
     """Return the running numbers that stand in a .sta file, without its heading."""
-    if not sta.exists():
+    try:
+        lines = sta.read_text().splitlines()
+    except FileNotFoundError:   # a run that begins tries whether it can be written, and removes it
         return []
-    return [int(line.split()[0]) for line in sta.read_text().splitlines()[1:]]
+    return [int(line.split()[0]) for line in lines[1:]]
