@@ -1,12 +1,12 @@
-!> The run once more with increments of twice the size, on the pairs alone: it is led beside the run
-!> and takes one increment where the run has taken two. Of an odd number of increments in a step it
-!> takes the first alone, for the last one tells most.
+!> The run once more with increments of twice the size, on the contact points alone: it is led
+!> beside the run and takes one increment where the run has taken two. Of an odd number of
+!> increments in a step it takes the first alone, for the last one tells most.
 module doubled_increments
    use companion_steps, only: companion_step
    use errors, only: error_type
    use films, only: left_films
    use increment_data, only: increment_workspace_type
-   use increment_solution, only: recover_fields, solve_pairs
+   use increment_solution, only: recover_fields, solve_points
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
@@ -42,14 +42,14 @@ contains
    subroutine start(self, model, bodies, state)
       class(doubled_increments_type), intent(out) :: self        !! the second run
       type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies    !! the bodies, paired
+      type(reduced_bodies_type), intent(in) :: bodies    !! the bodies, matched
       type(solution_state_type), intent(in) :: state             !! state before the first increment
       integer :: s
 
-      self%is_led = any(bodies%pairs%friction > 0.0_dp)
+      self%is_led = any(bodies%points%friction > 0.0_dp)
       do s = 1, size(model%steps)
          self%is_led = self%is_led .or. (solves_heat(model%steps(s)%analysis) .and. &
-            has_memory(model%steps(s)%scheme) .and. size(bodies%pairs%slave) > 0)
+            has_memory(model%steps(s)%scheme) .and. size(bodies%points%slave) > 0)
       end do
       if (self%is_led) self%state = state
    end subroutine start
@@ -94,7 +94,7 @@ contains
          call bodies%set_film(left_films(step%scheme, self%state%film, next%film), model, &
             error)
       end if
-      if (.not. allocated(error)) call solve_pairs(bodies, loads, step, before, &
+      if (.not. allocated(error)) call solve_points(bodies, loads, step, before, &
          workspace, next, error)
       self%is_lost = allocated(error)
       if (self%is_lost) return

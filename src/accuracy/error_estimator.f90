@@ -55,7 +55,7 @@ contains
       self%is_on = model%estimates_errors .and. size(model%contacts) > 0
       if (.not. self%is_on) return
       self%why_not = ''
-      call self%refined%prepare(model, simulation%bodies%pairs, error)
+      call self%refined%prepare(model, simulation%bodies%points, error)
       if (allocated(error)) self%why_not = error%message
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start

@@ -1,9 +1,9 @@
 !> The quantities of an interface whose errors are estimated.
 module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
-   use contact_states, only: status_open
+   use contact_states, only: contact_open
    use controls, only: thermal_scheme_type
    use increment_records, only: measure_contact
    use kinds, only: dp
@@ -18,31 +18,33 @@ contains
 
    !> The record of an interface, as far as estimates look at it: all but slip, temperatures,
    !> conductance and heat flux.
-   pure function contact_of(pairs, friction, status, gap, force, shear_force, heat) result(contact)
-      type(contact_pairs_type), intent(in) :: pairs   !! the pairs of the interface
+   pure function contact_of(points, friction, contact_state, gap, force, shear_force, &
+      heat) result(contact)
+      type(contact_points_type), intent(in) :: points !! the contact points of the interface
       real(dp), intent(in) :: friction                !! mu [-]
-      integer, intent(in) :: status(:)                !! (m) open, slip or stick
+      integer, intent(in) :: contact_state(:)         !! (m) open, slip or stick
       real(dp), intent(in) :: gap(:)                  !! (m) [length]
       real(dp), intent(in) :: force(:)                !! (m) nodal, positive in compression [force]
       real(dp), intent(in) :: shear_force(:)          !! (m) on the slave [force]
       real(dp), intent(in) :: heat(:)                 !! (m) from slave to master [power]
       type(contact_record_type) :: contact
 
-      contact%status = status
+      contact%contact_state = contact_state
       contact%gap = gap
-      call measure_contact(pairs, friction, status /= status_open, force, shear_force, contact)
+      call measure_contact(points, friction, contact_state /= contact_open, force, shear_force, &
+         contact)
       contact%heat_rate = sum(heat)
    end function contact_of
 
    !> The estimated quantities of an interface.
-   pure function quantities_of(pairs, contact) result(values)
-      type(contact_pairs_type), intent(in) :: pairs      !! the pairs of the interface
+   pure function quantities_of(points, contact) result(values)
+      type(contact_points_type), intent(in) :: points    !! the contact points of the interface
       type(contact_record_type), intent(in) :: contact   !! as from contact_of
       real(dp) :: values(size(estimated))                !! NaN for an edge where there is none
       integer :: q
 
       do q = 1, size(estimated)
-         values(q:q) = contact_values(estimated(q)%name, pairs, contact)
+         values(q:q) = contact_values(estimated(q)%name, points, contact)
       end do
    end function quantities_of
 
@@ -56,23 +58,23 @@ contains
       integer :: first, i, last
 
       omega = carrying_conductance(state, scheme)
-      associate (pairs => bodies%pairs, contact => state%contact)
+      associate (points => bodies%points, contact => state%contact)
          do i = 1, size(values, 2)
-            first = pairs%interface_start(i)
-            last = pairs%interface_start(i + 1) - 1
+            first = points%interface_start(i)
+            last = points%interface_start(i + 1) - 1
             values(:, i) = quantities_of(bodies%interfaces(i), contact_of( &
-               bodies%interfaces(i), pairs%friction(first), contact%status(first:last), &
+               bodies%interfaces(i), points%friction(first), contact%contact_state(first:last), &
                contact%gap(first:last), contact%force(first:last), &
-               contact%shear_force(first:last), pairs%weight(first:last)*omega(first:last)* &
+               contact%shear_force(first:last), points%weight(first:last)*omega(first:last)* &
                state%jump(first:last)))
          end do
       end associate
    end subroutine quantities_of_state
 
-   !> How far the edges among the quantities are known from the spacing of the pairs; 0 for the
-   !> others and for zones that end with the interface.
-   pure function edge_resolution(pairs, values) result(resolution)
-      type(contact_pairs_type), intent(in) :: pairs   !! the pairs of the interface
+   !> How far the edges among the quantities are known from the spacing of the contact points; 0 for
+   !> the others and for zones that end with the interface.
+   pure function edge_resolution(points, values) result(resolution)
+      type(contact_points_type), intent(in) :: points !! the contact points of the interface
       real(dp), intent(in) :: values(:)               !! as quantities_of gave them
       real(dp) :: resolution(size(values))            !! to either side [length]
       integer :: q
@@ -80,20 +82,21 @@ contains
       do q = 1, size(values)
          resolution(q) = 0.0_dp
          if (estimated(q)%resolution > 0.0_dp) resolution(q) = estimated(q)%resolution* &
-            spacing_at(pairs%arc_length, values(q))
+            spacing_at(points%arc_length, values(q))
       end do
    end function edge_resolution
 
-   !> Distance of the pairs on both sides of a place; 0 at or beyond the last pair.
-   pure function spacing_at(s, place) result(spacing)
-      real(dp), intent(in) :: s(:), place
+   !> Distance of the contact points on both sides of a position; 0 at or beyond the last contact
+   !> point.
+   pure function spacing_at(s, position) result(spacing)
+      real(dp), intent(in) :: s(:), position
       real(dp) :: spacing
       integer :: k
 
       spacing = 0.0_dp
-      if (ieee_is_nan(place)) return
+      if (ieee_is_nan(position)) return
       do k = 1, size(s) - 1
-         if (place >= s(k) .and. place < s(k + 1)) spacing = s(k + 1) - s(k)
+         if (position >= s(k) .and. position < s(k + 1)) spacing = s(k + 1) - s(k)
       end do
    end function spacing_at
 

@@ -1,8 +1,8 @@
-!> The model with every element divided into four: matrices of its bodies, its pairs and loads, and
-!> the maps between both meshes. The old mesh's fields are fields of the new one.
+!> The model with every element divided into four: matrices of its bodies, its contact points and
+!> loads, and the maps between both meshes. The old mesh's fields are fields of the new one.
 module refined_model
    use bodies, only: find_bodies
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use errors, only: error_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -10,7 +10,7 @@ module refined_model
    use mesh_division, only: divide, division_type, refined_members, refined_values, &
       restricted_values
    use model, only: model_type
-   use pair_rows, only: pair_row_type, pair_surfaces, row_of
+   use all_contact_points, only: all_contact_points_type, match_surfaces, joined_points
    use refinement, only: refine
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
@@ -24,12 +24,12 @@ module refined_model
       type(model_type) :: model                 !! the model, refined once
       type(mesh_type) :: coarse                 !! the mesh before
       type(division_type) :: division           !! how its elements were divided
-      type(contact_pairs_type), allocatable :: interfaces(:)  !! interfaces in the deck's order
-      type(pair_row_type) :: pairs              !! all their pairs
-      integer, allocatable :: old_pair(:)       !! (m) pair of the old mesh, 0 for a new one
-      !> (2, m) old pairs on both sides of a new one; of an old one itself
+      type(contact_points_type), allocatable :: interfaces(:) !! interfaces in the deck's order
+      type(all_contact_points_type) :: points   !! all their contact points
+      integer, allocatable :: old_point(:)     !! (m) contact point of the old mesh, 0 for a new one
+      !> (2, m) old contact points on both sides of a new one; of an old one itself
       integer, allocatable :: neighbours(:, :)
-      logical, allocatable :: at_old_pair(:)    !! (2 nodes) displacements of the old pairs
+      logical, allocatable :: at_old_points(:)  !! (2 nodes) displacements of the old contact points
       type(loads_type) :: loads                 !! its loads
       type(sparse_matrix_type) :: stiffness     !! (2 nodes, 2 nodes) [force/length]
       type(sparse_matrix_type) :: thermal_load  !! (2 nodes, nodes) [force/temperature]
@@ -38,7 +38,7 @@ module refined_model
       procedure :: prepare
       procedure :: assemble
       procedure :: prolong
-      procedure :: prolong_pairs
+      procedure :: prolong_points
       procedure :: restrict
       procedure :: prolong_set
       procedure :: conduction_with
@@ -46,12 +46,12 @@ module refined_model
 
 contains
 
-   !> Refines a model and pairs its surfaces.
-   !> Error: as make_pairs.
-   subroutine prepare(self, model, pairs, error)
+   !> Refines a model and matches its surfaces.
+   !> Error: as make_contact_points.
+   subroutine prepare(self, model, points, error)
       class(refined_model_type), intent(inout) :: self    !! empty
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: pairs
+      type(all_contact_points_type), intent(in) :: points
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
@@ -62,47 +62,47 @@ contains
       call find_bodies(self%model%mesh)
       allocate (self%interfaces(size(model%contacts)))
       do i = 1, size(self%interfaces)
-         call pair_surfaces(self%model, i, self%interfaces(i), error)
+         call match_surfaces(self%model, i, self%interfaces(i), error)
          if (allocated(error)) return
       end do
-      self%pairs = row_of(self%interfaces, self%model)
-      call match_pairs(self, pairs)
+      self%points = joined_points(self%interfaces, self%model)
+      call match_points(self, points)
       call self%loads%prepare(self%model)
    end subroutine prepare
 
-   !> Finds the old pairs among all, and those about each new one.
-   pure subroutine match_pairs(self, pairs)
+   !> Finds the old contact points among all, and those about each new one.
+   pure subroutine match_points(self, points)
       class(refined_model_type), intent(inout) :: self
-      type(pair_row_type), intent(in) :: pairs
+      type(all_contact_points_type), intent(in) :: points
       integer :: after, before, first, i, k, last, old, old_last
 
-      allocate (self%old_pair(size(self%pairs%slave)), source=0)
-      allocate (self%neighbours(2, size(self%pairs%slave)))
-      allocate (self%at_old_pair(2*self%division%nodes_after), source=.false.)
-      self%at_old_pair([2*pairs%slave - 1, 2*pairs%slave, 2*pairs%master - 1, 2*pairs%master]) = &
-         .true.
+      allocate (self%old_point(size(self%points%slave)), source=0)
+      allocate (self%neighbours(2, size(self%points%slave)))
+      allocate (self%at_old_points(2*self%division%nodes_after), source=.false.)
+      self%at_old_points([2*points%slave - 1, 2*points%slave, 2*points%master - 1, &
+         2*points%master]) = .true.
       do i = 1, size(self%interfaces)
-         first = self%pairs%interface_start(i)
-         last = self%pairs%interface_start(i + 1) - 1
-         old = pairs%interface_start(i)
-         old_last = pairs%interface_start(i + 1) - 1
+         first = self%points%interface_start(i)
+         last = self%points%interface_start(i + 1) - 1
+         old = points%interface_start(i)
+         old_last = points%interface_start(i + 1) - 1
          do k = first, last
-            if (self%pairs%slave(k) > self%division%nodes) cycle
-            self%old_pair(k) = old - 1 + findloc(pairs%slave(old:old_last), self%pairs%slave(k), &
-               dim=1)
+            if (self%points%slave(k) > self%division%nodes) cycle
+            self%old_point(k) = old - 1 + findloc(points%slave(old:old_last), &
+               self%points%slave(k), dim=1)
          end do
          do k = first, last
             before = k
             after = k
-            if (self%old_pair(k) == 0) then
-               ! In a ring the first and the last pair are neighbours.
+            if (self%old_point(k) == 0) then
+               ! On a closed face the first and the last contact point are neighbours.
                before = merge(last, k - 1, k == first)
                after = merge(first, k + 1, k == last)
             end if
-            self%neighbours(:, k) = [self%old_pair(before), self%old_pair(after)]
+            self%neighbours(:, k) = [self%old_point(before), self%old_point(after)]
          end do
       end do
-   end subroutine match_pairs
+   end subroutine match_points
 
    !> Assembles the matrices that are asked for.
    subroutine assemble(self, with_mechanics, with_heat, with_strain)
@@ -141,14 +141,14 @@ contains
       end do
    end function prolong
 
-   !> The mean of a quantity of the old pairs about each pair.
-   pure function prolong_pairs(self, values) result(refined)
+   !> The mean of a quantity of the old contact points about each contact point.
+   pure function prolong_points(self, values) result(refined)
       class(refined_model_type), intent(in) :: self
-      real(dp), intent(in) :: values(:)               !! (old pairs)
-      real(dp) :: refined(size(self%old_pair))        !! (m)
+      real(dp), intent(in) :: values(:)               !! (old contact points)
+      real(dp) :: refined(size(self%old_point))       !! (m)
 
       refined = 0.5_dp*(values(self%neighbours(1, :)) + values(self%neighbours(2, :)))
-   end function prolong_pairs
+   end function prolong_points
 
    !> Forces at the nodes of the new mesh as those of the old one that do the same work.
    pure function restrict(self, values, components) result(coarse)

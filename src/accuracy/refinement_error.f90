@@ -11,12 +11,12 @@ module refinement_error
    use balances, only: heat_residual
    use companion_steps, only: companion_step
    use contact_operator, only: kept_contact, thermal_forces
-   use contact_states, only: status_open
+   use contact_states, only: contact_open
    use controls, only: implicit_scheme
    use errors, only: error_type
    use films, only: net_heat
    use increment_data, only: increment_workspace_type
-   use increment_solution, only: recover_fields, solve_pairs
+   use increment_solution, only: recover_fields, solve_points
    use increments, only: simulation_type
    use interface_quantities, only: contact_of, quantities_of, quantities_of_state
    use interruption, only: check_overdue
@@ -25,11 +25,11 @@ module refinement_error
    use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
-   use pair_rows, only: find_held_axes
+   use all_contact_points, only: find_held_axes
    use records, only: contact_record_type
    use reduced_bodies, only: reduced_bodies_type
    use refined_model, only: refined_model_type
-   use refined_pairs, only: refined_pairs_type
+   use refined_points, only: refined_points_type
    use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
@@ -46,7 +46,7 @@ module refinement_error
       type(solution_state_type) :: coarse           !! solution on the old mesh
       real(dp), allocatable :: displacement(:)      !! (2 nodes) on the new one [length]
       real(dp), allocatable :: temperature(:)       !! (nodes) likewise [temperature]
-      type(refined_pairs_type) :: pairs             !! its pairs
+      type(refined_points_type) :: points           !! its contact points
       logical, allocatable :: moves(:)              !! (2 nodes) displacements that are smoothed
       logical, allocatable :: warms(:)              !! (nodes) temperatures that are
       type(sparse_matrix_type) :: film              !! (nodes, nodes) F [power/temperature]
@@ -120,10 +120,11 @@ contains
             allocated(bodies%thermal_load%value))
          call refined%loads%move_to(clock, refined%model)
          fields%coarse = simulation%state
-         call find_held_axes(refined%pairs, refined%prolong_set(loads%displacement%active, 2))
-         ! Old pairs move by the solutions on the old mesh alone, which keep their conditions.
+         call find_held_axes(refined%points, refined%prolong_set(loads%displacement%active, 2))
+         ! Old contact points move by the solutions on the old mesh alone, which keep their
+         ! conditions.
          fields%moves = .not. (refined%prolong_set(loads%displacement%active, 2) .or. &
-            refined%at_old_pair)
+            refined%at_old_points)
          if (solves_heat(step%analysis)) then
             fields%warms = .not. refined%prolong_set(loads%temperature%active, 1)
             fields%film = refined%loads%film_matrix()
@@ -132,7 +133,7 @@ contains
             if (allocated(error)) return
          end if
          if (solves_heat(step%analysis) .and. has_memory(step%scheme)) then
-            call solve_pairs(bodies, loads, implicit_step(step), previous, workspace, &
+            call solve_points(bodies, loads, implicit_step(step), previous, workspace, &
                fields%coarse, error)
             if (allocated(error)) return
             call recover_fields(bodies, loads, implicit_step(step), workspace, previous, &
@@ -141,7 +142,7 @@ contains
       end associate
       fields%displacement = refined%prolong(fields%coarse%displacement, 2)
       fields%temperature = refined%prolong(fields%coarse%temperature, 1)
-      call fields%pairs%begin(refined, kept_contact(fields%coarse%contact, &
+      call fields%points%begin(refined, kept_contact(fields%coarse%contact, &
          fields%coarse%has_mechanics))
    end subroutine begin
 
@@ -153,21 +154,21 @@ contains
       type(joint_type), allocatable :: joints(:)
       real(dp), allocatable :: load(:)
 
-      associate (pairs => fields%pairs, u => fields%displacement, t => fields%temperature)
-         call pairs%take_old(refined, kept_contact(fields%coarse%contact, &
+      associate (points => fields%points, u => fields%displacement, t => fields%temperature)
+         call points%take_old(refined, kept_contact(fields%coarse%contact, &
             fields%coarse%has_mechanics))
          if (solves_mechanics(step%analysis)) then
-            call pairs%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, 2), &
+            call points%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, 2), &
                joints)
             load = mechanical_load(refined, fields)
-            call relax(refined%stiffness, joints, load + pairs%slip_forces(refined), &
+            call relax(refined%stiffness, joints, load + points%slip_forces(refined), &
                fields%moves, smoothing_steps, u)
-            call pairs%update(refined, u, load - refined%stiffness%multiply(u))
-            call pairs%take_old(refined, fields%coarse%contact)
+            call points%update(refined, u, load - refined%stiffness%multiply(u))
+            call points%take_old(refined, fields%coarse%contact)
          end if
          if (solves_heat(step%analysis)) then
-            call pairs%conduct(refined, fields%coarse%omega, fields%coarse%resting)
-            call pairs%conducting_joints(refined, joints)
+            call points%conduct(refined, fields%coarse%omega, fields%coarse%resting)
+            call points%conducting_joints(refined, joints)
             call relax(fields%conduction, joints, refined%loads%heat_load(), fields%warms, &
                smoothing_steps, t)
          end if
@@ -208,7 +209,7 @@ contains
             2) + bodies%mechanical%matrix%multiply(u) - &
             thermal_forces(bodies, t)
       end associate
-      call solve_pairs(bodies, loads, step, previous, workspace, trial, error)
+      call solve_points(bodies, loads, step, previous, workspace, trial, error)
       if (allocated(error)) return
       call recover_fields(bodies, loads, step, workspace, previous, trial)
       fields%displacement = fields%displacement + refined%prolong(trial%displacement - &
@@ -218,20 +219,22 @@ contains
       fields%coarse = trial
    end subroutine correct
 
-   !> K T + F T + what the pairs take, on the old mesh, with the conductances of its last solution.
+   !> K T + F T + what the contact points take, on the old mesh, with the conductances of its last
+   !> solution.
    function heat_taken(bodies, coarse, temperature) result(heat)
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: coarse
       real(dp), intent(in) :: temperature(:)
       real(dp) :: heat(size(temperature))
 
-      associate (pairs => bodies%pairs, t => temperature)
+      associate (points => bodies%points, t => temperature)
          heat = heat_residual(bodies%thermal%matrix%multiply(t), net_heat(0.0_dp*t, &
-            coarse%film, t), pairs, pairs%weight*coarse%omega*(t(pairs%slave) - t(pairs%master)))
+            coarse%film, t), points, points%weight*coarse%omega*(t(points%slave) - &
+            t(points%master)))
       end associate
    end function heat_taken
 
-   !> Q - K T - F T - what the pairs take, on the new mesh.
+   !> Q - K T - F T - what the contact points take, on the new mesh.
    function heat_out_of_balance(refined, fields) result(residual)
       type(refined_model_type), intent(in) :: refined
       type(corrected_type), intent(in) :: fields
@@ -239,8 +242,8 @@ contains
 
       associate (t => fields%temperature)
          residual = -heat_residual(refined%conduction%multiply(t), &
-            net_heat(refined%loads%heat_load(), fields%film, t), refined%pairs, &
-            fields%pairs%heat(refined%pairs, t))
+            net_heat(refined%loads%heat_load(), fields%film, t), refined%points, &
+            fields%points%heat(refined%points, t))
       end associate
    end function heat_out_of_balance
 
@@ -250,23 +253,23 @@ contains
       type(corrected_type), intent(in) :: fields
       real(dp), intent(out) :: values(:, :)
       type(contact_record_type) :: contact
-      real(dp) :: rates(size(refined%old_pair))
+      real(dp) :: rates(size(refined%old_point))
       logical, allocatable :: closed(:)
       integer :: first, i, last
 
-      rates = fields%pairs%heat(refined%pairs, fields%temperature)
-      associate (pairs => fields%pairs)
+      rates = fields%points%heat(refined%points, fields%temperature)
+      associate (points => fields%points)
          do i = 1, size(refined%interfaces)
-            first = refined%pairs%interface_start(i)
-            last = refined%pairs%interface_start(i + 1) - 1
-            closed = pairs%status(first:last) /= status_open
-            contact = contact_of(refined%interfaces(i), refined%pairs%friction(first), &
-               pairs%status(first:last), max(pairs%gap(first:last), 0.0_dp), &
-               merge(pairs%force(first:last), 0.0_dp, closed), &
-               merge(pairs%shear_force(first:last), 0.0_dp, closed), rates(first:last))
-            ! What the old mesh lacks at open pairs, the new ones about them carry.
-            contact%normal_force = sum(pairs%force(first:last))
-            contact%shear_force = sum(pairs%shear_force(first:last))
+            first = refined%points%interface_start(i)
+            last = refined%points%interface_start(i + 1) - 1
+            closed = points%contact_state(first:last) /= contact_open
+            contact = contact_of(refined%interfaces(i), refined%points%friction(first), &
+               points%contact_state(first:last), max(points%gap(first:last), 0.0_dp), &
+               merge(points%force(first:last), 0.0_dp, closed), &
+               merge(points%shear_force(first:last), 0.0_dp, closed), rates(first:last))
+            ! What the old mesh lacks at open contact points, the new ones about them carry.
+            contact%normal_force = sum(points%force(first:last))
+            contact%shear_force = sum(points%shear_force(first:last))
             values(:, i) = quantities_of(refined%interfaces(i), contact)
          end do
       end associate

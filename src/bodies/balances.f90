@@ -1,68 +1,68 @@
 !> Balances of heat and force that can fail: the reactions of each body alone, on the recovered
 !> fields, against what the reduced system says crosses the contacts.
 module balances
-   use contact_states, only: contact_state_type, status_open, status_slip, status_stick
+   use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
    use controls, only: thermal_scheme_type
    use kinds, only: dp
-   use pair_rows, only: pair_row_type
+   use all_contact_points, only: all_contact_points_type
    implicit none
    private
-   public :: heat_residual, scheme_pair_heat, force_residual, imbalance, contact_violation
+   public :: heat_residual, scheme_contact_heat, force_residual, imbalance, contact_violation
 
 contains
 
-   !> Heat that the supports of each node must supply: K T - Q plus what leaves through the pairs,
-   !> by the reduced system.
-   pure function heat_residual(conducted, load, pairs, pair_heat) result(residual)
+   !> Heat that the supports of each node must supply: K T - Q plus what leaves through the contact
+   !> points, by the reduced system.
+   pure function heat_residual(conducted, load, points, contact_heat) result(residual)
       real(dp), intent(in) :: conducted(:)       !! (nodes) K T of the bodies alone [power]
       real(dp), intent(in) :: load(:)            !! (nodes) Q [power]
-      type(pair_row_type), intent(in) :: pairs
-      real(dp), intent(in) :: pair_heat(:)       !! (m) heat from slave to master [power]
+      type(all_contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: contact_heat(:)    !! (m) heat from slave to master [power]
       real(dp) :: residual(size(conducted)) !! (nodes) zero where not prescribed [power]
       integer :: k
 
       residual = conducted - load
-      do k = 1, size(pair_heat)
-         residual(pairs%slave(k)) = residual(pairs%slave(k)) + pair_heat(k)
-         residual(pairs%master(k)) = residual(pairs%master(k)) - pair_heat(k)
+      do k = 1, size(contact_heat)
+         residual(points%slave(k)) = residual(points%slave(k)) + contact_heat(k)
+         residual(points%master(k)) = residual(points%master(k)) - contact_heat(k)
       end do
    end function heat_residual
 
-   !> Heat of the pairs, from slave to master, in (3.4): the terms with G of both sides.
-   pure function scheme_pair_heat(scheme, weight, omega_old, omega_new, jump_old, jump_new) &
-      result(pair_heat)
+   !> Heat of the contact points, from slave to master, in (3.4): the terms with G of both sides.
+   pure function scheme_contact_heat(scheme, weight, omega_old, omega_new, jump_old, jump_new) &
+      result(contact_heat)
       type(thermal_scheme_type), intent(in) :: scheme !! coefficients of (3.4)
       real(dp), intent(in) :: weight(:)               !! (m) tributary areas [length^2]
       real(dp), intent(in) :: omega_old(:)            !! (m) omega_i
       real(dp), intent(in) :: omega_new(:)            !! (m) omega_i+1
       real(dp), intent(in) :: jump_old(:)             !! (m) theta_i [temperature]
       real(dp), intent(in) :: jump_new(:)             !! (m) theta_i+1 [temperature]
-      real(dp) :: pair_heat(size(weight))             !! (m) (a1 + b1)*mean heat [power]
+      real(dp) :: contact_heat(size(weight))          !! (m) (a1 + b1)*mean heat [power]
 
       associate (a => scheme%a, b => scheme%b)
-         pair_heat = weight*((a(2)*omega_old + a(3)*omega_new)*jump_new + &
+         contact_heat = weight*((a(2)*omega_old + a(3)*omega_new)*jump_new + &
             (b(2)*omega_old + b(3)*omega_new)*jump_old)
       end associate
-   end function scheme_pair_heat
+   end function scheme_contact_heat
 
    !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces
    !> of the reduced system.
-   pure function force_residual(internal, load, pairs, state) result(residual)
+   pure function force_residual(internal, load, points, state) result(residual)
       real(dp), intent(in) :: internal(:) !! (2 nodes) K u less the thermal load [force]
       real(dp), intent(in) :: load(:)                !! (2 nodes) applied forces [force]
-      type(pair_row_type), intent(in) :: pairs
+      type(all_contact_points_type), intent(in) :: points
       type(contact_state_type), intent(in) :: state  !! contact forces
       real(dp) :: residual(size(internal)) !! (2 nodes) zero where not prescribed [force]
       real(dp) :: on_slave(2)
-      integer :: k, s, m
+      integer :: k, slave_dof, master_dof
 
       residual = internal - load
-      do k = 1, size(pairs%slave)
-         on_slave = state%shear_force(k)*pairs%tangent(:, k) - state%force(k)*pairs%normal(:, k)
-         s = 2*pairs%slave(k)
-         m = 2*pairs%master(k)
-         residual(s - 1:s) = residual(s - 1:s) - on_slave
-         residual(m - 1:m) = residual(m - 1:m) + on_slave
+      do k = 1, size(points%slave)
+         on_slave = state%shear_force(k)*points%tangent(:, k) - state%force(k)*points%normal(:, k)
+         slave_dof = 2*points%slave(k)
+         master_dof = 2*points%master(k)
+         residual(slave_dof - 1:slave_dof) = residual(slave_dof - 1:slave_dof) - on_slave
+         residual(master_dof - 1:master_dof) = residual(master_dof - 1:master_dof) + on_slave
       end do
    end function force_residual
 
@@ -104,12 +104,12 @@ contains
    !> the recovered displacements, relative to the largest displacement and force. Where a row is
    !> supported on one body, the traction is taken from the other; where on both, the reduced
    !> system's stands.
-   pure function contact_violation(displacement, unbalanced, supported, pairs, state, &
+   pure function contact_violation(displacement, unbalanced, supported, points, state, &
       friction_acts, length_scale, force_scale) result(violation)
       real(dp), intent(in) :: displacement(:)        !! (2 nodes) [length]
       real(dp), intent(in) :: unbalanced(:) !! (2 nodes) K u - f without the contact forces [force]
       logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
-      type(pair_row_type), intent(in) :: pairs
+      type(all_contact_points_type), intent(in) :: points
       type(contact_state_type), intent(in) :: state  !! the state that is checked
       logical, intent(in) :: friction_acts(:) !! (m) whether the tangent is an unknown with friction
       real(dp), intent(in) :: length_scale           !! largest displacement [length]
@@ -117,39 +117,39 @@ contains
       real(dp) :: violation                          !! relative
       real(dp) :: force(2), relative(2), gap, normal_force, shear_force, slip, cone
       real(dp) :: left(size(unbalanced))
-      integer :: c, k, s, m
+      integer :: c, k, slave_dof, master_dof
 
       violation = 0.0_dp
-      ! A node may be in several pairs: what they leave over goes to each of them.
-      left = force_residual(unbalanced, 0.0_dp*unbalanced, pairs, state)
-      do k = 1, size(pairs%slave)
-         force = state%shear_force(k)*pairs%tangent(:, k) - state%force(k)*pairs%normal(:, k)
+      ! A node may be in several contact points: what they leave over goes to each of them.
+      left = force_residual(unbalanced, 0.0_dp*unbalanced, points, state)
+      do k = 1, size(points%slave)
+         force = state%shear_force(k)*points%tangent(:, k) - state%force(k)*points%normal(:, k)
          do c = 1, 2
-            s = 2*pairs%slave(k) - 2 + c
-            m = 2*pairs%master(k) - 2 + c
-            relative(c) = displacement(s) - displacement(m)
-            if (.not. supported(s)) then
-               force(c) = force(c) + left(s)
-            else if (.not. supported(m)) then
-               force(c) = force(c) - left(m)
+            slave_dof = 2*points%slave(k) - 2 + c
+            master_dof = 2*points%master(k) - 2 + c
+            relative(c) = displacement(slave_dof) - displacement(master_dof)
+            if (.not. supported(slave_dof)) then
+               force(c) = force(c) + left(slave_dof)
+            else if (.not. supported(master_dof)) then
+               force(c) = force(c) - left(master_dof)
             end if
          end do
-         gap = (pairs%initial_gap(k) - dot_product(relative, pairs%normal(:, k)))/length_scale
-         slip = (dot_product(relative, pairs%tangent(:, k)) - state%reference(k))/length_scale
-         normal_force = -dot_product(force, pairs%normal(:, k))/force_scale
-         shear_force = dot_product(force, pairs%tangent(:, k))/force_scale
-         cone = pairs%friction(k)*normal_force
-         if (state%status(k) == status_open) then
+         gap = (points%initial_gap(k) - dot_product(relative, points%normal(:, k)))/length_scale
+         slip = (dot_product(relative, points%tangent(:, k)) - state%reference(k))/length_scale
+         normal_force = -dot_product(force, points%normal(:, k))/force_scale
+         shear_force = dot_product(force, points%tangent(:, k))/force_scale
+         cone = points%friction(k)*normal_force
+         if (state%contact_state(k) == contact_open) then
             violation = max(violation, -gap, abs(normal_force), abs(shear_force))
             cycle
          end if
          violation = max(violation, abs(gap), -normal_force)
          if (.not. friction_acts(k)) cycle
-         if (state%status(k) == status_slip) then
+         if (state%contact_state(k) == contact_slip) then
             violation = max(violation, abs(abs(shear_force) - cone))
             violation = max(violation, min(slip*sign(1.0_dp, shear_force), abs(shear_force)))
          end if
-         if (state%status(k) == status_stick) then
+         if (state%contact_state(k) == contact_stick) then
             violation = max(violation, abs(shear_force) - cone, abs(slip))
          end if
       end do

@@ -125,7 +125,7 @@ contains
       integer, intent(in) :: i
       integer, allocatable, intent(out) :: value(:)
       real(dp), allocatable, intent(out) :: coefficient(:)
-      integer :: k, n, place
+      integer :: k, n, entry
 
       value = sums%value(sums%start(i):sums%start(i + 1) - 1)
       coefficient = sums%coefficient(sums%start(i):sums%start(i + 1) - 1)
@@ -142,9 +142,9 @@ contains
       end do
       n = 0
       do k = 1, size(value)
-         place = findloc(value(:n), value(k), dim=1)
-         if (place > 0) then
-            coefficient(place) = coefficient(place) + coefficient(k)
+         entry = findloc(value(:n), value(k), dim=1)
+         if (entry > 0) then
+            coefficient(entry) = coefficient(entry) + coefficient(k)
          else
             n = n + 1
             value(n) = value(k)

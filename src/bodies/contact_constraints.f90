@@ -3,10 +3,10 @@
 !> At a contact point the slave's values are the master's plus its relative values in its own frame:
 !> along normal and tangent; one jump of temperature. Where supports hold both nodes along an axis,
 !> only the other axis has a row: the relative value along the normal is the part of it that the
-!> motion along that axis makes. Contact points that form rings, as where a block stands in an inner
-!> corner, end with one whose rows follow from those of the others: they become links.
+!> motion along that axis makes. Contact points that form cycles, as where a block stands in an
+!> inner corner, end with one whose rows follow from those of the others: they become links.
 !>
-!> Contact points of a ring that all stick share their friction in a way that statics leaves open,
+!> Contact points of a cycle that all stick share their friction in a way that statics leaves open,
 !> and their relations depend on each other. They therefore give by a small part of what the bodies
 !> give.
 module contact_constraints
@@ -14,14 +14,15 @@ module contact_constraints
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use linear_constraints, only: linear_constraints_type, node_stiffness
-   use pair_rows, only: over_constrained, pair_row_type
+   use all_contact_points, only: over_constrained, all_contact_points_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
-   public :: constrain_displacements, constrain_temperatures, in_ring, stiffness_alone, ring_give
+   public :: constrain_displacements, constrain_temperatures, in_cycle, stiffness_alone, &
+      cycle_compliance
 
-   !> Part of the bodies' compliance at its nodes by which a stuck contact point of a ring gives.
-   real(dp), parameter :: ring_give = 1.0e-8_dp
+   !> Part of the bodies' compliance at its nodes by which a stuck contact point of a cycle gives.
+   real(dp), parameter :: cycle_compliance = 1.0e-8_dp
 
    !> Part of the bodies' stiffness at its nodes below which a contact point's own is rounding.
    real(dp), parameter :: held_by_others = 1.0e-6_dp
@@ -34,7 +35,7 @@ contains
    subroutine constrain_displacements(used, held, points, slave_leads, constraints, error)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
-      type(pair_row_type), intent(in) :: points     !! contact points, their held axes found
+      type(all_contact_points_type), intent(in) :: points !! contact points, their held axes found
       !> (m) whether the slave is to lead where neither node is prescribed; else the master does
       logical, intent(in) :: slave_leads(:)
       type(linear_constraints_type), intent(out) :: constraints
@@ -68,7 +69,7 @@ contains
    pure subroutine constrain_temperatures(used, held, points, slave_leads, constraints)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
-      type(pair_row_type), intent(in) :: points     !! contact points
+      type(all_contact_points_type), intent(in) :: points !! contact points
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(linear_constraints_type), intent(out) :: constraints
       type(constraint_rows_type) :: rows
@@ -106,7 +107,7 @@ contains
 
    !> Adds the row of one component of a contact point: master + direction*relative - slave = 0.
    pure subroutine relate(points, k, component, slave_leads, direction, rows)
-      type(pair_row_type), intent(in) :: points
+      type(all_contact_points_type), intent(in) :: points
       integer, intent(in) :: k, component
       logical, intent(in) :: slave_leads(:)
       real(dp), intent(in) :: direction(:)
@@ -122,18 +123,18 @@ contains
       rows%constraint(rows%count) = rows%dofs + k
    end subroutine relate
 
-   !> Contact points that are part of a ring.
-   pure function in_ring(constraints, points) result(ring)
+   !> Contact points that are part of a cycle.
+   pure function in_cycle(constraints, points) result(cyclic)
       type(linear_constraints_type), intent(in) :: constraints
       integer, intent(in) :: points                 !! m, their number
-      logical :: ring(points)                       !! (m)
+      logical :: cyclic(points)                     !! (m)
 
-      ring = any(reshape(constraints%is_linked(constraints%introduced), &
+      cyclic = any(reshape(constraints%is_linked(constraints%introduced), &
          [constraints%components, points]), dim=1)
-   end function in_ring
+   end function in_cycle
 
-   !> Stiffness, or conductance, of a contact point of a ring alone. That of the one that closes the
-   !> ring, which only the others hold, is the bodies' at its nodes.
+   !> Stiffness, or conductance, of a contact point of a cycle alone. That of the one that closes
+   !> the cycle, which only the others hold, is the bodies' at its nodes.
    pure function stiffness_alone(own, matrix, nodes, components) result(stiffness)
       real(dp), intent(in) :: own                         !! diagonal entry on the tail
       type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) of the bodies

@@ -1,12 +1,13 @@
-!> The contact system of the reduced bodies: the Schur complement of equilibrium on the pairs.
+!> The contact system of the reduced bodies: the Schur complement of equilibrium on the contact
+!> points.
 module contact_reduction
-   use contact_constraints, only: in_ring, ring_give, stiffness_alone
+   use contact_constraints, only: in_cycle, cycle_compliance, stiffness_alone
    use contact_system, only: contact_system_type
    use dense, only: column_space
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use linear_constraints, only: node_stiffness
-   use pair_rows, only: pair_row_type
+   use all_contact_points, only: all_contact_points_type
    implicit none
    private
    public :: contact_system_of
@@ -14,42 +15,42 @@ module contact_reduction
 contains
 
    !> The contact system from the mechanical Schur complement.
-   pure function contact_system_of(mechanical, pairs, rigid) result(contact)
+   pure function contact_system_of(mechanical, points, rigid) result(contact)
       type(field_problem_type), intent(in) :: mechanical !! equilibrium, reduced
-      type(pair_row_type), intent(in) :: pairs           !! all pairs
+      type(all_contact_points_type), intent(in) :: points !! all contact points
       real(dp), intent(in) :: rigid(:, :) !! (2 nodes, motions) that the supports leave free
       type(contact_system_type) :: contact               !! the system, nothing closed
       integer :: m
 
-      m = size(pairs%slave)
+      m = size(points%slave)
       allocate (contact%normal(m), contact%tangent(m))
       associate (map => mechanical%map)
          contact%normal(:) = map%tail_index(map%introduced(1::2))
          contact%tangent(:) = map%tail_index(map%introduced(2::2))
       end associate
       contact%schur = mechanical%solver%schur
-      contact%friction = pairs%friction
-      call set_motions(pairs, rigid, contact)
-      call set_rings(mechanical, pairs, contact)
+      contact%friction = points%friction
+      call set_motions(points, rigid, contact)
+      call set_cycles(mechanical, points, contact)
    end function contact_system_of
 
    !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
    !> force; what S makes of them is rounding, and is taken from it.
-   pure subroutine set_motions(pairs, rigid, contact)
-      type(pair_row_type), intent(in) :: pairs
+   pure subroutine set_motions(points, rigid, contact)
+      type(all_contact_points_type), intent(in) :: points
       real(dp), intent(in) :: rigid(:, :)
       type(contact_system_type), intent(inout) :: contact
       real(dp), allocatable :: forces(:, :), relative(:, :)
-      integer :: k, m, s
+      integer :: k, master_dof, slave_dof
 
       allocate (contact%rigid(size(contact%schur, 1), size(rigid, 2)), source=0.0_dp)
-      do k = 1, size(pairs%slave)
-         s = 2*pairs%slave(k)
-         m = 2*pairs%master(k)
-         relative = rigid(s - 1:s, :) - rigid(m - 1:m, :)
-         contact%rigid(contact%normal(k), :) = matmul(pairs%normal(:, k), relative)
+      do k = 1, size(points%slave)
+         slave_dof = 2*points%slave(k)
+         master_dof = 2*points%master(k)
+         relative = rigid(slave_dof - 1:slave_dof, :) - rigid(master_dof - 1:master_dof, :)
+         contact%rigid(contact%normal(k), :) = matmul(points%normal(:, k), relative)
          if (contact%tangent(k) > 0) then
-            contact%rigid(contact%tangent(k), :) = matmul(pairs%tangent(:, k), relative)
+            contact%rigid(contact%tangent(k), :) = matmul(points%tangent(:, k), relative)
          end if
       end do
       contact%motion = column_space(contact%rigid)
@@ -62,25 +63,25 @@ contains
       end associate
    end subroutine set_motions
 
-   !> The links of the rings, and how much their stuck pairs give.
-   pure subroutine set_rings(mechanical, pairs, contact)
+   !> The links of the cycles, and how much their stuck contact points give.
+   pure subroutine set_cycles(mechanical, points, contact)
       type(field_problem_type), intent(in) :: mechanical
-      type(pair_row_type), intent(in) :: pairs
+      type(all_contact_points_type), intent(in) :: points
       type(contact_system_type), intent(inout) :: contact
       integer :: k, nodes(2)
 
-      associate (map => mechanical%map, ring => in_ring(mechanical%map, size(pairs%slave)))
+      associate (map => mechanical%map, cyclic => in_cycle(mechanical%map, size(points%slave)))
          contact%link = map%tail_index(map%link_force)
-         allocate (contact%compliance(size(pairs%slave)), source=0.0_dp)
+         allocate (contact%compliance(size(points%slave)), source=0.0_dp)
          contact%alone = [(contact%schur(contact%normal(k), contact%normal(k)), &
-            k=1, size(pairs%slave))]
-         do k = 1, size(pairs%slave)
-            if (.not. ring(k)) cycle
-            nodes = [pairs%slave(k), pairs%master(k)]
-            contact%compliance(k) = ring_give/node_stiffness(mechanical%matrix, nodes, 2)
+            k=1, size(points%slave))]
+         do k = 1, size(points%slave)
+            if (.not. cyclic(k)) cycle
+            nodes = [points%slave(k), points%master(k)]
+            contact%compliance(k) = cycle_compliance/node_stiffness(mechanical%matrix, nodes, 2)
             contact%alone(k) = stiffness_alone(contact%alone(k), mechanical%matrix, nodes, 2)
          end do
       end associate
-   end subroutine set_rings
+   end subroutine set_cycles
 
 end module contact_reduction

@@ -3,7 +3,7 @@
 !> u are the degrees of freedom, g their prescribed values, v the unknowns: the degrees of freedom
 !> that no constraint writes by others, the values that constraints introduce, such as relative
 !> displacements of contact points, and the forces of links. A link is a constraint that says
-!> nothing new of the degrees of freedom, as where contact points form a ring; it relates
+!> nothing new of the degrees of freedom, as where contact points form a cycle; it relates
 !> introduced values to each other, G v + H g = 0. An unknown force, a Lagrange multiplier mu, keeps
 !> it: rows k G v = -k H g, columns k G^T mu. k is the stiffness of the bodies there, so that k mu
 !> is the force and mu compares with displacements.
@@ -183,13 +183,13 @@ contains
       end do
    end subroutine add_links
 
-   !> Place of an unknown on the tail, 0 where it is not there.
-   elemental function tail_index(self, unknown) result(place)
+   !> Position of an unknown on the tail, 0 where it is not there.
+   elemental function tail_index(self, unknown) result(position)
       class(linear_constraints_type), intent(in) :: self
       integer, intent(in) :: unknown                !! an unknown, or 0
-      integer :: place                              !! 1..tail or 0
+      integer :: position                           !! 1..tail or 0
 
-      place = max(unknown - (self%equations - self%tail), 0)
+      position = max(unknown - (self%equations - self%tail), 0)
    end function tail_index
 
    !> Whether a link acts on an unknown.

@@ -1,10 +1,10 @@
-!> The course of loads and prescribed values over the steps.
+!> The history of loads and prescribed values over the steps.
 module load_histories
    use amplitudes, only: amplitude_type, amplitude_value
    use kinds, only: dp
    implicit none
    private
-   public :: load_course_type, step_clock_type
+   public :: load_history_type, step_clock_type
 
    !> Where in the steps an instant lies.
    type :: step_clock_type
@@ -16,7 +16,7 @@ module load_histories
 
    !> A set of numbered loads, each with its present value. Loads stay from step to step until given
    !> anew or ended.
-   type :: load_course_type
+   type :: load_history_type
       logical, allocatable :: active(:)      !! (n) whether the load is given
       logical, allocatable :: permanent(:)   !! (n) active whatever the cards say
       logical, allocatable :: at_once(:)     !! (n) whether it never ramps
@@ -34,13 +34,13 @@ module load_histories
       procedure :: fade
       procedure :: remove
       procedure :: move_to
-   end type load_course_type
+   end type load_history_type
 
 contains
 
    !> Starts with no load given.
    pure subroutine prepare(self, initial, amplitudes)
-      class(load_course_type), intent(inout) :: self
+      class(load_history_type), intent(inout) :: self
       real(dp), intent(in) :: initial(:)             !! (n) values before anything is given
       type(amplitude_type), intent(in) :: amplitudes(:)  !! load curves
 
@@ -59,7 +59,7 @@ contains
    !> amplitude on total time moves on; as in CalculiX one on step time ends with its step. A load
    !> that is not given has the present value, from which it ramps once it is.
    pure subroutine begin_step(self, present_value)
-      class(load_course_type), intent(inout) :: self
+      class(load_history_type), intent(inout) :: self
       real(dp), intent(in) :: present_value(:)       !! (n) values of loads that are not given
       integer :: i
 
@@ -74,7 +74,7 @@ contains
 
    !> Gives a load for this step.
    pure subroutine give(self, i, value, amplitude, card)
-      class(load_course_type), intent(inout) :: self
+      class(load_history_type), intent(inout) :: self
       integer, intent(in) :: i                       !! number of the load
       real(dp), intent(in) :: value !! value at the end of the step, or factor of the amplitude
       integer, intent(in) :: amplitude               !! index of the amplitude, or 0
@@ -89,7 +89,7 @@ contains
    !> Ends a load as OP=NEW does in CalculiX: it goes to its rest over the step where it would ramp,
    !> at once where it follows an amplitude on total time or nothing ramps.
    pure subroutine fade(self, i)
-      class(load_course_type), intent(inout) :: self
+      class(load_history_type), intent(inout) :: self
       integer, intent(in) :: i                       !! number of the load
 
       if (self%amplitude(i) > 0) self%start(i) = self%rest(i)
@@ -99,7 +99,7 @@ contains
 
    !> Ends a load at once: what it prescribed is free.
    pure subroutine remove(self, i)
-      class(load_course_type), intent(inout) :: self
+      class(load_history_type), intent(inout) :: self
       integer, intent(in) :: i                       !! number of the load
 
       self%active(i) = self%permanent(i)
@@ -110,7 +110,7 @@ contains
 
    !> Moves all loads to an instant of the step.
    pure subroutine move_to(self, clock, amplitudes)
-      class(load_course_type), intent(inout) :: self
+      class(load_history_type), intent(inout) :: self
       type(step_clock_type), intent(in) :: clock         !! the instant
       type(amplitude_type), intent(in) :: amplitudes(:)  !! load curves
       real(dp) :: factor(size(amplitudes)), share

@@ -1,4 +1,4 @@
-!> Nodal forces, heat rates and film matrices of a unit load on one place.
+!> Nodal forces, heat rates and film matrices of a unit load on one location.
 module load_integrals
    use body_integrals, only: body_moments, body_weights, body_weights_radius
    use element_kinds, only: axisymmetric, element_node_count, side_nodes

@@ -2,9 +2,9 @@
 module loads
    use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
-   use load_histories, only: load_course_type, step_clock_type
+   use load_histories, only: load_history_type, step_clock_type
    use load_integrals, only: film_side, unit_forces, unit_heat
-   use load_places, only: entries_of, find_places, load_places_type
+   use load_locations, only: entries_of, find_locations, load_locations_type
    use mesh, only: mesh_type
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
@@ -18,24 +18,24 @@ module loads
 
    !> A side with a film.
    type :: film_side_type
-      integer :: coefficient = 0               !! place of its coefficient
-      integer :: sink = 0                      !! place of its sink temperature
+      integer :: coefficient = 0               !! location of its coefficient
+      integer :: sink = 0                      !! location of its sink temperature
       integer, allocatable :: nodes(:)         !! (n) nodes
       real(dp), allocatable :: mass(:, :)      !! (n, n) integral of psi^p psi^q [length^2]
    end type film_side_type
 
    !> Courses of the loads; displacements by degree of freedom, temperatures by node, all other ones
-   !> by the places on which the deck puts loads.
+   !> by the locations on which the deck puts loads.
    type :: loads_type
-      type(load_course_type) :: displacement   !! (2 nodes) prescribed displacements [length]
-      type(load_course_type) :: temperature    !! (nodes) prescribed temperatures [temperature]
-      type(load_course_type) :: applied        !! (places) loads, each in the unit of its kind
-      type(load_places_type) :: places         !! (places) what they act on
-      !> (2 nodes, places) nodal forces of unit loads [force per unit of the load]
+      type(load_history_type) :: displacement  !! (2 nodes) prescribed displacements [length]
+      type(load_history_type) :: temperature   !! (nodes) prescribed temperatures [temperature]
+      type(load_history_type) :: applied       !! (locations) loads, each in the unit of its kind
+      type(load_locations_type) :: locations   !! (locations) what they act on
+      !> (2 nodes, locations) nodal forces of unit loads [force per unit of the load]
       type(sparse_matrix_type) :: unit_forces
-      !> (nodes, places) nodal heat of unit loads, for films of unit coefficient and sink [power]
+      !> (nodes, locations) nodal heat of unit loads, for films of unit coefficient and sink [power]
       type(sparse_matrix_type) :: unit_heat
-      real(dp), allocatable :: total_heat(:)   !! (places) sums of its columns
+      real(dp), allocatable :: total_heat(:)   !! (locations) sums of its columns
       type(film_side_type), allocatable :: films(:)   !! sides with a film
       integer :: card_count = 0                !! number of the last data card of a load
    contains
@@ -64,10 +64,11 @@ contains
       call self%displacement%prepare(zero, model%amplitudes)
       call hold_axis(model%mesh, self%displacement)
       call self%temperature%prepare(model%initial_temperature, model%amplitudes)
-      self%places = find_places(model%steps)
-      call self%applied%prepare(values_at(self%places, model%initial_temperature), model%amplitudes)
+      self%locations = find_locations(model%steps)
+      call self%applied%prepare(values_at(self%locations, model%initial_temperature), &
+         model%amplitudes)
       ! As in CalculiX the sink of a film acts whole at once, while its coefficient ramps.
-      self%applied%at_once = self%places%kind == load_film_sink
+      self%applied%at_once = self%locations%kind == load_film_sink
       do s = 1, size(model%steps)
          if (.not. allocated(model%steps(s)%loads)) cycle
          self%card_count = max(self%card_count, maxval([0, model%steps(s)%loads%card]))
@@ -82,15 +83,15 @@ contains
       type(model_type), intent(in) :: model
       integer :: first, i, n
 
-      n = count(self%places%kind == load_film_coefficient)
-      first = findloc(self%places%kind, load_film_coefficient, dim=1)
+      n = count(self%locations%kind == load_film_coefficient)
+      first = findloc(self%locations%kind, load_film_coefficient, dim=1)
       allocate (self%films(n))
       do i = 1, n
-         associate (film => self%films(i), place => first + i - 1)
-            film%coefficient = place
-            film%sink = place + n
-            call film_side(model, self%places%item(place), self%places%component(place), &
-               film%nodes, film%mass)
+         associate (film => self%films(i), location => first + i - 1)
+            film%coefficient = location
+            film%sink = location + n
+            call film_side(model, self%locations%item(location), &
+               self%locations%component(location), film%nodes, film%mass)
          end associate
       end do
    end subroutine integrate_films
@@ -104,15 +105,16 @@ contains
       real(dp), allocatable :: unit_force(:, :), unit(:)
       integer :: i
 
-      associate (places => self%places, most_nodes => size(model%mesh%element_nodes, 1))
-         call forces%reserve(2*most_nodes*size(places%kind))
-         call heat%reserve(most_nodes*size(places%kind))
-         do i = 1, size(places%kind)
-            call unit_forces(model, places%kind(i), places%item(i), places%component(i), nodes, &
-               unit_force)
+      associate (locations => self%locations, most_nodes => size(model%mesh%element_nodes, 1))
+         call forces%reserve(2*most_nodes*size(locations%kind))
+         call heat%reserve(most_nodes*size(locations%kind))
+         do i = 1, size(locations%kind)
+            call unit_forces(model, locations%kind(i), locations%item(i), locations%component(i), &
+               nodes, unit_force)
             call forces%add_block(2*nodes - 1, [i], transpose(unit_force(1:1, :)))
             call forces%add_block(2*nodes, [i], transpose(unit_force(2:2, :)))
-            call unit_heat(model, places%kind(i), places%item(i), places%component(i), nodes, unit)
+            call unit_heat(model, locations%kind(i), locations%item(i), locations%component(i), &
+               nodes, unit)
             call heat%add_block(nodes, [i], reshape(unit, [size(unit), 1]))
          end do
          do i = 1, size(self%films)
@@ -121,9 +123,9 @@ contains
                   reshape(sum(film%mass, dim=2), [size(film%nodes), 1]))
             end associate
          end do
-         self%unit_forces = forces%compress(2*size(model%mesh%node_number), size(places%kind))
-         self%unit_heat = heat%compress(size(model%mesh%node_number), size(places%kind))
-         allocate (self%total_heat(size(places%kind)), source=0.0_dp)
+         self%unit_forces = forces%compress(2*size(model%mesh%node_number), size(locations%kind))
+         self%unit_heat = heat%compress(size(model%mesh%node_number), size(locations%kind))
+         allocate (self%total_heat(size(locations%kind)), source=0.0_dp)
          do i = 1, size(self%unit_heat%value)
             associate (total => self%total_heat(self%unit_heat%column(i)))
                total = total + self%unit_heat%value(i)
@@ -135,7 +137,7 @@ contains
    !> Nodes on the axis of an axisymmetric body stay there.
    pure subroutine hold_axis(mesh, displacement)
       type(mesh_type), intent(in) :: mesh
-      type(load_course_type), intent(inout) :: displacement
+      type(load_history_type), intent(inout) :: displacement
       integer :: e, node, q
 
       do e = 1, size(mesh%element_number)
@@ -149,15 +151,15 @@ contains
    end subroutine hold_axis
 
    !> Values of loads that are not given: the nodes' temperatures for *TEMPERATURE, else zero.
-   pure function values_at(places, temperature) result(values)
-      type(load_places_type), intent(in) :: places
+   pure function values_at(locations, temperature) result(values)
+      type(load_locations_type), intent(in) :: locations
       real(dp), intent(in) :: temperature(:)
-      real(dp) :: values(size(places%kind))
+      real(dp) :: values(size(locations%kind))
       integer :: i
 
       values = 0.0_dp
       do i = 1, size(values)
-         if (places%kind(i) == load_temperature) values(i) = temperature(places%item(i))
+         if (locations%kind(i) == load_temperature) values(i) = temperature(locations%item(i))
       end do
    end function values_at
 
@@ -172,7 +174,7 @@ contains
 
       call self%displacement%begin_step(displacement)
       call self%temperature%begin_step(temperature)
-      call self%applied%begin_step(values_at(self%places, temperature))
+      call self%applied%begin_step(values_at(self%locations, temperature))
       if (step%ends_boundaries) then
          do i = 1, size(displacement)
             call self%displacement%remove(i)
@@ -194,22 +196,23 @@ contains
       call apply_step(self, step)
    end subroutine begin_step
 
-   !> Gives the loads of a step; on their places, and of the kinds that OP=NEW ends, nothing stays.
+   !> Gives the loads of a step; on their locations, and of the kinds that OP=NEW ends, nothing
+   !> stays.
    pure subroutine apply_step(self, step)
       class(loads_type), intent(inout) :: self
       type(step_type), intent(in) :: step
-      logical :: given(size(self%places%kind)), ends
+      logical :: given(size(self%locations%kind)), ends
       integer :: entries(size(step%loads)), i
 
       given = .false.
-      entries = entries_of(self%places, step%loads)
+      entries = entries_of(self%locations, step%loads)
       given(entries) = .true.
       ends = .false.
       do i = 1, size(given)
-         ! The entries of a place that a step gives are its first ones.
-         ends = self%places%is_repeated(i) .and. (ends .or. given(max(1, i - 1)))
+         ! The entries of a location that a step gives are its first ones.
+         ends = self%locations%is_repeated(i) .and. (ends .or. given(max(1, i - 1)))
          if (given(i)) cycle
-         associate (kind => self%places%kind(i))
+         associate (kind => self%locations%kind(i))
             if (kind == load_temperature .and. step%analysis /= analysis_static) then
                call self%applied%remove(i)
             else if (self%applied%active(i) .and. (ends .or. step%ends_loads(kind)) .and. &
@@ -239,7 +242,7 @@ contains
    !> Present strength of every load; a film counts by its coefficient times its sink.
    pure function strength(self) result(values)
       class(loads_type), intent(in) :: self
-      real(dp) :: values(size(self%places%kind))
+      real(dp) :: values(size(self%locations%kind))
 
       values = merge(self%applied%value, 0.0_dp, self%applied%active)
       associate (films => self%films)
@@ -291,23 +294,23 @@ contains
       class(loads_type), intent(in) :: self
       real(dp), intent(in) :: temperature(:)    !! (nodes) [temperature]
       real(dp) :: rates(self%card_count)        !! (cards) by their running numbers [power]
-      real(dp) :: of_place(size(self%places%kind))
+      real(dp) :: of_location(size(self%locations%kind))
       integer :: i
 
-      of_place = self%total_heat*strength(self)
+      of_location = self%total_heat*strength(self)
       do i = 1, size(self%films)
          associate (film => self%films(i))
             if (.not. self%applied%active(film%coefficient)) cycle
-            of_place(film%coefficient) = of_place(film%coefficient) - &
+            of_location(film%coefficient) = of_location(film%coefficient) - &
                self%applied%value(film%coefficient)* &
                sum(matmul(film%mass, temperature(film%nodes)))
          end associate
       end do
       rates = 0.0_dp
-      do i = 1, size(of_place)
+      do i = 1, size(of_location)
          if (.not. self%applied%active(i)) cycle
          associate (rate => rates(self%applied%card(i)))
-            rate = rate + of_place(i)
+            rate = rate + of_location(i)
          end associate
       end do
    end function card_heat
@@ -318,9 +321,9 @@ contains
       real(dp), intent(inout) :: temperature(:)        !! (nodes) [temperature]
       integer :: i
 
-      do i = 1, size(self%places%kind)
-         if (self%places%kind(i) /= load_temperature .or. .not. self%applied%active(i)) cycle
-         temperature(self%places%item(i)) = self%applied%value(i)
+      do i = 1, size(self%locations%kind)
+         if (self%locations%kind(i) /= load_temperature .or. .not. self%applied%active(i)) cycle
+         temperature(self%locations%item(i)) = self%applied%value(i)
       end do
    end subroutine set_temperatures
 

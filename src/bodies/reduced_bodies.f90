@@ -1,9 +1,9 @@
 !> The bodies reduced once to their contact unknowns: everything that the fixed-point iteration
-!> needs, on the pairs alone.
+!> needs, on the contact points alone.
 module reduced_bodies
-   use contact_constraints, only: constrain_displacements, constrain_temperatures, in_ring, &
+   use contact_constraints, only: constrain_displacements, constrain_temperatures, in_cycle, &
       stiffness_alone
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use contact_reduction, only: contact_system_of
    use contact_system, only: contact_system_type
    use element_kinds, only: element_node_count
@@ -13,7 +13,8 @@ module reduced_bodies
    use unconstrained_motions, only: balanced_load
    use mesh, only: extent_of
    use model, only: model_type
-   use pair_rows, only: find_held_axes, pair_row_type, pair_surfaces, row_of
+   use all_contact_points, only: find_held_axes, all_contact_points_type, match_surfaces, &
+      joined_points
    use rigid_motions, only: unsupported_motions
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
@@ -29,8 +30,8 @@ module reduced_bodies
 
    !> The reduced bodies.
    type :: reduced_bodies_type
-      type(contact_pairs_type), allocatable :: interfaces(:)  !! interfaces in the order of the deck
-      type(pair_row_type) :: pairs                            !! all their pairs
+      type(contact_points_type), allocatable :: interfaces(:) !! interfaces in the order of the deck
+      type(all_contact_points_type) :: points                 !! all their contact points
       type(field_problem_type) :: thermal                     !! heat, (3.3)
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
@@ -38,7 +39,7 @@ module reduced_bodies
       real(dp), allocatable :: initial_temperature(:)         !! (nodes) [temperature]
       real(dp) :: largest_expansion = 0.0_dp !! of all bodies [1/temperature]
       real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
-      integer, allocatable :: jump_place(:) !! (m) place of the jump on the tail, 0 where held
+      integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       !> (mechanical tail, thermal tail) condensed mechanical load per jump; formed where coupled.
       real(dp), allocatable :: jump_load(:, :)
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
@@ -55,8 +56,8 @@ module reduced_bodies
 
 contains
 
-   !> Pairs the surfaces, unless the caller has already put the pairs in place.
-   !> Error: as make_pairs.
+   !> Matches the surfaces, unless the caller has already put the contact points in place.
+   !> Error: as make_contact_points.
    subroutine prepare(self, model, error)
       class(reduced_bodies_type), intent(inout) :: self !! empty
       type(model_type), intent(in) :: model
@@ -66,18 +67,18 @@ contains
       if (.not. allocated(self%interfaces)) then
          allocate (self%interfaces(size(model%contacts)))
          do i = 1, size(model%contacts)
-            call pair_surfaces(model, i, self%interfaces(i), error)
+            call match_surfaces(model, i, self%interfaces(i), error)
             if (allocated(error)) return
          end do
       end if
-      self%pairs = row_of(self%interfaces, model)
+      self%points = joined_points(self%interfaces, model)
       self%initial_temperature = model%initial_temperature
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
 
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
-   !> Error: an over-constrained pair.
+   !> Error: an over-constrained contact point.
    subroutine number(self, model, held, held_temperature, mechanics, heat, error)
       class(reduced_bodies_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model
@@ -88,26 +89,26 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (mechanics) then
-         call find_held_axes(self%pairs, held)
+         call find_held_axes(self%points, held)
          call unsupported_motions(model%mesh, held, self%rigid)
       end if
-      associate (pairs => self%pairs, used => model%mesh%node_body > 0)
-         if (mechanics) call constrain_displacements(used, held, pairs, &
-            slave_is_stiffer(model, pairs, .true.), self%mechanical%map, error)
+      associate (points => self%points, used => model%mesh%node_body > 0)
+         if (mechanics) call constrain_displacements(used, held, points, &
+            slave_is_stiffer(model, points, .true.), self%mechanical%map, error)
          if (allocated(error) .or. .not. heat) return
-         call constrain_temperatures(used, held_temperature, pairs, &
-            slave_is_stiffer(model, pairs, .false.), self%thermal%map)
+         call constrain_temperatures(used, held_temperature, points, &
+            slave_is_stiffer(model, points, .false.), self%thermal%map)
       end associate
    end subroutine number
 
    !> Whether the slave's body is far stiffer, or conducts far better, than the master's. A soft
    !> body is to be written by the stiff one: the other way round its stiffness would be left over
    !> where those of the stiff one cancel, and their rounding with it.
-   pure function slave_is_stiffer(model, pairs, mechanics) result(stiffer)
+   pure function slave_is_stiffer(model, points, mechanics) result(stiffer)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: pairs
+      type(all_contact_points_type), intent(in) :: points
       logical, intent(in) :: mechanics
-      logical :: stiffer(size(pairs%slave))
+      logical :: stiffer(size(points%slave))
       real(dp) :: stiffness(size(model%mesh%node_number)), own
       integer :: e, i
 
@@ -122,11 +123,11 @@ contains
             stiffness(nodes) = max(stiffness(nodes), own*section%thickness)
          end associate
       end do
-      stiffer = stiffness(pairs%slave) > far*stiffness(pairs%master)
+      stiffer = stiffness(points%slave) > far*stiffness(points%master)
    end function slave_is_stiffer
 
    !> Reduces the fields that are asked for to the unknowns that were numbered last.
-   !> Errors: bodies that nothing holds, a failure of the solver.
+   !> Errors: unconstrained bodies, a failure of the solver.
    subroutine reduce(self, model, mechanics, heat, coupled, error)
       class(reduced_bodies_type), intent(inout) :: self !! numbered
       type(model_type), intent(in) :: model
@@ -140,7 +141,7 @@ contains
          if (allocated(self%jump_load)) deallocate (self%jump_load)
          call self%mechanical%reduce(model%solver, error)
          if (allocated(error)) return
-         self%contact = contact_system_of(self%mechanical, self%pairs, self%rigid)
+         self%contact = contact_system_of(self%mechanical, self%points, self%rigid)
          self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
       end if
       if (heat) then
@@ -163,14 +164,14 @@ contains
          return
       end if
       associate (map => self%thermal%map)
-         self%jump_place = map%tail_index(map%introduced)
+         self%jump_index = map%tail_index(map%introduced)
       end associate
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       if (self%is_coupled) call form_jump_load(self)
    end subroutine reduce_heat
 
    !> Names the bodies that leave the heat problem singular: no prescribed temperature and no film
-   !> stands on them or on a body that pairs join to them.
+   !> stands on them or on a body that contact points join to them.
    subroutine name_cold_bodies(self, model, error)
       type(reduced_bodies_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -183,7 +184,7 @@ contains
       if (allocated(self%thermal%added%value)) then
          warm(pack(self%thermal%added%column, self%thermal%added%value > 0.0_dp)) = .true.
       end if
-      words = undetermined_beside(model, self%pairs, warm)
+      words = undetermined_beside(model, self%points, warm)
       if (len(words) > 0) error%message = words//': no *BOUNDARY on dof 11 and no *FILM with a '// &
          'coefficient above 0 at this time fixes it'
    end subroutine name_cold_bodies
@@ -229,7 +230,7 @@ contains
          model%materials, model%orientations)
    end subroutine assemble
 
-   !> Condensed mechanical load of a unit jump at each pair.
+   !> Condensed mechanical load of a unit jump at each contact point.
    subroutine form_jump_load(self)
       class(reduced_bodies_type), intent(inout) :: self
       real(dp), allocatable :: temperature(:, :)
@@ -266,22 +267,23 @@ contains
       call self%mechanical%condense_forces(forces, condensed)
    end subroutine condense_thermal_load
 
-   !> Conductance of the bodies about each pair alone; 0 where both temperatures are prescribed. A
-   !> pair that closes a ring, whose jump only the others hold, has that of the bodies at its nodes.
+   !> Conductance of the bodies about each contact point alone; 0 where both temperatures are
+   !> prescribed. A contact point that closes a cycle, whose jump only the others hold, has that of
+   !> the bodies at its nodes.
    pure function conductors(self) result(conductance)
       class(reduced_bodies_type), intent(in) :: self
-      real(dp) :: conductance(size(self%pairs%slave))      !! (m) [power/temperature]
-      logical :: ring(size(conductance))
+      real(dp) :: conductance(size(self%points%slave))     !! (m) [power/temperature]
+      logical :: cyclic(size(conductance))
       integer :: k
 
       conductance = 0.0_dp
-      ring = in_ring(self%thermal%map, size(ring))
+      cyclic = in_cycle(self%thermal%map, size(cyclic))
       do k = 1, size(conductance)
-         if (self%jump_place(k) == 0) cycle
-         conductance(k) = self%thermal%solver%schur(self%jump_place(k), self%jump_place(k))
-         if (.not. ring(k)) cycle
+         if (self%jump_index(k) == 0) cycle
+         conductance(k) = self%thermal%solver%schur(self%jump_index(k), self%jump_index(k))
+         if (.not. cyclic(k)) cycle
          conductance(k) = stiffness_alone(conductance(k), self%thermal%matrix, &
-            [self%pairs%slave(k), self%pairs%master(k)], 1)
+            [self%points%slave(k), self%points%master(k)], 1)
       end do
    end function conductors
 

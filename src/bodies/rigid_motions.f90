@@ -159,14 +159,14 @@ contains
    end function displacement_row
 
    !> Displacement along a direction by unit shifts and the unit turn of a body.
-   pure function at_point(bodies, body, place, direction) result(displacement)
+   pure function at_point(bodies, body, position, direction) result(displacement)
       type(rigid_bodies_type), intent(in) :: bodies
       integer, intent(in) :: body
-      real(dp), intent(in) :: place(2), direction(2)
+      real(dp), intent(in) :: position(2), direction(2)
       real(dp) :: displacement(3)
       real(dp) :: arm(2)
 
-      arm = (place - bodies%middle(:, body))/bodies%extent(body)
+      arm = (position - bodies%middle(:, body))/bodies%extent(body)
       displacement = [direction, direction(2)*arm(1) - direction(1)*arm(2)]
    end function at_point
 

@@ -2,10 +2,10 @@
 !> determines, in words: for a whole step, whatever its contact does, and at an instant of it.
 module unconstrained_bodies
    use conductance_laws, only: law_none
-   use contact_states, only: status_open, status_slip, status_stick
+   use contact_states, only: contact_open, contact_slip, contact_stick
    use kinds, only: dp
    use model, only: model_type
-   use pair_rows, only: pair_row_type
+   use all_contact_points, only: all_contact_points_type
    use rigid_motions, only: contact_tie_type, find_free_motions, free_motion_type
    use steps, only: load_film_coefficient
    use text, only: append, string_type, to_text
@@ -20,14 +20,14 @@ contains
    !> closed, those with friction as stuck. One message a motion.
    subroutine unconstrained_in_step(model, points, held, messages)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: points     !! all contact points
+      type(all_contact_points_type), intent(in) :: points !! all contact points
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
       type(string_type), allocatable, intent(out) :: messages(:)
       type(free_motion_type), allocatable :: motions(:)
       integer :: i
 
       call free_motions(model, points, held, &
-         merge(status_stick, status_slip, points%friction > 0.0_dp), motions)
+         merge(contact_stick, contact_slip, points%friction > 0.0_dp), motions)
       allocate (messages(0))
       do i = 1, size(motions)
          call append(messages, body_name(model, motions(i)%body)//' can '// &
@@ -38,18 +38,19 @@ contains
 
    !> Bodies that the supports and the contact points in these states leave free, to be added to a
    !> message, such as '; body 2 (...) slides along x'; empty where all are constrained.
-   function unconstrained_now(model, points, held, status) result(words)
+   function unconstrained_now(model, points, held, contact_state) result(words)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: points     !! all contact points
+      type(all_contact_points_type), intent(in) :: points !! all contact points
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
-      integer, intent(in) :: status(:)              !! (m) status_open, status_slip or status_stick
+      integer, intent(in) :: contact_state(:)     !! (m) contact_open, contact_slip or contact_stick
       character(:), allocatable :: words
       type(free_motion_type), allocatable :: motions(:), welded(:)
       integer, allocatable :: stuck(:)
       integer :: i, last
 
-      call free_motions(model, points, held, status, motions)
-      stuck = merge(status_stick, status, status == status_slip .and. points%friction > 0.0_dp)
+      call free_motions(model, points, held, contact_state, motions)
+      stuck = merge(contact_stick, contact_state, contact_state == contact_slip .and. &
+         points%friction > 0.0_dp)
       call free_motions(model, points, held, stuck, welded)
       words = ''
       last = 0
@@ -70,21 +71,21 @@ contains
    end function unconstrained_now
 
    !> The free motions with the contact points in these states.
-   subroutine free_motions(model, points, held, status, motions)
+   subroutine free_motions(model, points, held, contact_state, motions)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: points
+      type(all_contact_points_type), intent(in) :: points
       logical, intent(in) :: held(:)
-      integer, intent(in) :: status(:)
+      integer, intent(in) :: contact_state(:)
       type(free_motion_type), allocatable, intent(out) :: motions(:)
-      type(contact_tie_type) :: ties(2*size(status))
+      type(contact_tie_type) :: ties(2*size(contact_state))
       integer :: k, n
 
       n = 0
-      do k = 1, size(status)
-         if (status(k) == status_open) cycle
+      do k = 1, size(contact_state)
+         if (contact_state(k) == contact_open) cycle
          n = n + 1
          ties(n) = contact_tie_type(points%slave(k), points%master(k), points%normal(:, k))
-         if (status(k) /= status_stick) cycle
+         if (contact_state(k) /= contact_stick) cycle
          n = n + 1
          ties(n) = contact_tie_type(points%slave(k), points%master(k), points%tangent(:, k))
       end do
@@ -95,7 +96,7 @@ contains
    !> one side of their law is given. One message a body.
    subroutine undetermined_in_step(model, points, held, step, messages)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: points     !! all contact points
+      type(all_contact_points_type), intent(in) :: points !! all contact points
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
       integer, intent(in) :: step                   !! the step, for its films
       type(string_type), allocatable, intent(out) :: messages(:)
@@ -113,7 +114,7 @@ contains
    !> empty where there are none.
    function undetermined_now(model, points, held, step, conducts) result(words)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: points     !! all contact points
+      type(all_contact_points_type), intent(in) :: points !! all contact points
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
       integer, intent(in) :: step                   !! the step, for its films
       logical, intent(in) :: conducts(:)            !! (m) contact points that carry heat
@@ -128,7 +129,7 @@ contains
    !> carried heat, in one message; empty where there are none.
    function undetermined_beside(model, points, determined) result(words)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: points     !! all contact points
+      type(all_contact_points_type), intent(in) :: points !! all contact points
       logical, intent(in) :: determined(:)          !! (nodes) nodes whose temperature is fixed
       character(:), allocatable :: words
       type(string_type), allocatable :: messages(:)
@@ -159,7 +160,7 @@ contains
    !> that has.
    subroutine find_undetermined(model, points, has_source, conducts, messages)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: points
+      type(all_contact_points_type), intent(in) :: points
       logical, intent(in) :: has_source(:)
       logical, intent(in) :: conducts(:)
       type(string_type), allocatable, intent(out) :: messages(:)

@@ -1,20 +1,21 @@
-!> The active set of the contact system: which pairs are open, slip and stick.
+!> The active set of the contact system: which contact points are open, slip and stick.
 !>
-!> Solve, correct every pair that violates its condition, solve again. A set that comes back is left
-!> by correcting only the last offending pair (Murty's least-index rule), which cannot cycle on the
-!> P-matrix of a frictionless problem.
+!> Solve, correct every contact point that violates its condition, solve again. A set that comes
+!> back is left by correcting only the last offending contact point (Murty's least-index rule),
+!> which cannot cycle on the P-matrix of a frictionless problem.
 !>
-!> Where contact alone holds a body, a set may leave it loose. The body is then held softly where it
-!> was, and let go in steps, from the place that each step leads to (proximal point method), until
-!> the set that is found also holds without that. What drives off through all steps is loose.
+!> Where contact alone holds a body, a set may leave it unconstrained. The body is then held softly
+!> where it was, and let go in steps, from the position that each step leads to (proximal point
+!> method), until the set that is found also holds without that. What drives off through all steps
+!> is unconstrained.
 module active_set
-   use contact_states, only: condition_code, contact_state_type, status_open, status_slip, &
-      status_stick
+   use contact_states, only: state_code, contact_state_type, contact_open, contact_slip, &
+      contact_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
-   use friction, only: next_status
-   use idle_pairs, only: find_idle_pairs
+   use friction, only: next_contact_state
+   use idle_points, only: find_idle_points
    use kinds, only: dp
    use lemke_path, only: follow_lemke_path
    implicit none
@@ -23,17 +24,18 @@ module active_set
 
    integer, parameter :: most_sets = 200           !! active sets tried before giving up
    integer, parameter :: soft_steps = 12           !! steps in which a softly held body is let go
-   real(dp), parameter :: first_hold = 1.0e-3_dp   !! of the pairs' stiffness, in the first of them
+   !> of the contact points' stiffness, in the first of them
+   real(dp), parameter :: first_hold = 1.0e-3_dp
    real(dp), parameter :: least_hold = 1.0e-10_dp  !! the same in the last ones
    real(dp), parameter :: nothing = 1.0e-12_dp     !! part of the largest stiffness that is rounding
-   real(dp), parameter :: barely = 10.0_dp         !! lengths of rounding by which a pair overlaps
+   real(dp), parameter :: barely = 10.0_dp  !! lengths of rounding by which a contact point overlaps
    character(*), parameter :: unsettled = 'the contact zones do not settle'
 
 contains
 
    !> Contact state under a condensed load, the references of friction being given, and its idle
-   !> pairs. Motions that nothing drives or holds are least from the positions of the guess,
-   !> whatever sets are tried.
+   !> contact points. Motions that nothing drives or holds are least from the positions of the
+   !> guess, whatever sets are tried.
    !> Errors: no active set satisfies all conditions; the bodies are not held, and then driven is
    !> set, and the status is the one in which they are driven away.
    subroutine solve_contact(system, load, work, state, error)
@@ -45,7 +47,7 @@ contains
 
       call find_state(system, load, work, state, error)
       if (allocated(error)) return
-      call find_idle_pairs(system, load, force_rounding(system, load, work, state), work, state)
+      call find_idle_points(system, load, force_rounding(system, load, work, state), work, state)
    end subroutine solve_contact
 
    !> A state that satisfies all contact conditions.
@@ -101,10 +103,10 @@ contains
       type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      integer :: visited(size(state%status), most_sets)
-      integer :: next(2, size(state%status)), k, set
-      real(dp) :: excess(size(state%status))
-      logical :: corrected(size(state%status)), one_at_a_time
+      integer :: visited(size(state%contact_state), most_sets)
+      integer :: next(2, size(state%contact_state)), k, set
+      real(dp) :: excess(size(state%contact_state))
+      logical :: corrected(size(state%contact_state)), one_at_a_time
 
       one_at_a_time = .false.
       do set = 1, most_sets
@@ -113,13 +115,13 @@ contains
          call judge(system, load, work, state, next, excess)
          corrected = excess > 0.0_dp
          if (.not. any(corrected)) return
-         visited(:, set) = condition_code(state)
+         visited(:, set) = state_code(state)
          do k = 1, set - 1
             one_at_a_time = one_at_a_time .or. all(visited(:, k) == visited(:, set))
          end do
          if (one_at_a_time) corrected(:findloc(corrected, .true., dim=1, back=.true.) - 1) = .false.
          where (corrected)
-            state%status = next(1, :)
+            state%contact_state = next(1, :)
             state%direction = next(2, :)
          end where
       end do
@@ -135,29 +137,29 @@ contains
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       type(contact_workspace_type) :: soft
-      real(dp) :: hold, place(size(system%motion, 2)), way(size(system%motion, 2))
+      real(dp) :: hold, position(size(system%motion, 2)), way(size(system%motion, 2))
       integer :: step
 
-      place = matmul(positions(system, work, state), system%motion)
+      position = matmul(positions(system, work, state), system%motion)
       do step = 1, soft_steps
-         hold = max(first_hold*0.1_dp**(step - 1), least_hold)*stiffness_of_pairs(system)
+         hold = max(first_hold*0.1_dp**(step - 1), least_hold)*stiffness_of_points(system)
          soft = work%another()
          soft%hold = hold
-         associate (soft_load => load + hold*matmul(system%motion, place))
+         associate (soft_load => load + hold*matmul(system%motion, position))
             call search(system, soft_load, soft, state, error)
             if (allocated(error)) call follow_lemke_path(system, soft_load, soft, state, error)
          end associate
          if (allocated(error)) return
-         way = matmul(positions(system, work, state), system%motion) - place
-         place = place + way
+         way = matmul(positions(system, work, state), system%motion) - position
+         position = position + way
          if (holds_exactly(system, load, work, state)) return
          ! A light load comes no farther than load/hold: the body goes on across the open gaps.
          associate (far => norm2(state%gap) + barely*system%least_length*sqrt(real(size(load), dp)))
-            if (work%driven .and. norm2(way) > 0.0_dp) place = place + &
+            if (work%driven .and. norm2(way) > 0.0_dp) position = position + &
                max(far/norm2(way) - 1.0_dp, 0.0_dp)*way
          end associate
       end do
-      ! The last trial says why: driven is set, or some pair is wrong without the hold.
+      ! The last trial says why: driven is set, or some contact point is wrong without the hold.
       call work%solve_set(system, load, state, error)
       if (.not. allocated(error)) call set_error(error, status_no_convergence, unsettled)
    end subroutine hold_softly
@@ -171,8 +173,8 @@ contains
       type(contact_state_type), intent(inout) :: state
       type(contact_state_type) :: exact
       type(error_type), allocatable :: error
-      integer :: next(2, size(state%status))
-      real(dp) :: excess(size(state%status))
+      integer :: next(2, size(state%contact_state))
+      real(dp) :: excess(size(state%contact_state))
 
       exact = state
       call work%solve_set(system, load, exact, error)
@@ -192,23 +194,24 @@ contains
       integer :: k
 
       d = 0.0_dp
-      do k = 1, size(state%status)
+      do k = 1, size(state%contact_state)
          d(system%normal(k)) = work%initial_gap(k) - state%gap(k)
          if (system%tangent(k) > 0) d(system%tangent(k)) = state%tangential(k)
       end do
    end function positions
 
-   !> Stiffness of the softest pair, alone; pairs that close a ring have none of their own.
-   pure real(dp) function stiffness_of_pairs(system)
+   !> Stiffness of the softest contact point, alone; contact points that close a cycle have none of
+   !> their own.
+   pure real(dp) function stiffness_of_points(system)
       type(contact_system_type), intent(in) :: system
       integer :: i
 
       associate (own => [(system%schur(i, i), i=1, size(system%schur, 1))])
-         stiffness_of_pairs = minval(own, mask=own > nothing*maxval(own))
+         stiffness_of_points = minval(own, mask=own > nothing*maxval(own))
       end associate
-   end function stiffness_of_pairs
+   end function stiffness_of_points
 
-   !> What status each pair should have, and by how much it violates the present one.
+   !> What status each contact point should have, and by how much it violates the present one.
    subroutine judge(system, load, work, state, next, excess)
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
@@ -222,10 +225,10 @@ contains
       gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(work%initial_gap)), &
          maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
       force_tolerance = force_rounding(system, load, work, state)
-      next(1, :) = state%status
+      next(1, :) = state%contact_state
       next(2, :) = state%direction
-      do k = 1, size(state%status)
-         call next_status(next(1, k), next(2, k), state%gap(k), state%force(k), &
+      do k = 1, size(state%contact_state)
+         call next_contact_state(next(1, k), next(2, k), state%gap(k), state%force(k), &
             state%shear_force(k), work%slip(system, state, k), system%friction(k), &
             system%tangent(k) > 0, gap_tolerance, force_tolerance, excess(k))
       end do

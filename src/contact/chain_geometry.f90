@@ -1,12 +1,12 @@
 !> Lengths, weights and tangents along a line of sides with two or three nodes, open or closed to a
-!> ring.
+!> closed face.
 module chain_geometry
    use kinds, only: dp
    use quadrature, only: gauss_point_3, gauss_weight_3
    use shape_functions, only: side_shape, side_slope
    implicit none
    private
-   public :: arc_lengths, edge_lengths, tributary_lengths, tributary_rings, chain_tangents
+   public :: arc_lengths, edge_lengths, tributary_lengths, swept_areas, chain_tangents
    public :: at_tips
 
    real(dp), parameter :: two_pi = 6.283185307179586477_dp
@@ -24,14 +24,15 @@ contains
       side_total = (nodes - merge(0, 1, closed))/(side_nodes - 1)
    end function side_total
 
-   !> Places of the nodes of a side along the line; the last side of a ring ends at the first node.
-   pure function places(side, side_nodes, nodes) result(place)
+   !> Positions of the nodes of a side along the line; the last side of a closed face ends at the
+   !> first node.
+   pure function side_positions(side, side_nodes, nodes) result(position)
       integer, intent(in) :: side, side_nodes, nodes
-      integer :: place(side_nodes)
+      integer :: position(side_nodes)
       integer :: q
 
-      place = [(mod((side - 1)*(side_nodes - 1) + q, nodes) + 1, q=0, side_nodes - 1)]
-   end function places
+      position = [(mod((side - 1)*(side_nodes - 1) + q, nodes) + 1, q=0, side_nodes - 1)]
+   end function side_positions
 
    !> Length of a side between two of its points.
    pure function length_between(x, from, to) result(length)
@@ -50,16 +51,16 @@ contains
    pure function arc_lengths(x, side_nodes, closed) result(s)
       real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
       integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
-      logical, intent(in) :: closed       !! whether it is a ring
+      logical, intent(in) :: closed       !! whether it is a closed face
       real(dp) :: s(size(x, 2))           !! (nodes) [length]
-      integer :: place(side_nodes), q, side
+      integer :: position(side_nodes), q, side
 
       s(1) = 0.0_dp
       do side = 1, side_total(size(x, 2), side_nodes, closed)
-         place = places(side, side_nodes, size(x, 2))
+         position = side_positions(side, side_nodes, size(x, 2))
          do q = 2, side_nodes
-            if (place(q) == 1) cycle
-            s(place(q)) = s(place(q - 1)) + length_between(x(:, place), &
+            if (position(q) == 1) cycle
+            s(position(q)) = s(position(q - 1)) + length_between(x(:, position), &
                2*(q - 2.0_dp)/(side_nodes - 1) - 1, 2*(q - 1.0_dp)/(side_nodes - 1) - 1)
          end do
       end do
@@ -69,14 +70,14 @@ contains
    pure function edge_lengths(x, side_nodes, closed) result(edge)
       real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
       integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
-      logical, intent(in) :: closed       !! whether it is a ring
+      logical, intent(in) :: closed       !! whether it is a closed face
       real(dp) :: edge(size(x, 2))        !! (nodes) [length]
-      integer :: place(side_nodes), side
+      integer :: position(side_nodes), side
 
       edge = 0.0_dp
       do side = 1, side_total(size(x, 2), side_nodes, closed)
-         place = places(side, side_nodes, size(x, 2))
-         edge(place) = max(edge(place), length_between(x(:, place), -1.0_dp, 1.0_dp))
+         position = side_positions(side, side_nodes, size(x, 2))
+         edge(position) = max(edge(position), length_between(x(:, position), -1.0_dp, 1.0_dp))
       end do
    end function edge_lengths
 
@@ -85,21 +86,21 @@ contains
    pure function tributary_lengths(x, side_nodes, closed) result(weight)
       real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
       integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
-      logical, intent(in) :: closed       !! whether it is a ring
+      logical, intent(in) :: closed       !! whether it is a closed face
       real(dp) :: weight(size(x, 2))      !! (nodes) [length]
 
       weight = integrals(x, side_nodes, closed, .false.)
    end function tributary_lengths
 
    !> The same over the surface that the line sweeps round the axis x = 0: times 2 pi x.
-   pure function tributary_rings(x, side_nodes, closed) result(weight)
+   pure function swept_areas(x, side_nodes, closed) result(weight)
       real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
       integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
-      logical, intent(in) :: closed       !! whether it is a ring
+      logical, intent(in) :: closed       !! whether it is a closed face
       real(dp) :: weight(size(x, 2))      !! (nodes) [length^2]
 
       weight = integrals(x, side_nodes, closed, .true.)
-   end function tributary_rings
+   end function swept_areas
 
    pure function integrals(x, side_nodes, closed, about_axis) result(weight)
       real(dp), intent(in) :: x(:, :)
@@ -107,17 +108,17 @@ contains
       logical, intent(in) :: closed, about_axis
       real(dp) :: weight(size(x, 2))
       real(dp) :: factor, psi(side_nodes)
-      integer :: g, place(side_nodes), side
+      integer :: g, position(side_nodes), side
 
       weight = 0.0_dp
       do side = 1, side_total(size(x, 2), side_nodes, closed)
-         place = places(side, side_nodes, size(x, 2))
+         position = side_positions(side, side_nodes, size(x, 2))
          do g = 1, 3
             psi = side_shape(side_nodes, gauss_point_3(g))
             factor = 1.0_dp
-            if (about_axis) factor = two_pi*dot_product(psi, x(1, place))
-            weight(place) = weight(place) + factor*gauss_weight_3(g)*psi* &
-               norm2(matmul(x(:, place), side_slope(side_nodes, gauss_point_3(g))))
+            if (about_axis) factor = two_pi*dot_product(psi, x(1, position))
+            weight(position) = weight(position) + factor*gauss_weight_3(g)*psi* &
+               norm2(matmul(x(:, position), side_slope(side_nodes, gauss_point_3(g))))
          end do
       end do
    end function integrals
@@ -127,15 +128,15 @@ contains
    pure function at_tips(x, side_nodes, closed) result(tip)
       real(dp), intent(in) :: x(:, :)      !! (2, nodes) the line [length]
       integer, intent(in) :: side_nodes    !! nodes of a side, 2 or 3
-      logical, intent(in) :: closed        !! whether it is a ring
+      logical, intent(in) :: closed        !! whether it is a closed face
       logical :: tip(size(x, 2))           !! (nodes)
-      integer :: place(side_nodes), q, side
+      integer :: position(side_nodes), q, side
 
       tip = side_nodes == 3
       do side = 1, side_total(size(x, 2), side_nodes, closed)
-         place = places(side, side_nodes, size(x, 2))
+         position = side_positions(side, side_nodes, size(x, 2))
          do q = 1, side_nodes
-            tip(place(q)) = tip(place(q)) .and. is_tip(x(:, place), q)
+            tip(position(q)) = tip(position(q)) .and. is_tip(x(:, position), q)
          end do
       end do
    end function at_tips
@@ -175,15 +176,15 @@ contains
    pure function chain_tangents(x, side_nodes, closed) result(tangent)
       real(dp), intent(in) :: x(:, :)      !! (2, nodes) the line [length]
       integer, intent(in) :: side_nodes    !! nodes of a side, 2 or 3
-      logical, intent(in) :: closed        !! whether it is a ring
+      logical, intent(in) :: closed        !! whether it is a closed face
       real(dp) :: tangent(2, size(x, 2))   !! (2, nodes)
-      integer :: place(side_nodes), node, q, side
+      integer :: position(side_nodes), node, q, side
 
       tangent = 0.0_dp
       do side = 1, side_total(size(x, 2), side_nodes, closed)
-         place = places(side, side_nodes, size(x, 2))
+         position = side_positions(side, side_nodes, size(x, 2))
          do q = 1, side_nodes
-            tangent(:, place(q)) = tangent(:, place(q)) + direction_at(x(:, place), q)
+            tangent(:, position(q)) = tangent(:, position(q)) + direction_at(x(:, position), q)
          end do
       end do
       do node = 1, size(x, 2)

@@ -1,26 +1,26 @@
-!> The instant at which a pair closes within an increment, from which its slip counts.
+!> The instant at which a contact point closes within an increment, from which its slip counts.
 !>
-!> A pair that was open at gap gamma_i and is closed at the end would, alone relieved of its contact
-!> forces, end at the gap gamma* < 0 and the tangential position d_t*. It closes at the fraction f =
-!> gamma_i/(gamma_i - gamma*) of the increment, and its slip counts from the position that lies
-!> there between d_t,i and d_t*:
+!> A contact point that was open at gap gamma_i and is closed at the end would, alone relieved of
+!> its contact forces, end at the gap gamma* < 0 and the tangential position d_t*. It closes at the
+!> fraction f = gamma_i/(gamma_i - gamma*) of the increment, and its slip counts from the position
+!> that lies there between d_t,i and d_t*:
 !>
 !>    slip = d_t - d_t,i - f (d_t* - d_t,i).
 !>
-!> With C the compliance of the pair while all other closed pairs hold their places,
-!> gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that
+!> With C the compliance of the contact point while all other closed contact points hold their
+!> positions, gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that
 !>
 !>    slip = (1 - f) (d_t - d_t,i) + f C_t.lambda.
 !>
 !> The contact system is solved with C and f frozen; both are then computed anew, until they stay.
 !> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
 !> to slip, and each value could call for the other condition: then there is no solution. C still
-!> jumps where another pair closes or opens. Where that goes round and round, every pair that was
-!> closed on the way counts as one that holds. Then C stays, and only f can go on swinging, with
-!> much friction; of each change half is made in the end.
+!> jumps where another contact point closes or opens. Where that goes round and round, every contact
+!> point that was closed on the way counts as one that holds. Then C stays, and only f can go on
+!> swinging, with much friction; of each change half is made in the end.
 module closing_instant
    use active_set, only: solve_contact
-   use contact_states, only: closing_law_type, contact_state_type, status_open, status_stick
+   use contact_states, only: closing_law_type, contact_state_type, contact_open, contact_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -30,19 +30,21 @@ module closing_instant
    public :: solve_increment
 
    integer, parameter :: most_passes = 120 !! passes over the closing laws
-   integer, parameter :: free_passes = 10 !! of these, with the pairs holding that are closed
+   !> of these, with the contact points holding that are closed
+   integer, parameter :: free_passes = 10
    integer, parameter :: plain_passes = 60 !! of these, going all the way to the new laws
    real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
    real(dp), parameter :: rounding = 1.0e-10_dp   !! the same where it does not come down to that
-   !> Determinant of a pair's stiffness, over that of the pair alone on held bodies, that is none.
+   !> Determinant of a contact point's stiffness, over that of the contact point alone on held
+   !> bodies, that is none.
    real(dp), parameter :: nothing = 1.0e-12_dp
 
 contains
 
-   !> Contact state at the end of an increment, with the references of the pairs that close in it.
-   !> Only the statuses of the guess count: where bodies are loose, the motion is the least one from
-   !> the start of the increment. The workspace may have laws of an earlier pass; a pass that fails
-   !> leaves none.
+   !> Contact state at the end of an increment, with the references of the contact points that close
+   !> in it. Only the states of the guess count: where bodies are unconstrained, the motion is the
+   !> least one from the start of the increment. The workspace may have laws of an earlier pass; a
+   !> pass that fails leaves none.
    !> Error: as solve_contact, or closing laws that do not settle.
    subroutine solve_increment(system, previous, load, work, state, error)
       type(contact_system_type), intent(in) :: system     !! the reduced system
@@ -64,8 +66,8 @@ contains
       type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      type(closing_law_type) :: laws(size(state%status))
-      logical :: holds(size(state%status))
+      type(closing_law_type) :: laws(size(state%contact_state))
+      logical :: holds(size(state%contact_state))
       real(dp) :: change
       integer :: k, pass
 
@@ -75,7 +77,7 @@ contains
          state%tangential = previous%tangential
          call solve_contact(system, load, work, state, error)
          if (allocated(error)) return
-         holds = state%status /= status_open .or. (holds .and. pass > free_passes)
+         holds = state%contact_state /= contact_open .or. (holds .and. pass > free_passes)
          call find_laws(system, previous, state, holds, work, laws, error)
          if (allocated(error)) return
          change = maxval([0.0_dp, law_change(work%closing, laws)])
@@ -84,8 +86,8 @@ contains
          ! Laws that stay keep the factors.
          if (change > settled) work%closing = laws
          if (change <= merge(settled, rounding, pass <= free_passes)) then
-            do k = 1, size(state%status)
-               if (work%closing(k)%acts .and. state%status(k) /= status_open) then
+            do k = 1, size(state%contact_state)
+               if (work%closing(k)%acts .and. state%contact_state(k) /= contact_open) then
                   state%reference(k) = state%tangential(k) - work%slip(system, state, k)
                end if
             end do
@@ -98,9 +100,9 @@ contains
          'the instants at which pairs close do not settle')
    end subroutine settle_laws
 
-   !> Closing laws of the pairs that are closed now and were open at the start of the increment. A
-   !> pair that has opened again keeps its law, on which nothing depends: without it the pair might
-   !> close, with it open, for ever.
+   !> Closing laws of the contact points that are closed now and were open at the start of the
+   !> increment. A contact point that has opened again keeps its law, on which nothing depends:
+   !> without it the contact point might close, with it open, for ever.
    !> Error: a singular system.
    subroutine find_laws(system, previous, state, holds, work, laws, error)
       type(contact_system_type), intent(in) :: system
@@ -112,18 +114,18 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(contact_workspace_type) :: held
       type(contact_state_type) :: held_state
-      logical :: closes(size(state%status)), alone
+      logical :: closes(size(state%contact_state)), alone
       real(dp) :: compliance(2, 2)
       integer :: k
 
       laws = work%closing
-      closes = previous%status == status_open .and. state%status /= status_open .and. &
-         system%tangent > 0
+      closes = previous%contact_state == contact_open .and. state%contact_state /= &
+         contact_open .and. system%tangent > 0
       if (.not. any(closes)) return
       held = work%another()
       held%closing = closing_law_type()
       held_state = state
-      held_state%status = merge(status_stick, status_open, holds)
+      held_state%contact_state = merge(contact_stick, contact_open, holds)
       call held%factor_set(system, held_state, error)
       if (allocated(error)) return
       do k = 1, size(closes)
@@ -148,10 +150,10 @@ contains
          max(maxval(abs(new%compliance)), tiny(1.0_dp)))
    end function law_change
 
-   !> Compliance of one pair while all other closed pairs hold their places. A pair of a ring may
-   !> have none along a direction in which the others hold it, so it is opened there. Where only
-   !> this pair holds a body, relieved it would go without end: it closes at once, for which a
-   !> normal compliance of zero and the start of the increment stand.
+   !> Compliance of one contact point while all other closed contact points hold their positions. A
+   !> contact point of a cycle may have none along a direction in which the others hold it, so it is
+   !> opened there. Where only this contact point holds a body, relieved it would go without end: it
+   !> closes at once, for which a normal compliance of zero and the start of the increment stand.
    !> Error: a singular system.
    subroutine find_compliance(system, held, held_state, k, compliance, alone, error)
       type(contact_system_type), intent(in) :: system
@@ -164,33 +166,33 @@ contains
       type(contact_workspace_type) :: opened
       type(contact_state_type) :: opened_state
       real(dp) :: response(size(system%schur, 1), 2), stiffness(2, 2), determinant
-      integer :: places(2)
+      integer :: tail_rows(2)
 
-      places = [system%normal(k), system%tangent(k)]
+      tail_rows = [system%normal(k), system%tangent(k)]
       if (system%compliance(k) > 0.0_dp) then
          opened = held%another()
          opened_state = held_state
-         opened_state%status(k) = status_open
+         opened_state%contact_state(k) = contact_open
          call opened%factor_set(system, opened_state, error)
          if (allocated(error)) return
          response = 0.0_dp
-         response(places(1), 1) = 1.0_dp
-         response(places(2), 2) = 1.0_dp
+         response(tail_rows(1), 1) = 1.0_dp
+         response(tail_rows(2), 2) = 1.0_dp
          call opened%solve_free(response)
-         compliance = response(places, :)
-         alone = size(opened%loose, 2) > size(held%loose, 2)
+         compliance = response(tail_rows, :)
+         alone = size(opened%unconstrained, 2) > size(held%unconstrained, 2)
       else
-         stiffness = held%stiffness(system, places)
+         stiffness = held%stiffness(system, tail_rows)
          determinant = stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1)
-         alone = determinant <= nothing*system%schur(places(1), places(1))* &
-            system%schur(places(2), places(2))
+         alone = determinant <= nothing*system%schur(tail_rows(1), tail_rows(1))* &
+            system%schur(tail_rows(2), tail_rows(2))
          if (.not. alone) compliance = reshape([stiffness(2, 2), -stiffness(2, 1), &
             -stiffness(1, 2), stiffness(1, 1)], [2, 2])/determinant
       end if
       if (alone) compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp/system%alone(k)], [2, 2])
    end subroutine find_compliance
 
-   !> The closing law of one pair.
+   !> The closing law of one contact point.
    pure subroutine make_law(compliance, previous, state, k, law)
       real(dp), intent(in) :: compliance(2, 2)
       type(contact_state_type), intent(in) :: previous

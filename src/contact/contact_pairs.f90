@@ -1,31 +1,32 @@
-!> Contact node pairs: geometry, normals and tributary areas, taken once from the undeformed mesh.
+!> Contact points: geometry, normals and tributary areas, taken once from the undeformed mesh.
 module contact_pairs
    use chain_geometry, only: arc_lengths, at_tips, chain_tangents, edge_lengths, &
-      tributary_lengths, tributary_rings
+      tributary_lengths, swept_areas
    use contact_definitions, only: contact_definition_type
    use element_kinds, only: axisymmetric
    use errors, only: error_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use pair_checks, only: blame_corner, check_lines, check_opposite, check_sides, check_weights
+   use interface_checks, only: blame_corner, check_lines, check_opposite, check_sides, check_weights
    use surface_chains, only: chain_faces, precedes, surface_chain_type
    implicit none
    private
-   public :: contact_pairs_type, make_pairs, never_approached, on_axis
+   public :: contact_points_type, make_contact_points, never_approached, on_axis
 
    real(dp), parameter :: no_radius = 1.0e-9_dp  !! part of the largest radius that counts as 0
    real(dp), parameter :: weightless = 0.01_dp   !! part of its neighbour's weight below which the
    !! corner on the axis has none
    real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
 
-   !> The pairs of one interface, ordered along the slave from the end with the smaller x (then y);
-   !> in a ring from the corner with the smallest x (then y), with the slave on the left.
-   type :: contact_pairs_type
+   !> The contact points of one interface, ordered along the slave from the end with the smaller x
+   !> (then y); on a closed face from the corner with the smallest x (then y), with the slave on the
+   !> left.
+   type :: contact_points_type
       character(:), allocatable :: name        !! name of the *CONTACT PAIR
       integer, allocatable :: slave_node(:)    !! (m) node indexes
       integer, allocatable :: master_node(:)   !! (m) node indexes
       real(dp), allocatable :: position(:, :)  !! (2, m) undeformed slave [length]
-      real(dp), allocatable :: arc_length(:)   !! (m) s from the first pair [length]
+      real(dp), allocatable :: arc_length(:)   !! (m) s from the first contact point [length]
       !> (m) tributary length times thickness, axisymmetric times 2 pi r; 0 where three-node sides
       !> give the axis or the tip of quarter points none [length^2]
       real(dp), allocatable :: weight(:)
@@ -35,25 +36,25 @@ module contact_pairs
       real(dp), allocatable :: edge(:)         !! (m) longest side of the slave there [length]
       integer :: side_nodes = 2                !! nodes of a side, 2 or 3
       logical :: about_axis = .false.          !! whether the model is axisymmetric
-   end type contact_pairs_type
+   end type contact_points_type
 
 contains
 
-   !> The pairs of one *CONTACT PAIR: the k-th nodes along its two surfaces. A node that both
-   !> surfaces end in, the tip of a crack, is no pair.
+   !> The contact points of one *CONTACT PAIR: the k-th nodes along its two surfaces. A node that
+   !> both surfaces end in, the tip of a crack, is no contact point.
    !> Errors: surfaces that do not form one line each or that do not fit, unequal numbers of nodes,
    !> nodes that are not opposite, bodies on the wrong side, sides without tributary length.
-   subroutine make_pairs(mesh, definition, thickness, pairs, error)
+   subroutine make_contact_points(mesh, definition, thickness, points, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
       real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
-      type(contact_pairs_type), intent(out) :: pairs
+      type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
       type(surface_chain_type) :: slave, master
       logical :: turned_slave, turned_master
       integer :: first, last
 
-      pairs%name = definition%name
+      points%name = definition%name
       associate (slave_surface => mesh%surfaces(definition%slave), &
          master_surface => mesh%surfaces(definition%master))
          call chain_faces(mesh, slave_surface, slave, error)
@@ -64,32 +65,32 @@ contains
          call check_lines(mesh, definition, slave, master, error)
          if (allocated(error)) call blame_corner(mesh, definition, slave, master, error)
          if (allocated(error)) return
-         pairs%slave_node = slave%nodes
-         pairs%master_node = master%nodes
-         pairs%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
-         call set_weights(mesh, slave, master, thickness, pairs%about_axis, pairs%weight)
+         points%slave_node = slave%nodes
+         points%master_node = master%nodes
+         points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
+         call set_weights(mesh, slave, master, thickness, points%about_axis, points%weight)
       end associate
       first = 1
       last = size(slave%nodes)
       if (slave%nodes(1) == master%nodes(1)) first = 2
       if (slave%nodes(last) == master%nodes(last)) last = last - 1
-      call set_geometry(mesh, slave, master, [turned_slave, turned_master], pairs)
+      call set_geometry(mesh, slave, master, [turned_slave, turned_master], points)
       call check_sides(mesh, definition, slave, master, [turned_slave, turned_master], &
          [first, last], error)
       if (allocated(error)) return
-      pairs%side_nodes = slave%side_nodes
-      pairs%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
-      call cut_ends(first, last, pairs)
-      call check_weights(mesh, pairs%name, pairs%slave_node, pairs%weight, error)
+      points%side_nodes = slave%side_nodes
+      points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
+      call cut_ends(first, last, points)
+      call check_weights(mesh, points%name, points%slave_node, points%weight, error)
       if (allocated(error)) return
-      call check_opposite(mesh, pairs%name, pairs%slave_node, pairs%master_node, &
-         pairs%tangent, max(pairs%edge, abs(pairs%initial_gap)), error)
+      call check_opposite(mesh, points%name, points%slave_node, points%master_node, &
+         points%tangent, max(points%edge, abs(points%initial_gap)), error)
       if (allocated(error)) call blame_corner(mesh, definition, slave, master, error)
       if (allocated(error)) return
-      if (definition%has_clearance) pairs%initial_gap = definition%clearance
-   end subroutine make_pairs
+      if (definition%has_clearance) points%initial_gap = definition%clearance
+   end subroutine make_contact_points
 
-   !> Whether a pair neither closed nor came nearer than it was.
+   !> Whether a contact point neither closed nor came nearer than it was.
    elemental function never_approached(initial_gap, smallest_gap) result(never)
       real(dp), intent(in) :: initial_gap    !! h [length]
       real(dp), intent(in) :: smallest_gap   !! smallest gap of all increments [length]
@@ -98,8 +99,8 @@ contains
       never = smallest_gap > 0.0_dp .and. smallest_gap >= initial_gap*(1.0_dp - unmoved)
    end function never_approached
 
-   !> Turns both lines to run from the slave's first pair on: an open one if its ends so lie
-   !> nearer to the slave's, a ring of the master always, for it runs against the slave.
+   !> Turns both lines to run from the slave's first contact point on: an open one if its ends so
+   !> lie nearer to the slave's, a closed face of the master always, for it runs against the slave.
    subroutine align(mesh, slave, master, turned_slave, turned_master)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(inout) :: slave, master
@@ -133,14 +134,14 @@ contains
       end associate
    end subroutine align
 
-   !> Whether a pair lies on the axis of an axisymmetric model.
-   elemental logical function on_axis(pairs, k)
-      type(contact_pairs_type), intent(in) :: pairs  !! pairs of one interface
+   !> Whether a contact point lies on the axis of an axisymmetric model.
+   elemental logical function on_axis(points, k)
+      type(contact_points_type), intent(in) :: points !! contact points of one interface
       integer, intent(in) :: k                       !! one of them
 
       on_axis = .false.
-      if (pairs%about_axis) on_axis = abs(pairs%position(1, k)) <= &
-         no_radius*maxval(abs(pairs%position(1, :)))
+      if (points%about_axis) on_axis = abs(points%position(1, k)) <= &
+         no_radius*maxval(abs(points%position(1, :)))
    end function on_axis
 
    !> Weights on the line midway between the faces. On three-node sides the integral vanishes for a
@@ -161,7 +162,7 @@ contains
       middle = 0.5_dp*(mesh%coordinates(:, slave%nodes) + mesh%coordinates(:, master%nodes))
       without = at_tips(middle, slave%side_nodes, slave%closed)
       if (about_axis) then
-         weight = tributary_rings(middle, slave%side_nodes, slave%closed)
+         weight = swept_areas(middle, slave%side_nodes, slave%closed)
          if (slave%side_nodes == 3 .and. .not. slave%closed) then
             without(1) = without(1) .or. is_bare(1, 2)
             without(n) = without(n) .or. is_bare(n, n - 1)
@@ -188,44 +189,44 @@ contains
 
    !> Positions, arc length, common tangents and normals, and gaps. An unturned line has its body on
    !> the left.
-   subroutine set_geometry(mesh, slave, master, turned, pairs)
+   subroutine set_geometry(mesh, slave, master, turned, points)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(in) :: slave, master
       logical, intent(in) :: turned(2)
-      type(contact_pairs_type), intent(inout) :: pairs
+      type(contact_points_type), intent(inout) :: points
       real(dp) :: side
       integer :: k
 
       associate (x => mesh%coordinates, n => slave%side_nodes, closed => slave%closed)
-         pairs%position = x(:, slave%nodes)
-         pairs%arc_length = arc_lengths(pairs%position, n, closed)
-         pairs%tangent = chain_tangents(pairs%position, n, closed) + &
+         points%position = x(:, slave%nodes)
+         points%arc_length = arc_lengths(points%position, n, closed)
+         points%tangent = chain_tangents(points%position, n, closed) + &
             chain_tangents(x(:, master%nodes), n, closed)
          side = merge(-1.0_dp, 1.0_dp, turned(1))
-         allocate (pairs%normal, mold=pairs%tangent)
+         allocate (points%normal, mold=points%tangent)
          do k = 1, size(slave%nodes)
-            pairs%tangent(:, k) = pairs%tangent(:, k)/max(norm2(pairs%tangent(:, k)), &
+            points%tangent(:, k) = points%tangent(:, k)/max(norm2(points%tangent(:, k)), &
                tiny(1.0_dp))
-            pairs%normal(:, k) = side*[pairs%tangent(2, k), -pairs%tangent(1, k)]
+            points%normal(:, k) = side*[points%tangent(2, k), -points%tangent(1, k)]
          end do
-         pairs%initial_gap = sum((x(:, master%nodes) - pairs%position)*pairs%normal, dim=1)
+         points%initial_gap = sum((x(:, master%nodes) - points%position)*points%normal, dim=1)
       end associate
    end subroutine set_geometry
 
-   !> Keeps the pairs first..last; s begins there.
-   pure subroutine cut_ends(first, last, pairs)
+   !> Keeps the contact points first..last; s begins there.
+   pure subroutine cut_ends(first, last, points)
       integer, intent(in) :: first, last
-      type(contact_pairs_type), intent(inout) :: pairs
+      type(contact_points_type), intent(inout) :: points
 
-      pairs%slave_node = pairs%slave_node(first:last)
-      pairs%master_node = pairs%master_node(first:last)
-      pairs%position = pairs%position(:, first:last)
-      pairs%arc_length = pairs%arc_length(first:last) - pairs%arc_length(first)
-      pairs%weight = pairs%weight(first:last)
-      pairs%normal = pairs%normal(:, first:last)
-      pairs%tangent = pairs%tangent(:, first:last)
-      pairs%initial_gap = pairs%initial_gap(first:last)
-      pairs%edge = pairs%edge(first:last)
+      points%slave_node = points%slave_node(first:last)
+      points%master_node = points%master_node(first:last)
+      points%position = points%position(:, first:last)
+      points%arc_length = points%arc_length(first:last) - points%arc_length(first)
+      points%weight = points%weight(first:last)
+      points%normal = points%normal(:, first:last)
+      points%tangent = points%tangent(:, first:last)
+      points%initial_gap = points%initial_gap(first:last)
+      points%edge = points%edge(first:last)
    end subroutine cut_ends
 
 end module contact_pairs

@@ -1,22 +1,22 @@
 !> Contact with friction on the reduced system, the partial solution of (2.4).
 !>
-!> Unknowns are the relative displacements d = u_xi - u_eta of the pairs, in their own frame; the
-!> bodies behind them enter by the Schur complement S and the condensed load c, so that the contact
-!> forces on xi are lambda = S d - c. Per pair and direction either the force is known and the
-!> displacement sought, or the other way round:
+!> Unknowns are the relative displacements d = u_xi - u_eta of the contact points, in their own
+!> frame; the bodies behind them enter by the Schur complement S and the condensed load c, so that
+!> the contact forces on xi are lambda = S d - c. Per contact point and direction either the force
+!> is known and the displacement sought, or the other way round:
 !>
 !>    open   lambda_n = 0                            lambda_t = 0
 !>    stick  d_n = h                                 d_t = reference
 !>    slip   d_n = h                                 lambda_t = direction mu (-lambda_n)
 !>
-!> A pair that closes within the increment sticks where it closed, a place that depends on its
-!> forces (closing_instant):
+!> A contact point that closes within the increment sticks where it closed, a position that depends
+!> on its forces (closing_instant):
 !>
 !>    stick  d_n = h           (1 - f) (d_t - d_t,i) + f (c_n lambda_n + c_t lambda_t) = 0
 !>
-!> Pairs that form rings have the forces of their links (linear_constraints) among the unknowns, on
-!> which nothing else acts; where such a pair sticks it gives a little: d_t + compliance lambda_t
-!> takes the place of d_t.
+!> Contact points that form cycles have the forces of their links (linear_constraints) among the
+!> unknowns, on which nothing else acts; where such a contact point sticks it gives a little: d_t +
+!> compliance lambda_t takes the place of d_t.
 !>
 !> Supports may leave bodies free to move as rigid ones: S has these motions as null vectors. Where
 !> an active set does not hold them either, the system is solved beside the motions, bordered by
@@ -32,14 +32,15 @@ module contact_system
 
    !> The reduced system, which no increment changes.
    type :: contact_system_type
-      integer, allocatable :: normal(:)           !! (m) place of d_n on the tail
-      integer, allocatable :: tangent(:) !! (m) place of d_t, 0 without friction or held
+      integer, allocatable :: normal(:)           !! (m) row of d_n on the tail
+      integer, allocatable :: tangent(:) !! (m) row of d_t, 0 without friction or held
       real(dp), allocatable :: schur(:, :)        !! (tail, tail) S [force/length]
       real(dp), allocatable :: friction(:)        !! (m) mu [-]
-      !> (m) of stuck pairs, not zero in rings [length/force]
+      !> (m) of stuck contact points, not zero in cycles [length/force]
       real(dp), allocatable :: compliance(:)
-      real(dp), allocatable :: alone(:) !! (m) normal stiffness of a pair alone [force/length]
-      integer, allocatable :: link(:)             !! (links) places of the links' forces
+      !> (m) normal stiffness of a contact point alone [force/length]
+      real(dp), allocatable :: alone(:)
+      integer, allocatable :: link(:)             !! (links) rows of the links' forces
       real(dp), allocatable :: rigid(:, :)  !! (tail, q) unsupported rigid motions
       real(dp), allocatable :: motion(:, :) !! (tail, q) the same, orthonormal
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]

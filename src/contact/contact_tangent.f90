@@ -1,10 +1,11 @@
-!> How the contact state follows its load while all pairs keep their conditions: the derivative of
-!> the partial solution of (2.4). The instants of closing follow too: with f = f(lambda) the row of
-!> a pair that closes and sticks, r = (1 - f) (d_t - d_t,i) + f c.lambda, has
+!> How the contact state follows its load while all contact points keep their conditions: the
+!> derivative of the partial solution of (2.4). The instants of closing follow too: with f =
+!> f(lambda) the row of a contact point that closes and sticks, r = (1 - f) (d_t - d_t,i) + f
+!> c.lambda, has
 !>
 !>    dr = (1 - f) dd_t + (f c + (c.lambda - d_t + d_t,i) df/dlambda).dlambda.
 module contact_tangent
-   use contact_states, only: contact_state_type, status_open, status_stick
+   use contact_states, only: contact_state_type, contact_open, contact_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use kinds, only: dp
@@ -36,8 +37,8 @@ contains
       lambda = matmul(system%schur(:, work%rows%free), motion(work%rows%free, :)) - load
       gap = 0.0_dp
       force = 0.0_dp
-      do k = 1, size(state%status)
-         if (state%status(k) == status_open) then
+      do k = 1, size(state%contact_state)
+         if (state%contact_state(k) == contact_open) then
             gap(k, :) = -motion(system%normal(k), :)
          else
             force(k, :) = -lambda(system%normal(k), :)
@@ -45,14 +46,14 @@ contains
       end do
    end subroutine contact_response
 
-   !> Pairs whose place of sticking depends on their forces.
+   !> Contact points whose position of sticking depends on their forces.
    pure function closes(system, work, state)
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
-      logical :: closes(size(state%status))   !! (m)
+      logical :: closes(size(state%contact_state)) !! (m)
 
-      closes = work%closing%acts .and. state%status == status_stick .and. system%tangent > 0
+      closes = work%closing%acts .and. state%contact_state == contact_stick .and. system%tangent > 0
    end function closes
 
    !> Motion under changes of load, the instants of closing following.
@@ -63,7 +64,7 @@ contains
       real(dp), intent(inout) :: motion(:, :)   !! loads in; displacements in the free rows out
       logical, intent(out) :: sound
       type(contact_workspace_type) :: tangent
-      logical :: moves(size(state%status)), singular
+      logical :: moves(size(state%contact_state)), singular
       real(dp) :: arm
       integer :: k
 
@@ -71,11 +72,11 @@ contains
       moves = closes(system, work, state)
       do k = 1, size(moves)
          if (.not. moves(k)) cycle
-         associate (law => work%closing(k), place => system%tangent(k))
+         associate (law => work%closing(k), row => system%tangent(k))
             arm = (dot_product(law%compliance, [-state%force(k), state%shear_force(k)]) - &
                (state%tangential(k) - law%start))/(law%compliance(2) + system%compliance(k))
-            tangent%rows%share(place) = tangent%rows%share(place) + arm*law%rate(1)
-            tangent%rows%own(place) = tangent%rows%own(place) + arm*law%rate(2)
+            tangent%rows%share(row) = tangent%rows%share(row) + arm*law%rate(1)
+            tangent%rows%own(row) = tangent%rows%own(row) + arm*law%rate(2)
          end associate
       end do
       call tangent%factor_rows(system, singular)

@@ -1,10 +1,10 @@
 !> What one trial solution of the contact system works with: what the increment applies to it, the
-!> laws of pairs that close in the increment, and the factors of the active set of the moment. A
-!> second trial takes a workspace of its own.
+!> laws of contact points that close in the increment, and the factors of the active set of the
+!> moment. A second trial takes a workspace of its own.
 module contact_workspace
    use contact_rows, only: contact_rows_type, rows_of
-   use contact_states, only: closing_law_type, condition_code, contact_state_type, status_open, &
-      status_slip, status_stick
+   use contact_states, only: closing_law_type, state_code, contact_state_type, contact_open, &
+      contact_slip, contact_stick
    use contact_system, only: contact_system_type
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -16,8 +16,8 @@ module contact_workspace
    public :: contact_workspace_type
 
    real(dp), parameter :: rounding = 1.0e-12_dp !! of the forces that a load is condensed of
-   !> Part of the rounding of coordinates: a load that moves a pair no farther is a remainder of
-   !> loads that were taken off.
+   !> Part of the rounding of coordinates: a load that moves a contact point no farther is a
+   !> remainder of loads that were taken off.
    real(dp), parameter :: unresolved = 1.0e-3_dp
 
    !> Data of the increment, and the factors for the active set of the last solution.
@@ -28,16 +28,16 @@ module contact_workspace
       real(dp), allocatable :: least_drive(:) !! (tail) resultants that count as none [force]
       !> Stiffness that holds the unsupported motions softly, 0 for none [force/length]
       real(dp) :: hold = 0.0_dp
-      type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing pairs
-      !> (tail) relative displacements that loose motions are least from
+      type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing contact points
+      !> (tail) relative displacements that unconstrained motions are least from
       real(dp), allocatable :: anchor(:)
       type(contact_rows_type) :: rows             !! rows of the active set
-      real(dp), allocatable :: loose(:, :)        !! (free, l) motions that the set leaves free
+      real(dp), allocatable :: unconstrained(:, :) !! (free, l) motions that the set leaves free
       real(dp), allocatable :: drive(:)           !! (l) forces along them that nothing takes up
       logical :: driven = .false.                 !! whether these are more than rounding
-      logical, allocatable :: idle(:)   !! (m) closed pairs that carry nothing (idle_pairs)
+      logical, allocatable :: idle(:)  !! (m) closed contact points that carry nothing (idle_points)
       logical :: several = .false.                !! whether other states under the load are proven
-      type(lu_type), private :: lu                !! factors on the free places, bordered
+      type(lu_type), private :: lu                !! factors on the free rows, bordered
       real(dp), private :: border = 1.0_dp        !! scale of the border [force/length]
       real(dp), allocatable, private :: scale(:)  !! (free) factor of the rows, 1 beside a border
       integer, allocatable, private :: factored(:)   !! (m) condition codes of the factors
@@ -60,7 +60,7 @@ module contact_workspace
 
 contains
 
-   !> A workspace for pairs with these gaps, on which nothing acts.
+   !> A workspace for contact points with these gaps, on which nothing acts.
    pure function new_workspace(system, initial_gap) result(work)
       type(contact_system_type), intent(in) :: system  !! the reduced system
       real(dp), intent(in) :: initial_gap(:)           !! (m) h [length]
@@ -85,12 +85,12 @@ contains
       work%anchor = self%anchor
    end function another
 
-   !> Tangential motion of a pair since friction acts on it in this increment.
+   !> Tangential motion of a contact point since friction acts on it in this increment.
    pure function slip(self, system, state, k)
       class(contact_workspace_type), intent(in) :: self !! laws of closing
       type(contact_system_type), intent(in) :: system   !! the reduced system
       type(contact_state_type), intent(in) :: state
-      integer, intent(in) :: k                          !! the pair
+      integer, intent(in) :: k                          !! the contact point
       real(dp) :: slip                                  !! [length]
 
       associate (law => self%closing(k))
@@ -104,14 +104,14 @@ contains
       end associate
    end function slip
 
-   !> Solution for one active set. Where the load drives a body that the set leaves loose, driven
-   !> is set, and the values stay as they are.
+   !> Solution for one active set. Where the load drives a body that the set leaves unconstrained,
+   !> driven is set, and the values stay as they are.
    !> Errors: as factor_set; a body is driven away; forces overflow.
    subroutine solve_set(self, system, load, state, error)
       class(contact_workspace_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system      !! the reduced system
       real(dp), intent(in) :: load(:)                      !! (tail) c [force]
-      type(contact_state_type), intent(inout) :: state     !! its statuses in, the values out
+      type(contact_state_type), intent(inout) :: state     !! its states in, the values out
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: d(size(load)), lambda(size(load)), residual(size(load), 1)
       real(dp), allocatable :: unbalanced(:, :)
@@ -121,16 +121,16 @@ contains
       call self%factor_set(system, state, error)
       if (allocated(error)) return
       d = 0.0_dp
-      do k = 1, size(state%status)
-         if (state%status(k) == status_open) cycle
+      do k = 1, size(state%contact_state)
+         if (state%contact_state(k) == contact_open) cycle
          d(system%normal(k)) = self%initial_gap(k)
-         if (system%tangent(k) == 0 .or. state%status(k) /= status_stick) cycle
+         if (system%tangent(k) == 0 .or. state%contact_state(k) /= contact_stick) cycle
          d(system%tangent(k)) = start_of_slip(self, state, k)
       end do
       residual(:, 1) = load - forces(self, system, d)
       call self%solve_free(residual, unbalanced)
       d(self%rows%free) = d(self%rows%free) + residual(self%rows%free, 1)
-      if (size(self%loose, 2) > 0) then
+      if (size(self%unconstrained, 2) > 0) then
          self%drive = unbalanced(:, 1)
          call check_balance(self, system, load, d, error)
          if (allocated(error)) return
@@ -153,20 +153,20 @@ contains
 
       state%link = d(system%link)
       state%approach = d(system%normal)
-      do k = 1, size(state%status)
+      do k = 1, size(state%contact_state)
          state%gap(k) = self%initial_gap(k) - d(system%normal(k))
          state%force(k) = -lambda(system%normal(k))
-         if (state%status(k) == status_open) then
+         if (state%contact_state(k) == contact_open) then
             state%force(k) = 0.0_dp
          else
             state%gap(k) = 0.0_dp
          end if
          if (system%tangent(k) == 0) cycle
          state%tangential(k) = d(system%tangent(k))
-         select case (state%status(k))
-         case (status_open)
+         select case (state%contact_state(k))
+         case (contact_open)
             state%shear_force(k) = 0.0_dp
-         case (status_slip)
+         case (contact_slip)
             state%shear_force(k) = state%direction(k)*system%friction(k)*state%force(k)
          case default
             state%shear_force(k) = lambda(system%tangent(k))
@@ -174,7 +174,7 @@ contains
       end do
    end subroutine take_values
 
-   !> Place from which the slip of a pair counts, but for what its forces add.
+   !> Position from which the slip of a contact point counts, but for what its forces add.
    pure real(dp) function start_of_slip(self, state, k)
       type(contact_workspace_type), intent(in) :: self
       type(contact_state_type), intent(in) :: state
@@ -193,7 +193,7 @@ contains
 
       forces = 0.0_dp
       do i = 1, size(d)
-         ! Many are zero: pairs that touched at the start, without slip.
+         ! Many are zero: contact points that touched at the start, without slip.
          if (abs(d(i)) > 0.0_dp) forces = forces + d(i)*system%schur(:, i)
       end do
       if (self%hold > 0.0_dp) forces = forces + &
@@ -201,18 +201,18 @@ contains
    end function forces
 
    !> Columns of S, with the soft hold.
-   pure function columns(self, system, places)
+   pure function columns(self, system, tail_rows)
       type(contact_workspace_type), intent(in) :: self
       type(contact_system_type), intent(in) :: system
-      integer, intent(in) :: places(:)
-      real(dp) :: columns(size(system%schur, 1), size(places))
+      integer, intent(in) :: tail_rows(:)
+      real(dp) :: columns(size(system%schur, 1), size(tail_rows))
 
-      columns = system%schur(:, places)
+      columns = system%schur(:, tail_rows)
       if (self%hold > 0.0_dp) columns = columns + &
-         self%hold*matmul(system%motion, transpose(system%motion(places, :)))
+         self%hold*matmul(system%motion, transpose(system%motion(tail_rows, :)))
    end function columns
 
-   !> Whether the load drives the loose motions, by more than rounding.
+   !> Whether the load drives the unconstrained motions, by more than rounding.
    !> Error: it does.
    subroutine check_balance(self, system, load, d, error)
       type(contact_workspace_type), intent(inout) :: self
@@ -225,12 +225,14 @@ contains
       terms = abs(load) + matmul(abs(system%schur), abs(d))
       least = self%least_drive + [(unresolved*system%least_length*abs(system%schur(i, i)), &
          i=1, size(d))]
-      self%driven = is_driven(self%loose, self%drive, terms(self%rows%free), least(self%rows%free))
+      self%driven = is_driven(self%unconstrained, self%drive, terms(self%rows%free), &
+         least(self%rows%free))
       if (self%driven) call set_error(error, status_no_convergence, &
          'the bodies are not held by their supports and the pairs that are in contact')
    end subroutine check_balance
 
-   !> Moves loose bodies so that pairs slip least, and open ones stay at the anchor.
+   !> Moves unconstrained bodies so that contact points slip least, and open ones stay at the
+   !> anchor.
    pure subroutine move_least(self, system, state, d)
       type(contact_workspace_type), intent(in) :: self
       type(contact_system_type), intent(in) :: system
@@ -240,17 +242,18 @@ contains
       integer :: k
 
       way = 0.0_dp
-      do k = 1, size(state%status)
+      do k = 1, size(state%contact_state)
          associate (normal => system%normal(k), tangent => system%tangent(k))
-            if (state%status(k) == status_open) way(normal) = d(normal) - self%anchor(normal)
+            if (state%contact_state(k) == contact_open) way(normal) = d(normal) - &
+               self%anchor(normal)
             if (tangent == 0) cycle
             way(tangent) = d(tangent) - self%anchor(tangent)
-            if (state%status(k) /= status_slip) cycle
+            if (state%contact_state(k) /= contact_slip) cycle
             way(tangent) = d(tangent) - start_of_slip(self, state, k)
          end associate
       end do
       associate (free => self%rows%free)
-         d(free) = d(free) - matmul(self%loose, matmul(way(free), self%loose))
+         d(free) = d(free) - matmul(self%unconstrained, matmul(way(free), self%unconstrained))
       end associate
    end subroutine move_least
 
@@ -259,22 +262,23 @@ contains
    subroutine factor_set(self, system, state, error)
       class(contact_workspace_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system      !! the reduced system
-      type(contact_state_type), intent(in) :: state        !! statuses and directions
+      type(contact_state_type), intent(in) :: state        !! states and directions
       type(error_type), allocatable, intent(out) :: error
       logical :: singular
 
       if (is_factored(self, state)) return
       self%rows = rows_of(system, state, self%closing)
       if (self%hold > 0.0_dp) then
-         self%loose = reshape([real(dp) ::], [size(self%rows%free), 0])
+         self%unconstrained = reshape([real(dp) ::], [size(self%rows%free), 0])
       else
-         self%loose = free_motions(system%motion, self%rows%free, self%rows%spring, system%schur)
+         self%unconstrained = free_motions(system%motion, self%rows%free, self%rows%spring, &
+            system%schur)
       end if
       call self%factor_rows(system, singular)
       if (singular) then
          call set_error(error, status_no_convergence, 'the contact system is singular')
       else
-         self%factored = condition_code(state)
+         self%factored = state_code(state)
          self%factored_closing = self%closing
       end if
    end subroutine factor_set
@@ -287,7 +291,7 @@ contains
 
       is_factored = .false.
       if (.not. allocated(self%factored)) return
-      if (any(self%factored /= condition_code(state))) return
+      if (any(self%factored /= state_code(state))) return
       do k = 1, size(self%closing)
          associate (law => self%closing(k), factored => self%factored_closing(k))
             if (law%acts .neqv. factored%acts) return
@@ -299,13 +303,13 @@ contains
       is_factored = .true.
    end function is_factored
 
-   !> Factors the rows as they are, bordered by the loose motions.
+   !> Factors the rows as they are, bordered by the unconstrained motions.
    pure subroutine factor_rows(self, system, singular)
       class(contact_workspace_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system      !! the reduced system
       logical, intent(out) :: singular                     !! the rows depend on each other
-      real(dp) :: rows(size(self%rows%free) + size(self%loose, 2), size(self%rows%free) + &
-         size(self%loose, 2))
+      real(dp) :: rows(size(self%rows%free) + size(self%unconstrained, 2), size(self%rows%free) + &
+         size(self%unconstrained, 2))
       integer :: i
 
       if (allocated(self%factored)) deallocate (self%factored)
@@ -316,16 +320,17 @@ contains
          do i = 1, f
             rows(i, i) = rows(i, i) + self%rows%spring(free(i))
          end do
-         ! Rows of slipping pairs are mu times as large, those of stuck ones in rings 1e8 times.
+         ! Rows of slipping contact points are mu times as large, those of stuck ones in cycles 1e8
+         ! times.
          self%scale = [(1.0_dp, i=1, f)]
-         if (size(self%loose, 2) == 0) self%scale = 1.0_dp/max(maxval(abs(rows(:f, :f)), dim=2), &
-            tiny(1.0_dp))
+         if (size(self%unconstrained, 2) == 0) self%scale = 1.0_dp/max(maxval(abs(rows(:f, :f)), &
+            dim=2), tiny(1.0_dp))
          do i = 1, f
             rows(i, :f) = self%scale(i)*rows(i, :f)
          end do
          self%border = max(maxval(abs(rows)), tiny(1.0_dp))
-         rows(:f, f + 1:) = self%border*self%loose
-         rows(f + 1:, :f) = self%border*transpose(self%loose)
+         rows(:f, f + 1:) = self%border*self%unconstrained
+         rows(f + 1:, :f) = self%border*transpose(self%unconstrained)
       end associate
       call self%lu%factor(rows, singular)
    end subroutine factor_rows
@@ -334,9 +339,9 @@ contains
    pure subroutine solve_free(self, x, unbalanced)
       class(contact_workspace_type), intent(in) :: self  !! factors
       real(dp), intent(inout) :: x(:, :) !! (tail, columns) forces; displacements in free rows
-      !> (l, columns) forces along the loose motions that nothing takes up.
+      !> (l, columns) forces along the unconstrained motions that nothing takes up.
       real(dp), allocatable, intent(out), optional :: unbalanced(:, :)
-      real(dp) :: rows(size(self%rows%free) + size(self%loose, 2), size(x, 2))
+      real(dp) :: rows(size(self%rows%free) + size(self%unconstrained, 2), size(x, 2))
 
       associate (f => size(self%rows%free))
          rows = 0.0_dp
@@ -349,19 +354,19 @@ contains
       end associate
    end subroutine solve_free
 
-   !> Forces at some places of the tail for unit displacements there, the free ones following; with
+   !> Forces at some rows of the tail for unit displacements there, the free ones following; with
    !> the factors of the last active set. Source: (2.4), statically condensed.
-   pure function stiffness(self, system, places)
+   pure function stiffness(self, system, tail_rows)
       class(contact_workspace_type), intent(in) :: self     !! factors
       type(contact_system_type), intent(in) :: system       !! the reduced system
-      integer, intent(in) :: places(:)                      !! (n) places that are not free
-      real(dp) :: stiffness(size(places), size(places))     !! (n, n) [force/length]
-      real(dp) :: response(size(system%schur, 1), size(places))
+      integer, intent(in) :: tail_rows(:)                   !! (n) rows that are not free
+      real(dp) :: stiffness(size(tail_rows), size(tail_rows)) !! (n, n) [force/length]
+      real(dp) :: response(size(system%schur, 1), size(tail_rows))
 
-      response = -system%schur(:, places)
+      response = -system%schur(:, tail_rows)
       call self%solve_free(response)
-      stiffness = system%schur(places, places) + &
-         matmul(system%schur(places, self%rows%free), response(self%rows%free, :))
+      stiffness = system%schur(tail_rows, tail_rows) + &
+         matmul(system%schur(tail_rows, self%rows%free), response(self%rows%free, :))
    end function stiffness
 
    !> Force that rounding leaves of what the load is made of, and of coordinates.
@@ -384,9 +389,9 @@ contains
 
       turns_back = .false.
       if (any(self%closing%acts)) return
-      ! Every link and every loose motion borders a positive matrix, which turns its sign.
+      ! Every link and every unconstrained motion borders a positive matrix, which turns its sign.
       turns_back = self%lu%negative_determinant() .neqv. &
-         (mod(size(system%link) + size(self%loose, 2), 2) == 1)
+         (mod(size(system%link) + size(self%unconstrained, 2), 2) == 1)
    end function turns_back
 
 end module contact_workspace

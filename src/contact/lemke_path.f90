@@ -2,12 +2,12 @@
 !> their own size. The slow and sure way, for active sets that do not settle.
 !>
 !> With gaps h + t d the conditions (1.6) are piecewise linear in t and the displacements. For large
-!> t the only state is the open one; along the path one pair at a time changes its condition, and t
-!> may grow for a while before it falls again. Bodies that are held have bounded displacements
+!> t the only state is the open one; along the path one contact point at a time changes its state,
+!> and t may grow for a while before it falls again. Bodies that are held have bounded displacements
 !> whatever the friction is, so that the path, which cannot return to where it began, arrives at
 !> t = 0 (Lemke's method with its geometric covering vector).
 module lemke_path
-   use contact_states, only: contact_state_type, status_open, status_slip, status_stick
+   use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -16,7 +16,7 @@ module lemke_path
    private
    public :: follow_lemke_path
 
-   integer, parameter :: pieces_per_pair = 40   !! changes of condition before giving up
+   integer, parameter :: pieces_per_point = 40  !! changes of state before giving up
    real(dp), parameter :: golden = 0.6180339887498949_dp !! spreads the widths, so that no two tie
 
    !> A straight piece of the path; columns are values at t = 0 and derivatives by t.
@@ -44,19 +44,19 @@ contains
 
       path = work%another()
       path%hold = work%hold
-      piece%cover = [(1.0_dp + modulo(k*golden, 1.0_dp), k=1, size(state%status))]
+      piece%cover = [(1.0_dp + modulo(k*golden, 1.0_dp), k=1, size(state%contact_state))]
       allocate (piece%slip(size(piece%cover), 2), piece%slack(2, size(piece%cover), 2))
-      state%status = status_open
+      state%contact_state = contact_open
       state%direction = 0
       call solve_piece(system, load, work, path, state, piece, error)
       if (allocated(error)) return
       t = max(maxval(-piece%base%gap/piece%cover), 0.0_dp)
       sense = -1
-      do n = 1, pieces_per_pair*max(size(piece%cover), 1)
+      do n = 1, pieces_per_point*max(size(piece%cover), 1)
          call next_event(piece, t, sense, k, event, step)
          if (sense < 0 .and. step >= t) then
             state = piece%base
-            where (state%status == status_stick) state%direction = 0
+            where (state%contact_state == contact_stick) state%direction = 0
             return
          end if
          if (k == 0) exit
@@ -98,7 +98,7 @@ contains
       call measure(system, path, rate, piece%slip(:, 2), piece%slack(:, :, 2))
    end subroutine solve_piece
 
-   !> The pair whose condition ends first along a piece, 0 for none, and how far away that is.
+   !> The contact point whose state ends first along a piece, 0 for none, and how far away that is.
    pure subroutine next_event(piece, t, sense, first, event, step)
       type(piece_type), intent(in) :: piece
       real(dp), intent(in) :: t
@@ -124,9 +124,9 @@ contains
       end do
    end subroutine next_event
 
-   !> Slip, and what must not be negative under each pair's condition: the gap; or force and slip
-   !> against friction; or the distances to both sides of the cone. A second one that is missing is
-   !> zero.
+   !> Slip, and what must not be negative under each contact point's state: the gap; or force and
+   !> slip against friction; or the distances to both sides of the cone. A second one that is
+   !> missing is zero.
    pure subroutine measure(system, path, state, slip, slack)
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(in) :: path
@@ -139,9 +139,9 @@ contains
       slack = 0.0_dp
       do k = 1, size(slip)
          slip(k) = path%slip(system, state, k)
-         if (state%status(k) == status_open) then
+         if (state%contact_state(k) == contact_open) then
             slack(1, k) = state%gap(k)
-         else if (state%status(k) == status_slip) then
+         else if (state%contact_state(k) == contact_slip) then
             slack(:, k) = [state%force(k), -state%direction(k)*slip(k)]
          else
             cone = system%friction(k)*state%force(k)
@@ -150,7 +150,7 @@ contains
       end do
    end subroutine measure
 
-   !> Gives a pair the condition that follows on the end of its present one.
+   !> Gives a contact point the state that follows on the end of its present one.
    pure subroutine change_condition(system, slip, event, k, state, entering)
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: slip
@@ -160,17 +160,17 @@ contains
       integer, intent(out) :: entering           !! which slack is zero and must grow
 
       entering = 1
-      select case (state%status(k))
-      case (status_open)
-         state%status(k) = status_slip
+      select case (state%contact_state(k))
+      case (contact_open)
+         state%contact_state(k) = contact_slip
          state%direction(k) = 0
          if (system%tangent(k) == 0 .or. system%friction(k) <= 0.0_dp) return
          state%direction(k) = merge(-1, 1, slip > 0.0_dp)
-      case (status_slip)
-         state%status(k) = merge(status_open, status_stick, event == 1)
+      case (contact_slip)
+         state%contact_state(k) = merge(contact_open, contact_stick, event == 1)
          if (event == 2) entering = merge(1, 2, state%direction(k) > 0)
       case default
-         state%status(k) = status_slip
+         state%contact_state(k) = contact_slip
          state%direction(k) = merge(1, -1, event == 1)
          entering = 2
       end select

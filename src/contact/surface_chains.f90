@@ -1,4 +1,4 @@
-!> Element sides of a surface as one line of nodes, open or closed to a ring.
+!> Element sides of a surface as one line of nodes, open or closed.
 module surface_chains
    use element_kinds, only: side_node_count, side_nodes
    use errors, only: error_type, set_error, status_deck
@@ -14,16 +14,16 @@ module surface_chains
 
    !> The nodes along a surface, with the body on the left.
    type :: surface_chain_type
-      integer, allocatable :: nodes(:)   !! node indexes, corner first; in a ring each once
+      integer, allocatable :: nodes(:)   !! node indexes, corner first; on a closed face each once
       integer :: side_nodes = 0          !! nodes of a side, 2 or 3
-      logical :: closed = .false.        !! a ring: the last side leads back to the first node
+      logical :: closed = .false.        !! closed: the last side leads back to the first node
    end type surface_chain_type
 
 contains
 
    !> Nodes along a surface: corner, midside if there is one, corner, ... Each side is followed by
-   !> the one that begins at its second corner, so the line runs with the body on its left. A ring
-   !> begins at the corner that precedes all others.
+   !> the one that begins at its second corner, so the line runs with the body on its left. A closed
+   !> face begins at the corner that precedes all others.
    !> Errors: no sides, sides of 2 and of 3 nodes, sides that do not form one line.
    subroutine chain_faces(mesh, surface, chain, error)
       type(mesh_type), intent(in) :: mesh
@@ -74,7 +74,7 @@ contains
    end subroutine chain_faces
 
    !> The side that leaves each node, and the side to begin with: that whose first corner no other
-   !> side reaches, in a ring that of the preceding corner, 0 where the line branches.
+   !> side reaches, on a closed face that of the preceding corner, 0 where the line branches.
    subroutine find_first(mesh, sides, leaving, first)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: sides(:, :)
@@ -110,7 +110,7 @@ contains
    end subroutine find_first
 
    !> Tells where a line breaks: at a node at which more than two sides meet, or between two nodes;
-   !> empty where rings lie beside a line.
+   !> empty where closed faces lie beside a line.
    function first_break(mesh, sides) result(words)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: sides(:, :)            ! (nodes, sides)

@@ -1,5 +1,5 @@
 !> Rigid motions that supports leave free, on the tail of the contact system: which of them an
-!> active set leaves free, too, and which load drives them. What decides is which places the set
+!> active set leaves free, too, and which load drives them. What decides is which rows the set
 !> holds, not a pivot: stiffness against bending may be as small as rounding.
 module unconstrained_motions
    use dense, only: least_squares, null_space
@@ -8,7 +8,7 @@ module unconstrained_motions
    private
    public :: free_motions, is_driven, balanced_load, least_drive
 
-   !> Spring of a row, as part of the pair's stiffness, that does not hold a body.
+   !> Spring of a row, as part of the contact point's stiffness, that does not hold a body.
    real(dp), parameter :: slack = 1.0e-9_dp
    !> Force along a motion that is rounding, as part of the terms that it is the sum of.
    real(dp), parameter :: rounding = 1.0e-13_dp
@@ -17,11 +17,11 @@ module unconstrained_motions
 
 contains
 
-   !> The unsupported motions that no place of the active set holds, orthonormal on the free places.
+   !> The unsupported motions that no row of the active set holds, orthonormal on the free rows.
    pure function free_motions(motion, free, spring, schur) result(unheld)
       real(dp), intent(in) :: motion(:, :)   !! (tail, q) unsupported motions, orthonormal
-      integer, intent(in) :: free(:)         !! (n) places that are sought
-      real(dp), intent(in) :: spring(:)      !! (tail) what holds free places [force/length]
+      integer, intent(in) :: free(:)         !! (n) rows that are sought
+      real(dp), intent(in) :: spring(:)      !! (tail) what holds free rows [force/length]
       real(dp), intent(in) :: schur(:, :)    !! (tail, tail) S [force/length]
       real(dp), allocatable :: unheld(:, :) !! (n, l)
       logical :: held(size(motion, 1))
@@ -35,15 +35,15 @@ contains
       do i = 1, size(free)
          held(free(i)) = spring(free(i)) > slack*abs(schur(free(i), free(i)))
       end do
-      associate (places => pack([(i, i=1, size(held))], held))
-         unheld = matmul(motion(free, :), null_space(motion(places, :)))
+      associate (tail_rows => pack([(i, i=1, size(held))], held))
+         unheld = matmul(motion(free, :), null_space(motion(tail_rows, :)))
       end associate
    end function free_motions
 
-   !> Whether forces drive the motions, by more than rounding. Each place is judged by the terms
+   !> Whether forces drive the motions, by more than rounding. Each row is judged by the terms
    !> that its own motion collects: those of another body may be far larger.
    pure logical function is_driven(unheld, unbalanced, terms, least)
-      real(dp), intent(in) :: unheld(:, :)   !! (n, l) orthonormal motions of the free places
+      real(dp), intent(in) :: unheld(:, :)   !! (n, l) orthonormal motions of the free rows
       real(dp), intent(in) :: unbalanced(:)  !! (l) forces along the motions [force]
       real(dp), intent(in) :: terms(:) !! (n) sums without signs of the forces' terms [force]
       real(dp), intent(in) :: least(:)       !! (n) drive that counts as none [force]

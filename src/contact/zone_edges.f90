@@ -1,22 +1,23 @@
 !> Edges of the contact and stick zones, sharpened below the nodal spacing.
 !>
-!> Edge of contact, between a closed and an open pair: near it p goes like sqrt(a - s) and the gap
-!> like (s - a)^(3/2), so that p^2 from inside and gap^(2/3) from outside go to zero smoothly. The
-!> pairs next to the edge err most, pressures more than gaps: the edge is the zero of a parabola
-!> through gap^(2/3) of the second to fourth open pair, kept between the two pairs. Where there are
-!> not so many, it is the mean of the zeros of straight lines through the two pairs on each side.
+!> Edge of contact, between a closed and an open contact point: near it p goes like sqrt(a - s) and
+!> the gap like (s - a)^(3/2), so that p^2 from inside and gap^(2/3) from outside go to zero
+!> smoothly. The contact points next to the edge err most, pressures more than gaps: the edge is the
+!> zero of a parabola through gap^(2/3) of the second to fourth open contact point, kept between the
+!> two contact points. Where there are not so many, it is the mean of the zeros of straight lines
+!> through the two contact points on each side.
 !>
 !> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
 !> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
-!> pair when the next one closed makes it noisy; so a straight line is fitted to the last two sides,
-!> weighted with the tributary lengths, which makes it the resultant and moment of the nodal forces
-!> themselves.
+!> contact point when the next one closed makes it noisy; so a straight line is fitted to the last
+!> two sides, weighted with the tributary lengths, which makes it the resultant and moment of the
+!> nodal forces themselves.
 !>
 !> Edges are looked for towards growing s; an edge on the other side is the same with the arrays
-!> turned round. In a ring none is looked for between the last pair and the first.
+!> turned round. On a closed face none is looked for between the last contact point and the first.
 module zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use contact_states, only: status_open, status_slip, status_stick
+   use contact_states, only: contact_open, contact_slip, contact_stick
    use kinds, only: dp
    implicit none
    private
@@ -24,15 +25,16 @@ module zone_edges
 
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
-   integer, parameter :: fitted_pairs = 5   !! pairs of two three-node sides
+   integer, parameter :: fitted_points = 5  !! contact points of two three-node sides
 
 contains
 
    !> Edges between contact and gap, ascending, padded with NaN, and the outer edge of the contact
-   !> zone with the largest s. A zone that reaches the last pair ends there; that end is no edge.
-   pure subroutine contact_edges(s, status, pressure, gap, edges, outer)
+   !> zone with the largest s. A zone that reaches the last contact point ends there; that end is no
+   !> edge.
+   pure subroutine contact_edges(s, contact_state, pressure, gap, edges, outer)
       real(dp), intent(in) :: s(:)                 !! (m) arc length [length]
-      integer, intent(in) :: status(:)             !! (m) status of the pairs
+      integer, intent(in) :: contact_state(:)      !! (m) contact states
       real(dp), intent(in) :: pressure(:)          !! (m) [stress]
       real(dp), intent(in) :: gap(:)               !! (m) [length]
       real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
@@ -45,11 +47,12 @@ contains
       edges = ieee_value(1.0_dp, ieee_quiet_nan)
       outer = edges(1)
       do k = 1, m - 1
-         if (status(k) /= status_open .and. status(k + 1) == status_open) then
-            edge = contact_end(s, status, pressure, gap, k)
+         if (contact_state(k) /= contact_open .and. contact_state(k + 1) == contact_open) then
+            edge = contact_end(s, contact_state, pressure, gap, k)
             outer = edge
-         else if (status(k) == status_open .and. status(k + 1) /= status_open) then
-            edge = -contact_end(-s(m:1:-1), status(m:1:-1), pressure(m:1:-1), gap(m:1:-1), m - k)
+         else if (contact_state(k) == contact_open .and. contact_state(k + 1) /= contact_open) then
+            edge = -contact_end(-s(m:1:-1), contact_state(m:1:-1), pressure(m:1:-1), gap(m:1:-1), &
+               m - k)
          else
             cycle
          end if
@@ -57,20 +60,21 @@ contains
          if (found <= edges_kept) edges(found) = edge
       end do
       if (m > 0) then
-         if (status(m) /= status_open) outer = s(m)
+         if (contact_state(m) /= contact_open) outer = s(m)
       end if
    end subroutine contact_edges
 
-   !> Edge between closed pair k and open pair k + 1.
-   pure function contact_end(s, status, pressure, gap, k) result(edge)
+   !> Edge between closed contact point k and open contact point k + 1.
+   pure function contact_end(s, contact_state, pressure, gap, k) result(edge)
       real(dp), intent(in) :: s(:), pressure(:), gap(:)
-      integer, intent(in) :: status(:), k
+      integer, intent(in) :: contact_state(:), k
       real(dp) :: edge
       real(dp) :: g(3)
 
       if (k + 4 <= size(s)) then
          g = max(gap(k + 2:k + 4), 0.0_dp)**(2.0_dp/3.0_dp)
-         if (all(status(k + 2:k + 4) == status_open) .and. g(1) < g(2) .and. g(2) < g(3)) then
+         if (all(contact_state(k + 2:k + 4) == contact_open) .and. g(1) < g(2) .and. &
+            g(2) < g(3)) then
             edge = s(k + 2)*g(2)*g(3)/((g(2) - g(1))*(g(3) - g(1))) - &
                s(k + 3)*g(1)*g(3)/((g(2) - g(1))*(g(3) - g(2))) + &
                s(k + 4)*g(1)*g(2)/((g(3) - g(1))*(g(3) - g(2)))
@@ -78,21 +82,21 @@ contains
             return
          end if
       end if
-      edge = end_of_lines(s, status, pressure, gap, k)
+      edge = end_of_lines(s, contact_state, pressure, gap, k)
    end function contact_end
 
-   !> The same by straight lines through at most two pairs on each side.
-   pure function end_of_lines(s, status, pressure, gap, k) result(edge)
+   !> The same by straight lines through at most two contact points on each side.
+   pure function end_of_lines(s, contact_state, pressure, gap, k) result(edge)
       real(dp), intent(in) :: s(:), pressure(:), gap(:)
-      integer, intent(in) :: status(:), k
+      integer, intent(in) :: contact_state(:), k
       real(dp) :: edge
       real(dp) :: before, here, inside, outside
       logical :: has_inside, has_outside
 
       has_inside = k > 1
-      if (has_inside) has_inside = status(k - 1) /= status_open
+      if (has_inside) has_inside = contact_state(k - 1) /= contact_open
       has_outside = k + 2 <= size(s)
-      if (has_outside) has_outside = status(k + 2) == status_open
+      if (has_outside) has_outside = contact_state(k + 2) == contact_open
       inside = s(k + 1)
       if (has_inside) then
          before = pressure(k - 1)**2
@@ -116,10 +120,11 @@ contains
    end function end_of_lines
 
    !> Edges of the stick zones, ascending, padded with NaN, and the outer edge of the widest zone.
-   pure subroutine stick_edges(s, weight, status, pressure, shear, gap, friction, edges, outer)
+   pure subroutine stick_edges(s, weight, contact_state, pressure, shear, gap, friction, edges, &
+      outer)
       real(dp), intent(in) :: s(:)                 !! (m) arc length [length]
       real(dp), intent(in) :: weight(:)            !! (m) tributary areas [length^2]
-      integer, intent(in) :: status(:)             !! (m) status of the pairs
+      integer, intent(in) :: contact_state(:)      !! (m) contact states
       real(dp), intent(in) :: pressure(:)          !! (m) [stress]
       real(dp), intent(in) :: shear(:)             !! (m) [stress]
       real(dp), intent(in) :: gap(:)               !! (m) [length]
@@ -137,17 +142,18 @@ contains
       first = 1
       do while (first <= m)
          last = first
-         if (status(first) == status_stick) then
+         if (contact_state(first) == contact_stick) then
             do while (last < m)
-               if (status(last + 1) /= status_stick) exit
+               if (contact_state(last + 1) /= contact_stick) exit
                last = last + 1
             end do
-            if (first > 1) call keep(-stick_end(-s(m:1:-1), weight(m:1:-1), status(m:1:-1), &
+            if (first > 1) call keep(-stick_end(-s(m:1:-1), weight(m:1:-1), contact_state(m:1:-1), &
                pressure(m:1:-1), shear(m:1:-1), gap(m:1:-1), friction, m + 1 - last, &
                m + 1 - first), edges, found)
             edge = s(m)
             if (last < m) then
-               edge = stick_end(s, weight, status, pressure, shear, gap, friction, first, last)
+               edge = stick_end(s, weight, contact_state, pressure, shear, gap, friction, first, &
+                  last)
                call keep(edge, edges, found)
             end if
             if (s(last) - s(first) >= widest) outer = edge
@@ -166,24 +172,26 @@ contains
       if (found <= size(edges)) edges(found) = edge
    end subroutine keep
 
-   !> Edge beyond the last pair of the stick zone first..last. Stick ends no later than contact.
-   pure function stick_end(s, weight, status, pressure, shear, gap, friction, first, last) &
+   !> Edge beyond the last contact point of the stick zone first..last. Stick ends no later than
+   !> contact.
+   pure function stick_end(s, weight, contact_state, pressure, shear, gap, friction, first, last) &
       result(edge)
       real(dp), intent(in) :: s(:), weight(:), pressure(:), shear(:), gap(:), friction
-      integer, intent(in) :: status(:), first, last
+      integer, intent(in) :: contact_state(:), first, last
       real(dp) :: edge
-      real(dp) :: excess(fitted_pairs), limit, mean_s, mean_excess, slope, spread, total
+      real(dp) :: excess(fitted_points), limit, mean_s, mean_excess, slope, spread, total
       integer :: n, start
 
       limit = s(last + 1)
-      if (status(last + 1) == status_open) limit = contact_end(s, status, pressure, gap, last)
-      start = max(first, last - fitted_pairs + 1)
+      if (contact_state(last + 1) == contact_open) limit = contact_end(s, contact_state, pressure, &
+         gap, last)
+      start = max(first, last - fitted_points + 1)
       n = last - start + 1
       edge = 0.5_dp*(s(last) + limit)
       total = sum(weight(start:last))
       if (count(weight(start:last) > 0.0_dp) < 2) return
       excess(:n) = friction*pressure(start:last) - sign(1.0_dp, merge(shear(last + 1), &
-         shear(last), status(last + 1) == status_slip))*shear(start:last)
+         shear(last), contact_state(last + 1) == contact_slip))*shear(start:last)
       mean_s = sum(weight(start:last)*s(start:last))/total
       mean_excess = sum(weight(start:last)*excess(:n))/total
       spread = sum(weight(start:last)*(s(start:last) - mean_s)**2)

@@ -1,4 +1,4 @@
-!> Sorting of integers, and the way from a number to its place in a list.
+!> Sorting of integers, and the way from a number to its position in a list.
 module sorting
    implicit none
    private
@@ -8,7 +8,7 @@ module sorting
    type :: number_index_type
       private
       integer, allocatable :: sorted(:)   !! the numbers, ascending
-      integer, allocatable :: place(:)    !! where each stands in the list
+      integer, allocatable :: position(:) !! where each stands in the list
    contains
       procedure :: build
       procedure :: find
@@ -41,7 +41,7 @@ contains
       end do
    end function sort_order
 
-   !> Merges two sorted runs of places.
+   !> Merges two sorted runs of positions.
    pure subroutine merge_runs(numbers, left, right, merged)
       integer, intent(in) :: numbers(:), left(:), right(:)
       integer, intent(out) :: merged(:)
@@ -79,15 +79,15 @@ contains
       members = pack(sorted, first)
    end function unique_sorted
 
-   !> Places of the numbers that stand in the list before.
-   pure function repeated(numbers) result(places)
+   !> Positions of the numbers that stand in the list before.
+   pure function repeated(numbers) result(positions)
       integer, intent(in) :: numbers(:)        !! (n) numbers in any order
-      integer, allocatable :: places(:)        !! places of the second and later ones of equals
+      integer, allocatable :: positions(:)     !! positions of the second and later ones of equals
       integer :: order(size(numbers)), n
 
       n = size(numbers)
       order = sort_order(numbers)
-      places = pack(order(2:), numbers(order(2:)) == numbers(order(:n - 1)))
+      positions = pack(order(2:), numbers(order(2:)) == numbers(order(:n - 1)))
    end function repeated
 
    !> Makes the index of a list; of equal numbers the first is found.
@@ -95,18 +95,18 @@ contains
       class(number_index_type), intent(inout) :: self
       integer, intent(in) :: numbers(:)                !! (n) the list
 
-      self%place = sort_order(numbers)
-      self%sorted = numbers(self%place)
+      self%position = sort_order(numbers)
+      self%sorted = numbers(self%position)
    end subroutine build
 
-   !> Place of a number in the list by bisection; 0 where the list does not hold it.
-   pure function find(self, number) result(place)
+   !> Position of a number in the list by bisection; 0 where the list does not hold it.
+   pure function find(self, number) result(position)
       class(number_index_type), intent(in) :: self
       integer, intent(in) :: number                 !! number that is looked for
-      integer :: place                              !! its place, the first of equals
+      integer :: position                           !! its position, the first of equals
       integer :: low, high, middle
 
-      place = 0
+      position = 0
       if (.not. allocated(self%sorted)) return
       low = 1
       high = size(self%sorted)
@@ -119,7 +119,7 @@ contains
          end if
       end do
       if (low > size(self%sorted)) return
-      if (self%sorted(low) == number) place = self%place(low)
+      if (self%sorted(low) == number) position = self%position(low)
    end function find
 
    !> Whether the list holds nothing.

@@ -18,7 +18,7 @@ contains
    !> The accelerator that the deck asks for.
    subroutine make_accelerator(controls, graph, accelerator)
       type(fixed_point_type), intent(in) :: controls
-      type(conductance_graph_type), intent(in) :: graph(:)                !! (m) laws of the pairs
+      type(conductance_graph_type), intent(in) :: graph(:)         !! (m) laws of the contact points
       class(accelerator_type), allocatable, intent(out) :: accelerator    !! fresh memory
 
       select case (controls%method)

@@ -2,8 +2,8 @@
 !>
 !>    x_i+1 = x_i + g f_i - (dX + g dF) gamma,    gamma = argmin |f_i - dF gamma|,
 !>
-!> dX and dF being the changes of the last passes. It asks for no derivative. Pairs that carry no
-!> heat before or after a pass have no logarithm: they take the image.
+!> dX and dF being the changes of the last passes. It asks for no derivative. Contact points that
+!> carry no heat before or after a pass have no logarithm: they take the image.
 module anderson
    use dense, only: least_squares
    use fixed_point, only: accelerator_type, pass_type

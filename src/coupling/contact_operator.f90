@@ -1,14 +1,14 @@
 !> One pass of the contact operator U = chi H L of section 2: conductance -> temperature jumps ->
-!> contact state -> conductance, all on the pairs.
+!> contact state -> conductance, all on the contact points.
 module contact_operator
    use closing_instant, only: solve_increment
    use conductance_laws, only: conductance, conductance_derivative
-   use contact_states, only: contact_state_type, status_open, status_slip
+   use contact_states, only: contact_state_type, contact_open, contact_slip
    use errors, only: error_type, status_no_convergence
    use finite_values, only: check_finite
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
-   use pair_tractions, only: pressures
+   use contact_tractions, only: pressures
    use reduced_bodies, only: reduced_bodies_type
    use tail_factors, only: tail_flops
    use thermal_matrix, only: contact_diagonal, contact_history
@@ -49,19 +49,19 @@ contains
       type(increment_workspace_type), intent(inout) :: workspace !! heat in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       real(dp) :: x(bodies%thermal%map%tail), diagonal(bodies%thermal%map%tail)
-      real(dp) :: of_pair(size(omega)), history(size(omega))
+      real(dp) :: of_point(size(omega)), history(size(omega))
       integer :: k
 
-      associate (place => bodies%jump_place, weight => bodies%pairs%weight, &
+      associate (tail_index => bodies%jump_index, weight => bodies%points%weight, &
          solver => bodies%thermal%solver, tail => workspace%tail, work => workspace%record%work)
-         of_pair = contact_diagonal(data%scheme, weight, data%omega_old, omega)
+         of_point = contact_diagonal(data%scheme, weight, data%omega_old, omega)
          history = contact_history(data%scheme, weight, data%omega_old, omega, data%jump_old)
          x = workspace%heat%condensed
          diagonal = 0.0_dp
          do k = 1, size(omega)
-            if (place(k) == 0) cycle
-            diagonal(place(k)) = of_pair(k)
-            x(place(k)) = x(place(k)) + history(k)
+            if (tail_index(k) == 0) cycle
+            diagonal(tail_index(k)) = of_point(k)
+            x(tail_index(k)) = x(tail_index(k)) + history(k)
          end do
          call tail%refactor(solver%schur, diagonal)
          work%columns_again = work%columns_again + size(x) + 1 - tail%first_changed
@@ -71,7 +71,7 @@ contains
          call tail%solve(x)
          jump = data%held_jump
          do k = 1, size(omega)
-            if (place(k) > 0) jump(k) = x(place(k))
+            if (tail_index(k) > 0) jump(k) = x(tail_index(k))
          end do
       end associate
    end subroutine temperature_jumps
@@ -86,8 +86,8 @@ contains
 
       load = data%welded_load
       do k = 1, size(jump)
-         if (bodies%jump_place(k) > 0) then
-            load = load + bodies%jump_load(:, bodies%jump_place(k))*jump(k)
+         if (bodies%jump_index(k) > 0) then
+            load = load + bodies%jump_load(:, bodies%jump_index(k))*jump(k)
          end if
       end do
    end function condensed_load
@@ -96,13 +96,13 @@ contains
    pure function law_conductance(bodies, state) result(omega)
       type(reduced_bodies_type), intent(in) :: bodies
       type(contact_state_type), intent(in) :: state
-      real(dp) :: omega(size(state%status))                     !! (m)
-      real(dp) :: pressure(size(state%status))
+      real(dp) :: omega(size(state%contact_state))              !! (m)
+      real(dp) :: pressure(size(state%contact_state))
       integer :: k
 
       pressure = law_pressure(bodies, state)
       do k = 1, size(omega)
-         omega(k) = conductance(bodies%pairs%law(k), state%status(k) /= status_open, &
+         omega(k) = conductance(bodies%points%law(k), state%contact_state(k) /= contact_open, &
             state%gap(k), pressure(k))
       end do
    end function law_conductance
@@ -111,19 +111,19 @@ contains
    pure function law_pressure(bodies, state) result(pressure)
       type(reduced_bodies_type), intent(in) :: bodies
       type(contact_state_type), intent(in) :: state
-      real(dp) :: pressure(size(state%status))                  !! (m) [stress]
+      real(dp) :: pressure(size(state%contact_state))           !! (m) [stress]
       integer :: first, i, last
 
       do i = 1, size(bodies%interfaces)
-         first = bodies%pairs%interface_start(i)
-         last = bodies%pairs%interface_start(i + 1) - 1
+         first = bodies%points%interface_start(i)
+         last = bodies%points%interface_start(i + 1) - 1
          pressure(first:last) = pressures(bodies%interfaces(i), state%force(first:last), &
-            state%status(first:last) /= status_open)
+            state%contact_state(first:last) /= contact_open)
       end do
    end function law_pressure
 
-   !> Contact state that a step without mechanics finds. Before any mechanics pairs without a gap
-   !> touch: they are closed and carry no pressure.
+   !> Contact state that a step without mechanics finds. Before any mechanics contact points without
+   !> a gap touch: they are closed and carry no pressure.
    pure function kept_contact(state, has_mechanics) result(kept)
       type(contact_state_type), intent(in) :: state  !! contact state of the last increment
       logical, intent(in) :: has_mechanics           !! whether mechanics was solved before
@@ -131,7 +131,7 @@ contains
 
       kept = state
       if (has_mechanics) return
-      where (kept%gap <= 0.0_dp) kept%status = status_slip
+      where (kept%gap <= 0.0_dp) kept%contact_state = contact_slip
    end function kept_contact
 
    !> Nodal forces that temperatures cause; none where no temperature strains.
@@ -160,17 +160,17 @@ contains
 
       floor_value = 0.0_dp
       do k = 1, size(omega)
-         if (omega(k) <= 0.0_dp .or. bodies%pairs%weight(k) <= 0.0_dp) cycle
-         associate (weight => bodies%pairs%weight(k))
+         if (omega(k) <= 0.0_dp .or. bodies%points%weight(k) <= 0.0_dp) cycle
+         associate (weight => bodies%points%weight(k))
             change = few*epsilon(1.0_dp)*max(data%displacement_scale, abs(state%gap(k)), &
-               abs(bodies%pairs%initial_gap(k) - state%gap(k)))
-            if (state%status(k) /= status_open) then
+               abs(bodies%points%initial_gap(k) - state%gap(k)))
+            if (state%contact_state(k) /= contact_open) then
                change = change*bodies%contact%alone(k)/weight
             end if
             pressure = state%force(k)/weight
          end associate
          floor_value = max(floor_value, change/omega(k)*abs(conductance_derivative( &
-            bodies%pairs%law(k), state%status(k) /= status_open, state%gap(k), pressure)))
+            bodies%points%law(k), state%contact_state(k) /= contact_open, state%gap(k), pressure)))
       end do
    end function residual_floor
 

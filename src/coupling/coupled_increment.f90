@@ -11,7 +11,7 @@ module coupled_increment
    use kinds, only: dp
    use opening_derivatives, only: make_graph, opening_derivative
    use reduced_bodies, only: reduced_bodies_type
-   use resting_pairs, only: contact_scales
+   use resting_points, only: contact_scales
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
    use steps, only: step_type
@@ -21,7 +21,7 @@ module coupled_increment
    public :: solve_coupled
 
    real(dp), parameter :: end_conductance(2) = [1.0e-8_dp, 1.0e8_dp] !! of the starts open and
-   !! closed, in the conductance of the bodies about the pair
+   !! closed, in the conductance of the bodies about the contact point
    real(dp), parameter :: different = 1.0e-3_dp !! in omega, relative: more than residuals explain
    real(dp), parameter :: near_turning_point = 0.1_dp !! distance of the largest real eigenvalue
    !! from 1
@@ -29,7 +29,7 @@ module coupled_increment
 contains
 
    !> Conductances, jumps and contact state of an increment.
-   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds.
+   !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies.
    subroutine solve_coupled(bodies, step, previous, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(step_type), intent(in) :: step
@@ -67,16 +67,16 @@ contains
       select case (kind)
       case (start_given)
          do i = 1, size(bodies%interfaces)
-            omega(bodies%pairs%interface_start(i):bodies%pairs%interface_start(i + 1) - 1) = &
+            omega(bodies%points%interface_start(i):bodies%points%interface_start(i + 1) - 1) = &
                step%start%conductance(i)
          end do
       case (start_open, start_closed)
          omega = previous%omega
          conductor = bodies%conductors()
          do k = 1, size(omega)
-            if (bodies%jump_place(k) == 0 .or. bodies%pairs%weight(k) <= 0.0_dp) cycle
+            if (bodies%jump_index(k) == 0 .or. bodies%points%weight(k) <= 0.0_dp) cycle
             omega(k) = end_conductance(merge(1, 2, kind == start_open))*conductor(k)/ &
-               bodies%pairs%weight(k)
+               bodies%points%weight(k)
          end do
       case default
          ratio = 1.0_dp
@@ -159,21 +159,21 @@ contains
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: next
       type(increment_workspace_type), intent(inout) :: workspace
-      real(dp), allocatable :: slope(:, :), body(:)
+      real(dp), allocatable :: derivative(:, :), body(:)
       type(coupling_gain_type) :: gain
       logical :: found
 
       workspace%record%coupling_gain = 0.0_dp
       workspace%record%coupling_gain_max = 0.0_dp
       associate (graph => data%graph, opening => workspace%pass%opening)
-         if (.not. (any(abs(graph%slope(graph%place_of_opening(opening))) > 0.0_dp) .or. &
+         if (.not. (any(abs(graph%derivative(graph%coordinate_of_opening(opening))) > 0.0_dp) .or. &
             any(next%resting))) return
       end associate
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
-      call opening_derivative(bodies, data, workspace, next%jump, next%contact, slope, body)
-      if (.not. allocated(slope)) return
-      call find_gain(data%graph, workspace%pass%opening, slope, next%resting, gain, found)
+      call opening_derivative(bodies, data, workspace, next%jump, next%contact, derivative, body)
+      if (.not. allocated(derivative)) return
+      call find_gain(data%graph, workspace%pass%opening, derivative, next%resting, gain, found)
       if (.not. found) return
       workspace%record%coupling_gain = gain%largest
       workspace%record%coupling_gain_max = gain%largest_real

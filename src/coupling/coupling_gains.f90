@@ -21,16 +21,17 @@ module coupling_gains
 
 contains
 
-   !> The gain of a solution. The conductance of a pair that rests is no variable of U'; in det(I -
-   !> U') it is one, that of a law which is all but vertical there.
-   subroutine find_gain(graph, opening, slope, resting, gain, found)
+   !> The gain of a solution. The conductance of a contact point that rests is no variable of U'; in
+   !> det(I - U') it is one, that of a law which is all but vertical there.
+   subroutine find_gain(graph, opening, derivative, resting, gain, found)
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
       real(dp), intent(in) :: opening(:)                    !! (m) openings [length]
-      real(dp), intent(in) :: slope(:, :) !! (m, m) derivative of the openings by the conductances
-      logical, intent(in) :: resting(:)                     !! (m) pairs that rest
+      !> (m, m) derivative of the openings by the conductances
+      real(dp), intent(in) :: derivative(:, :)
+      logical, intent(in) :: resting(:)                     !! (m) contact points that rest
       type(coupling_gain_type), intent(out) :: gain
       logical, intent(out) :: found                         !! whether LAPACK found it
-      real(dp) :: u_slope(size(opening), size(opening)), matrix(size(opening), size(opening))
+      real(dp) :: u_derivative(size(opening), size(opening)), matrix(size(opening), size(opening))
       real(dp), allocatable :: real_part(:), imaginary_part(:)
       integer, allocatable :: free(:)
       type(lu_type) :: lu
@@ -39,17 +40,18 @@ contains
 
       free = pack([(k, k=1, size(opening))], .not. resting)
       do k = 1, size(opening)
-         u_slope(k, :) = graph(k)%slope(graph(k)%place_of_opening(opening(k)))*slope(k, :)
-         matrix(k, :) = -u_slope(k, :)
+         u_derivative(k, :) = &
+            graph(k)%derivative(graph(k)%coordinate_of_opening(opening(k)))*derivative(k, :)
+         matrix(k, :) = -u_derivative(k, :)
          matrix(k, k) = matrix(k, k) + 1.0_dp
-         if (resting(k)) matrix(k, :) = -sign(1.0_dp, graph(k)%slope(-0.5_dp*graph(k)%width))* &
-            slope(k, :)
+         if (resting(k)) matrix(k, :) = -sign(1.0_dp, &
+            graph(k)%derivative(-0.5_dp*graph(k)%width))* derivative(k, :)
       end do
       call lu%factor(matrix, singular)
       if (.not. singular) gain%is_one_of_several = lu%negative_determinant()
       found = .true.
       if (size(free) == 0) return
-      call eigenvalues(u_slope(free, free), real_part, imaginary_part, found)
+      call eigenvalues(u_derivative(free, free), real_part, imaginary_part, found)
       if (.not. found) return
       k = maxloc(abs(cmplx(real_part, imaginary_part, dp)), dim=1)
       gain%largest = real_part(k)

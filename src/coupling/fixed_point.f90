@@ -6,7 +6,7 @@ module fixed_point
    implicit none
    private
    public :: accelerator_type, pass_type, picard_type, zaitsev_type
-   public :: pair_residual, predicted_conductance
+   public :: point_residual, predicted_conductance
 
    !> One pass of U.
    type :: pass_type
@@ -15,15 +15,16 @@ module fixed_point
       real(dp), allocatable :: image(:)       !! (m) U(omega*)
       real(dp), allocatable :: opening(:)     !! (m) openings that it found [length]
       !> (m, m) derivative of the openings by omega*, where the accelerator asked and there is one
-      real(dp), allocatable :: slope(:, :)
-      !> (m) conductance that the bodies put in series with each pair; set with the slope
+      real(dp), allocatable :: derivative(:, :)
+      !> (m) conductance that the bodies put in series with each contact point; set with the
+      !> derivative
       real(dp), allocatable :: body(:)
    end type pass_type
 
    !> What turns omega* and its image U(omega*) into the next omega*.
    type, abstract :: accelerator_type
-      real(dp), allocatable :: g(:)   !! (m) part of the way that each pair goes
-      integer :: kept = 0 !! pairs whose g was kept in the last pass, eq. (4.2) giving none
+      real(dp), allocatable :: g(:)   !! (m) part of the way that each contact point goes
+      integer :: kept = 0 !! contact points whose g was kept in the last pass, eq. (4.2) giving none
       logical :: follows_path = .false.   !! on a continuous path of conductances (homotopy)
    contains
       procedure(next_interface), deferred :: next
@@ -45,7 +46,7 @@ module fixed_point
       procedure :: next => next_picard
    end type picard_type
 
-   !> Eq. (4.2): each pair mixed by its own secant.
+   !> Eq. (4.2): each contact point mixed by its own secant.
    type, extends(accelerator_type) :: zaitsev_type
       integer :: constant_iterations = 3 !! number of passes that keep g as it was set
       real(dp), allocatable, private :: last_omega(:)     !! (m) omega*^(i-2)
@@ -67,7 +68,7 @@ contains
    end subroutine next_picard
 
    !> g_i = 1/(1 - tan a_i) clipped to (0, 1]. Where tan a_i >= 1 or is 0/0 the paper is silent: the
-   !> pair's last g stays.
+   !> contact point's last g stays.
    subroutine next_zaitsev(self, pass, omega)
       class(zaitsev_type), intent(inout) :: self
       type(pass_type), intent(in) :: pass
@@ -95,8 +96,8 @@ contains
       omega = pass%omega*(1.0_dp - self%g) + pass%image*self%g
    end subroutine next_zaitsev
 
-   !> |U(omega) - omega|/omega of a pair; 1 where only one of both carries no heat.
-   elemental function pair_residual(omega, image) result(residual)
+   !> |U(omega) - omega|/omega of a contact point; 1 where only one of both carries no heat.
+   elemental function point_residual(omega, image) result(residual)
       real(dp), intent(in) :: omega   !! omega*
       real(dp), intent(in) :: image   !! U(omega*)
       real(dp) :: residual            !! relative residual
@@ -107,7 +108,7 @@ contains
       else if (image > 0.0_dp) then
          residual = 1.0_dp
       end if
-   end function pair_residual
+   end function point_residual
 
    !> omega*^0 of an increment, below (4.2): linear extrapolation; where that is not positive
    !> omega_i is kept.

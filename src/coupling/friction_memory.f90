@@ -1,10 +1,10 @@
-!> Where the slip of each pair counts from, at the end of an increment.
+!> Where the slip of each contact point counts from, at the end of an increment.
 module friction_memory
-   use contact_states, only: status_open
+   use contact_states, only: contact_open
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use kinds, only: dp
-   use pair_rows, only: tangential_position
+   use all_contact_points, only: tangential_position
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    implicit none
@@ -14,8 +14,9 @@ module friction_memory
 contains
 
    !> Slip counts from the instant of closing. Tangential positions that the contact system does not
-   !> carry, of pairs that are frictionless or held, are taken from the recovered displacements, and
-   !> such a pair closes where it is at that instant on the straight line between its ends.
+   !> carry, of contact points that are frictionless or held, are taken from the recovered
+   !> displacements, and such a contact point closes where it is at that instant on the straight
+   !> line between its ends.
    pure subroutine remember_slip(bodies, solved, previous, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(contact_workspace_type), intent(in) :: solved      !! factors of the solution
@@ -24,28 +25,28 @@ contains
       real(dp) :: before
       integer :: k
 
-      associate (pairs => bodies%pairs, contact => next%contact)
-         do k = 1, size(pairs%slave)
+      associate (points => bodies%points, contact => next%contact)
+         do k = 1, size(points%slave)
             if (bodies%contact%tangent(k) == 0) then
-               before = tangential_position(pairs, k, previous%displacement)
-               contact%tangential(k) = tangential_position(pairs, k, next%displacement)
+               before = tangential_position(points, k, previous%displacement)
+               contact%tangential(k) = tangential_position(points, k, next%displacement)
                contact%reference(k) = before + &
                   closing_fraction(bodies%contact, solved, k, previous%contact%gap(k), &
                   contact%force(k))* &
                   (contact%tangential(k) - before)
             end if
-            if (contact%status(k) == status_open .or. next%idle(k)) then
+            if (contact%contact_state(k) == contact_open .or. next%idle(k)) then
                contact%slip_origin(k) = contact%tangential(k)
-            else if (previous%contact%status(k) == status_open) then
+            else if (previous%contact%contact_state(k) == contact_open) then
                contact%slip_origin(k) = contact%reference(k)
             end if
          end do
       end associate
    end subroutine remember_slip
 
-   !> Instant at which a pair without a tangential unknown closed, as a fraction of the increment:
-   !> relieved of its force alone it would overlap by force/stiffness. One that carries no force, as
-   !> at rest, closes at the end.
+   !> Instant at which a contact point without a tangential unknown closed, as a fraction of the
+   !> increment: relieved of its force alone it would overlap by force/stiffness. One that carries
+   !> no force, as at rest, closes at the end.
    pure function closing_fraction(system, solved, k, gap, force) result(fraction)
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(in) :: solved
@@ -56,7 +57,7 @@ contains
 
       fraction = merge(1.0_dp, 0.0_dp, gap > 0.0_dp)
       if (gap <= 0.0_dp .or. force <= 0.0_dp) return
-      ! Zero where the pair alone holds a body, but for rounding: it then closes at once.
+      ! Zero where the contact point alone holds a body, but for rounding: it then closes at once.
       stiffness = max(solved%stiffness(system, [system%normal(k)]), 0.0_dp)
       fraction = gap*stiffness(1, 1)/(gap*stiffness(1, 1) + force)
    end function closing_fraction

@@ -2,17 +2,17 @@
 !>
 !>    F(z, t) = opening(z) - (1 - t) o - t H(L(omega(z))) = 0,
 !>
-!> z being the places of the points on the graphs of their laws (conductance_graph) and o constant
-!> openings. At t = 0 there is one solution, at t = 1 they are those of the increment. As H is
-!> bounded where the temperatures are, the path from t = 0 leads to t = 1, past all turning points,
-!> and to a solution with det(I - U') > 0 (Ortega & Rheinboldt 1970, chapters 6 and 7; Allgower &
-!> Georg 1990). It leaves every bound only where the temperatures do.
+!> z being the coordinates of the points on the graphs of their laws (conductance_graph) and o
+!> constant openings. At t = 0 there is one solution, at t = 1 they are those of the increment. As H
+!> is bounded where the temperatures are, the path from t = 0 leads to t = 1, past all turning
+!> points, and to a solution with det(I - U') > 0 (Ortega & Rheinboldt 1970, chapters 6 and 7;
+!> Allgower & Georg 1990). It leaves every bound only where the temperatures do.
 !>
 !> Each pass gives one step: a Newton correction normal to the path and an advance along it, which
 !> is shortened where the correction is not small beside it. Laws and contact states have kinks, at
 !> which the path may turn back sharply: the sign of det [F_z F_t; tangent], constant all along,
 !> tells where it goes on. Lengths are measured along the graphs, in opening/length and in the share
-!> omega/(omega + body), in which steep laws and pairs at rest are as long as flat ones.
+!> omega/(omega + body), in which steep laws and contact points at rest are as long as flat ones.
 module homotopy
    use conductance_graph, only: conductance_graph_type
    use dense, only: lu_type
@@ -66,15 +66,15 @@ module homotopy
 contains
 
    !> Begins a path at openings, where no point rests.
-   subroutine begin(self, graph, opening, place)
+   subroutine begin(self, graph, opening, coordinate)
       class(homotopy_type), intent(out) :: self             !! a new path
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) laws of the points
       real(dp), intent(in) :: opening(:)                    !! (m) o [length]
-      real(dp), intent(out) :: place(:)                     !! (m) z of the first pass [length]
+      real(dp), intent(out) :: coordinate(:)                !! (m) z of the first pass [length]
 
       self%length = max(maxval(abs(opening)), tiny(1.0_dp))
       call restart(self, graph, opening)
-      place = self%trial
+      coordinate = self%trial
    end subroutine begin
 
    !> Goes back to t = 0, to openings where no point rests. Points that are alike by symmetry begin
@@ -87,7 +87,7 @@ contains
 
       self%first = opening + unlike*self%length*[(modulo(k*golden, 1.0_dp), k=1, size(opening))]
       where (abs(self%first) < touching*self%length) self%first = touching*self%length
-      self%base = graph%place_of_opening(self%first)
+      self%base = graph%coordinate_of_opening(self%first)
       self%trial = self%base
       self%base_t = 0.0_dp
       self%trial_t = 0.0_dp
@@ -99,29 +99,30 @@ contains
       self%tangent(size(self%tangent)) = 1.0_dp
    end subroutine restart
 
-   !> The places of the next pass.
-   subroutine next(self, graph, body, opening, slope, place)
+   !> The coordinates of the next pass.
+   subroutine next(self, graph, body, opening, derivative, coordinate)
       class(homotopy_type), intent(inout) :: self           !! the path
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) laws of the points
       real(dp), intent(in) :: body(:)         !! (m) of the bodies about a point [as omega]
       real(dp), intent(in) :: opening(:)                    !! (m) H(L(omega)) of the pass [length]
       !> (m, m) its derivative by omega; not allocated where there is none
-      real(dp), allocatable, intent(in) :: slope(:, :)
-      real(dp), intent(out) :: place(:)                     !! (m) z [length]
-      real(dp) :: change(size(place) + 1), tangent(size(place) + 1)
+      real(dp), allocatable, intent(in) :: derivative(:, :)
+      real(dp), intent(out) :: coordinate(:)                !! (m) z [length]
+      real(dp) :: change(size(coordinate) + 1), tangent(size(coordinate) + 1)
       logical :: sound
 
       if (self%unit <= 0.0_dp) self%length = max(self%length, maxval(abs(opening)))
       if (self%step < shortest_step) then
          self%near = max(closer*self%near, nearest)
          call restart(self, graph, opening)
-         place = self%trial
+         coordinate = self%trial
          return
       end if
       change = 0.0_dp
-      sound = allocated(slope)
-      if (sound .and. self%unit <= 0.0_dp) call set_unit(self, graph, body, opening, slope, sound)
-      if (sound) call find_step(self, graph, body, opening, slope, change, tangent, sound)
+      sound = allocated(derivative)
+      if (sound .and. self%unit <= 0.0_dp) call set_unit(self, graph, body, opening, derivative, &
+         sound)
+      if (sound) call find_step(self, graph, body, opening, derivative, change, tangent, sound)
       if (sound) call judge(self, norm2(change), dot_product(tangent, self%tangent), sound)
       if (sound .and. (self%trial_t >= 1.0_dp .or. norm2(change) > self%near)) then
          call move(self, graph, body, self%trial, self%trial_t, change, tangent)
@@ -133,7 +134,7 @@ contains
          end if
          call advance(self, graph, body)
       end if
-      place = self%trial
+      coordinate = self%trial
    end subroutine next
 
    !> Whether a pass is one on the way: its correction is small, and at t = 1 the path goes forward.
@@ -169,30 +170,30 @@ contains
    end subroutine take
 
    !> A shorter advance, where the contact zones of a pass were not found.
-   subroutine retreat(self, graph, body, place, possible)
+   subroutine retreat(self, graph, body, coordinate, possible)
       class(homotopy_type), intent(inout) :: self           !! the path
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) laws of the points
       real(dp), intent(in) :: body(:)         !! (m) of the bodies about a point [as omega]
-      real(dp), intent(out) :: place(:)                     !! (m) z [length]
+      real(dp), intent(out) :: coordinate(:)                !! (m) z [length]
       logical, intent(out) :: possible                      !! whether there is one
 
       self%step = 0.5_dp*self%step
       possible = self%step > shortest_step
       if (possible) call advance(self, graph, body)
-      place = self%trial
+      coordinate = self%trial
    end subroutine retreat
 
    !> The unit of lengths: as far as the points go at the start while t goes to 1, where that is
    !> little.
-   subroutine set_unit(self, graph, body, opening, slope, sound)
+   subroutine set_unit(self, graph, body, opening, derivative, sound)
       class(homotopy_type), intent(inout) :: self
       type(conductance_graph_type), intent(in) :: graph(:)
-      real(dp), intent(in) :: body(:), opening(:), slope(:, :)
+      real(dp), intent(in) :: body(:), opening(:), derivative(:, :)
       logical, intent(out) :: sound
       real(dp) :: change(size(body) + 1), tangent(size(body) + 1)
 
       self%unit = 1.0_dp
-      call find_step(self, graph, body, opening, slope, change, tangent, sound)
+      call find_step(self, graph, body, opening, derivative, change, tangent, sound)
       if (sound) self%unit = min(max(norm2(tangent(:size(body)))/tangent(size(tangent)), &
          least_unit), 1.0_dp)
    end subroutine set_unit
@@ -212,8 +213,8 @@ contains
          self%correction + self%step*self%tangent, self%tangent)
    end subroutine advance
 
-   !> The trial: a change from places and t, back along the tangent to t = 1 where it would lead
-   !> beyond. There is no path below t = 0.
+   !> The trial: a change from coordinates and t, back along the tangent to t = 1 where it would
+   !> lead beyond. There is no path below t = 0.
    subroutine move(self, graph, body, from, from_t, change, tangent)
       class(homotopy_type), intent(inout) :: self
       type(conductance_graph_type), intent(in) :: graph(:)
@@ -233,10 +234,10 @@ contains
 
    !> Newton's correction of the trial, at t = 1 with t held, elsewhere normal to the path, whose
    !> tangent points the way that it goes on.
-   subroutine find_step(self, graph, body, opening, slope, change, tangent, sound)
+   subroutine find_step(self, graph, body, opening, derivative, change, tangent, sound)
       class(homotopy_type), intent(in) :: self
       type(conductance_graph_type), intent(in) :: graph(:)
-      real(dp), intent(in) :: body(:), opening(:), slope(:, :)
+      real(dp), intent(in) :: body(:), opening(:), derivative(:, :)
       real(dp), intent(out) :: change(:), tangent(:)
       logical, intent(out) :: sound
       real(dp) :: matrix(size(change), size(change)), x(size(change), 2), rate
@@ -246,8 +247,8 @@ contains
 
       n = size(opening)
       do k = 1, n
-         rate = self%unit*place_rate(graph(k), self%trial(k), body(k), self%length)
-         matrix(:n, k) = -self%trial_t*rate*graph(k)%slope(self%trial(k))*slope(:, k)
+         rate = self%unit*coordinate_rate(graph(k), self%trial(k), body(k), self%length)
+         matrix(:n, k) = -self%trial_t*rate*graph(k)%derivative(self%trial(k))*derivative(:, k)
          matrix(k, k) = matrix(k, k) + rate*graph(k)%advance(self%trial(k))
       end do
       matrix(:n, n + 1) = self%first - opening
@@ -267,52 +268,54 @@ contains
       if (self%trial_t < 1.0_dp) change = change - dot_product(change, tangent)*tangent
    end subroutine find_step
 
-   !> Change of the place for the length along the graph.
-   pure function place_rate(graph, place, body, length) result(rate)
+   !> Change of the coordinate for the length along the graph.
+   pure function coordinate_rate(graph, coordinate, body, length) result(rate)
       type(conductance_graph_type), intent(in) :: graph
-      real(dp), intent(in) :: place, body, length
+      real(dp), intent(in) :: coordinate, body, length
       real(dp) :: rate   !! [length]
 
-      rate = 1.0_dp/(graph%advance(place)/length + &
-         body/(graph%omega(place) + body)*abs(graph%slope(place))/(graph%omega(place) + body))
-   end function place_rate
+      rate = 1.0_dp/(graph%advance(coordinate)/length + &
+         body/(graph%omega(coordinate) + &
+         body)*abs(graph%derivative(coordinate))/(graph%omega(coordinate) + body))
+   end function coordinate_rate
 
-   !> Places at the ends of walks along the graphs, of given lengths.
-   elemental function moved_along(graph, from, walk, body, length) result(place)
+   !> Coordinates at the ends of walks along the graphs, of given lengths.
+   elemental function moved_along(graph, from, walk, body, length) result(coordinate)
       type(conductance_graph_type), intent(in) :: graph
       real(dp), intent(in) :: from     !! [length]
       real(dp), intent(in) :: walk     !! towards open where it is positive [-]
       real(dp), intent(in) :: body     !! [as omega]
       real(dp), intent(in) :: length   !! [length]
-      real(dp) :: place                !! [length]
+      real(dp) :: coordinate           !! [length]
       real(dp) :: near, far
       integer :: i
 
       near = from
       far = from + walk*length + sign(graph%width, walk)
       do i = 1, 200
-         place = 0.5_dp*(near + far)
-         if (abs(far - near) <= 2*epsilon(1.0_dp)*abs(place)) exit
-         if (distance(graph, min(from, place), max(from, place), body, length) > abs(walk)) then
-            far = place
+         coordinate = 0.5_dp*(near + far)
+         if (abs(far - near) <= 2*epsilon(1.0_dp)*abs(coordinate)) exit
+         if (distance(graph, min(from, coordinate), max(from, coordinate), body, &
+            length) > abs(walk)) then
+            far = coordinate
          else
-            near = place
+            near = coordinate
          end if
       end do
    end function moved_along
 
-   !> Length along the graph between two places: the opening's change and the variation of the
+   !> Length along the graph between two coordinates: the opening's change and the variation of the
    !> share, which may turn at the rows of tables and at the ends of a rest.
    pure function distance(graph, low, high, body, length)
       type(conductance_graph_type), intent(in) :: graph
       real(dp), intent(in) :: low, high, body, length
       real(dp) :: distance
-      real(dp), allocatable :: place(:), share(:)
+      real(dp), allocatable :: coordinate(:), share(:)
 
       associate (kinks => graph%kinks())
-         place = [low, pack(kinks, kinks > low .and. kinks < high), high]
+         coordinate = [low, pack(kinks, kinks > low .and. kinks < high), high]
       end associate
-      share = graph%omega(place)
+      share = graph%omega(coordinate)
       share = share/(share + body)
       distance = (graph%opening(high) - graph%opening(low))/length + &
          sum(abs(share(2:) - share(:size(share) - 1)))

@@ -2,7 +2,7 @@
 module increment_iteration
    use accelerators, only: make_accelerator
    use contact_operator, only: contact_operator_pass, residual_floor
-   use contact_states, only: closing_law_type, contact_state_type, status_open
+   use contact_states, only: closing_law_type, contact_state_type, contact_open
    use controls, only: fixed_point_type, method_newton
    use errors, only: error_type, set_error, status_no_convergence
    use fixed_point, only: accelerator_type
@@ -12,7 +12,7 @@ module increment_iteration
    use newton, only: newton_type
    use opening_derivatives, only: opening_derivative, openings
    use reduced_bodies, only: reduced_bodies_type
-   use resting_pairs, only: find_residual, settle
+   use resting_points, only: find_residual, settle
    use solution_report, only: solution_report_type, iteration_record_type
    use solution_state, only: solution_state_type
    use text, only: append, to_text
@@ -20,7 +20,7 @@ module increment_iteration
    private
    public :: iterate
 
-   integer, parameter :: most_turns = 4   !! openings and closings of a pair whose law jumps
+   integer, parameter :: most_turns = 4  !! openings and closings of a contact point whose law jumps
    integer, parameter :: path_share = 9   !! passes on a path, over those of the method itself
    real(dp), parameter :: no_strain = 1.0_dp  !! thermal strain that is none of the small ones
    integer, parameter :: most_away = 5    !! passes with larger ones from which no method returns
@@ -28,9 +28,9 @@ module increment_iteration
 contains
 
    !> Conductances, jumps and contact state of an increment. Where another method fails, Newton's
-   !> solves the increment if laws jump, since the others know no pairs at rest; elsewhere it only
-   !> tells what the failure means.
-   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds;
+   !> solves the increment if laws jump, since the others know no contact points at rest; elsewhere
+   !> it only tells what the failure means.
+   !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies;
    !> status_interrupted where a signal left no more time.
    subroutine iterate(bodies, controls, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
@@ -122,7 +122,7 @@ contains
       if (.not. runs_away(data, jump)) return
       k = findloc(abs(jump) <= huge(1.0_dp), .false., dim=1)
       if (k == 0) k = maxloc(abs(jump), dim=1)
-      i = count(bodies%pairs%interface_start <= k)
+      i = count(bodies%points%interface_start <= k)
       record%runaway = 'thermal runaway in contact pair '//bodies%interfaces(i)%name// &
          ': the heat that crosses its gap widens it, and the wider gap needs hotter bodies, '// &
          'without limit (thermal strains above 1); a steady state needs less heat, a smaller '// &
@@ -164,7 +164,7 @@ contains
             passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
                residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
                g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
-               pairs_changed=count(next%contact%status /= good%status))
+               pairs_changed=count(next%contact%contact_state /= good%contact_state))
             if (allocated(error)) then
                call retreat(accelerator, pass%omega, possible)
                if (.not. possible) exit
@@ -173,7 +173,7 @@ contains
                cycle
             end if
             pass%opening = openings(bodies, data%graph, next%contact)
-            call find_residual(data%graph, data%scales, bodies%pairs%weight, pass, &
+            call find_residual(data%graph, data%scales, bodies%points%weight, pass, &
                passes(i)%residual, next%resting)
             record%residual_floor = residual_floor(bodies, data, next%contact, pass%image)
             wanted = max(controls%tolerance, record%residual_floor)
@@ -181,8 +181,8 @@ contains
             if (passes(i)%residual <= wanted) exit
             away = merge(away + 1, 0, runs_away(data, next%jump))
             if (away >= merge(1, most_away, accelerator%follows_path)) exit
-            where ((next%contact%status == status_open) .neqv. (good%status == status_open)) &
-               turns = turns + 1
+            where ((next%contact%contact_state == contact_open) .neqv. &
+               (good%contact_state == contact_open)) turns = turns + 1
             if (controls%method /= method_newton .and. any(turns > most_turns .and. &
                data%graph%width > 0.0_dp)) exit
             call find_derivative(bodies, data, next, accelerator, workspace)
@@ -191,7 +191,7 @@ contains
          end do
          call close_passes(record, passes, i, wanted, error)
          if (allocated(error)) return
-         where (bodies%pairs%weight <= 0.0_dp) next%omega = pass%image
+         where (bodies%points%weight <= 0.0_dp) next%omega = pass%image
       end associate
       call settle(next%resting, next%contact)
    end subroutine use_method
@@ -238,12 +238,12 @@ contains
       type(increment_workspace_type), intent(inout) :: workspace
 
       associate (pass => workspace%pass)
-         if (allocated(pass%slope)) deallocate (pass%slope)
+         if (allocated(pass%derivative)) deallocate (pass%derivative)
          select type (accelerator)
          type is (newton_type)
             if (accelerator%asks_derivative(pass)) call opening_derivative(bodies, data, &
                workspace, &
-               next%jump, next%contact, pass%slope, pass%body)
+               next%jump, next%contact, pass%derivative, pass%body)
          end select
       end associate
    end subroutine find_derivative

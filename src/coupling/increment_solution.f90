@@ -1,11 +1,12 @@
-!> One increment on the pairs: load, fixed-point iteration of section 4, and the fields behind it.
+!> One increment on the contact points: load, fixed-point iteration of section 4, and the fields
+!> behind it.
 module increment_solution
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
    use conductance_laws, only: law_jumps
    use contact_operator, only: contact_operator_pass, kept_contact, law_conductance, &
       temperature_jumps, thermal_forces
-   use contact_states, only: contact_state_type, status_open
+   use contact_states, only: contact_state_type, contact_open
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
    use errors, only: error_type, status_no_convergence
@@ -16,7 +17,7 @@ module increment_solution
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use loads, only: loads_type
-   use pair_rows, only: held_approach
+   use all_contact_points, only: held_approach
    use reduced_bodies, only: reduced_bodies_type
    use scheme_properties, only: is_explicit
    use scheme_start, only: warn_of_imbalance
@@ -27,15 +28,15 @@ module increment_solution
    use unconstrained_motions, only: balanced_load, least_drive
    implicit none
    private
-   public :: solve_pairs, recover_fields
+   public :: solve_points, recover_fields
 
 contains
 
    !> Jumps, contact state and conductance at the end of an increment, and the temperatures that
    !> belong to welded contacts. A field that the step does not solve stays.
-   !> Errors: no convergence of the fixed point or of the contact zones, bodies that nothing holds,
+   !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies,
    !> loads that overflow.
-   subroutine solve_pairs(bodies, loads, step, previous, workspace, next, error)
+   subroutine solve_points(bodies, loads, step, previous, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
       type(step_type), intent(in) :: step
@@ -80,20 +81,20 @@ contains
       else
          call solve_coupled(bodies, step, previous, data, workspace, next, error)
       end if
-      if (.not. allocated(error)) call settle_idle_pairs(bodies, workspace%contact%idle, next)
+      if (.not. allocated(error)) call settle_idle_points(bodies, workspace%contact%idle, next)
       next%has_mechanics = .true.
-   end subroutine solve_pairs
+   end subroutine solve_points
 
-   !> Idle pairs count as open without a gap; where their law jumps they rest. For the next
+   !> Idle contact points count as open without a gap; where their law jumps they rest. For the next
    !> increment they are closed still: the body stays where it touches.
-   pure subroutine settle_idle_pairs(bodies, idle, next)
+   pure subroutine settle_idle_points(bodies, idle, next)
       type(reduced_bodies_type), intent(in) :: bodies
       logical, intent(in) :: idle(:)
       type(solution_state_type), intent(inout) :: next
 
       next%idle = idle
-      next%resting = next%resting .or. (next%idle .and. law_jumps(bodies%pairs%law))
-   end subroutine settle_idle_pairs
+      next%resting = next%resting .or. (next%idle .and. law_jumps(bodies%points%law))
+   end subroutine settle_idle_points
 
    !> Contact of an increment whose temperatures do not depend on it.
    subroutine solve_mechanics(bodies, step, data, workspace, next, error)
@@ -125,9 +126,11 @@ contains
       type(solution_state_type), intent(inout) :: next
 
       call loads%set_temperatures(next%temperature)
-      associate (s => bodies%pairs%slave, m => bodies%pairs%master, t => next%temperature)
-         where (abs(t(s) - previous%temperature(s)) + abs(t(m) - previous%temperature(m)) > 0.0_dp)
-            next%jump = t(s) - t(m)
+      associate (slave_node => bodies%points%slave, master_node => bodies%points%master, &
+         t => next%temperature)
+         where (abs(t(slave_node) - previous%temperature(slave_node)) + &
+            abs(t(master_node) - previous%temperature(master_node)) > 0.0_dp)
+            next%jump = t(slave_node) - t(master_node)
          end where
       end associate
    end subroutine give_temperatures
@@ -164,7 +167,7 @@ contains
       ! Forces of links act on jumps only, nothing is recovered from them.
       on_tail = 0.0_dp
       do k = 1, size(jump)
-         if (bodies%jump_place(k) > 0) on_tail(bodies%jump_place(k)) = jump(k)
+         if (bodies%jump_index(k) > 0) on_tail(bodies%jump_index(k)) = jump(k)
       end do
       values = bodies%thermal%recover(load, on_tail)
    end function temperatures
@@ -195,7 +198,7 @@ contains
       type(iteration_record_type) :: pass
 
       pass = iteration_record_type(increment=record%increment, iteration=1, &
-         pairs_changed=count(after%status /= before%status))
+         pairs_changed=count(after%contact_state /= before%contact_state))
    end function only_pass
 
    !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.
@@ -214,8 +217,8 @@ contains
             scheme_load(data%scheme, previous%heat_load, next%heat_load)
          workspace%heat = bodies%thermal%load_of(forces, given)
          call bodies%thermal%condense_load(workspace%heat)
-         data%held_jump = given(bodies%pairs%slave) - given(bodies%pairs%master)
-         where (bodies%jump_place > 0) data%held_jump = 0.0_dp
+         data%held_jump = given(bodies%points%slave) - given(bodies%points%master)
+         where (bodies%jump_index > 0) data%held_jump = 0.0_dp
          allocate (zero(bodies%thermal%map%tail), source=0.0_dp)
          next%temperature = bodies%thermal%recover(workspace%heat, zero)
       end associate
@@ -235,8 +238,8 @@ contains
       workspace%force = bodies%mechanical%load_of(next%force_load + thermal, &
          loads%displacement%value)
       call bodies%mechanical%condense_load(workspace%force)
-      workspace%contact = contact_workspace_type(bodies%contact, bodies%pairs%initial_gap - &
-         held_approach(bodies%pairs, loads%displacement%value))
+      workspace%contact = contact_workspace_type(bodies%contact, bodies%points%initial_gap - &
+         held_approach(bodies%points, loads%displacement%value))
       workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       associate (applied => next%force_load, rigid => bodies%rigid)
          workspace%contact%least_drive = least_drive(bodies%contact%rigid, &
@@ -246,14 +249,15 @@ contains
       end associate
    end subroutine load_mechanics
 
-   !> Fields of the whole bodies, from the solution on the pairs, and what pairs remember of it.
+   !> Fields of the whole bodies, from the solution on the contact points, and what contact points
+   !> remember of it.
    subroutine recover_fields(bodies, loads, step, workspace, previous, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
       type(step_type), intent(in) :: step
       type(increment_workspace_type), intent(inout) :: workspace !! of the solution
       type(solution_state_type), intent(in) :: previous          !! state at the start
-      type(solution_state_type), intent(inout) :: next           !! as solve_pairs left it
+      type(solution_state_type), intent(inout) :: next           !! as solve_points left it
       real(dp), allocatable :: on_tail(:)
       integer :: k
 
@@ -267,8 +271,9 @@ contains
       allocate (on_tail(bodies%mechanical%map%tail))
       associate (contact => bodies%contact)
          on_tail(contact%normal) = merge(next%contact%approach, &
-            workspace%contact%initial_gap - next%contact%gap, next%contact%status == status_open)
-         do k = 1, size(next%contact%status)
+            workspace%contact%initial_gap - next%contact%gap, next%contact%contact_state == &
+            contact_open)
+         do k = 1, size(next%contact%contact_state)
             if (contact%tangent(k) > 0) on_tail(contact%tangent(k)) = next%contact%tangential(k)
          end do
          on_tail(contact%link) = next%contact%link

@@ -1,13 +1,13 @@
 !> Newton's method for omega = U(omega), semismooth (Qi & Sun 1993), with the exact derivative of
 !> the contact state and of the conductance laws.
 !>
-!> Unknowns are the places z of the pairs on the graphs of their laws (conductance_graph), in which
-!> the equation is
+!> Unknowns are the coordinates z of the contact points on the graphs of their laws
+!> (conductance_graph), in which the equation is
 !>
-!>    r(z) = opening(z) - H(L(omega(z))) = 0,    J = diag(opening') - slope diag(omega'),
+!>    r(z) = opening(z) - H(L(omega(z))) = 0,    J = diag(opening') - derivative diag(omega'),
 !>
-!> slope being the derivative of the openings H(L(omega)) by omega. Each pair then goes along the
-!> curve of its own law, not along the tangent (conductance_graph, `moved`).
+!> derivative being the derivative of the openings H(L(omega)) by omega. Each contact point then
+!> goes along the curve of its own law, not along the tangent (conductance_graph, `moved`).
 !>
 !> A pass is taken unless earlier ones, all but one, were better by both of its measures: |r|, and
 !> the mismatch of the shares omega/(omega + body) by which the heat goes (a filter: Gould, Leyffer
@@ -39,14 +39,15 @@ module newton
 
    !> Memory of the method.
    type, extends(accelerator_type) :: newton_type
-      type(conductance_graph_type), allocatable :: graph(:)    !! (m) laws of the pairs
+      type(conductance_graph_type), allocatable :: graph(:)    !! (m) laws of the contact points
       integer :: most_steps = huge(1)   !! passes after which steps have failed
       type(homotopy_type), allocatable, private :: path   !! once they have failed
-      real(dp), allocatable, private :: place(:)       !! (m) z of the last pass taken [length]
+      real(dp), allocatable, private :: coordinate(:)  !! (m) z of the last pass taken [length]
       real(dp), allocatable, private :: rest(:)        !! (m) r there [length]
       real(dp), allocatable, private :: jacobian(:, :) !! (m, m) J there; unallocated if unknown
       real(dp), allocatable, private :: own(:)         !! (m) derivative of opening k by omega k
-      real(dp), allocatable, private :: body(:) !! (m) conductance of the bodies about a pair
+      !> (m) conductance of the bodies about a contact point
+      real(dp), allocatable, private :: body(:)
       real(dp), allocatable, private :: step(:)        !! (m) dz of the present step [length]
       real(dp), allocatable, private :: trial(:)       !! (m) z of the pass that runs [length]
       real(dp), allocatable, private :: filter(:, :)   !! (2, passes taken) their measures
@@ -64,26 +65,26 @@ contains
    pure function asks_derivative(self, pass) result(asks)
       class(newton_type), intent(in) :: self   !! memory of the method
       type(pass_type), intent(in) :: pass      !! the last pass
-      logical :: asks                          !! pass%slope is to be set
+      logical :: asks                          !! pass%derivative is to be set
 
       asks = allocated(self%path)
       if (asks) return
       asks = takes(self, pass)
-      if (asks) asks = any(abs(self%graph%slope(places_of(self, pass))) > 0.0_dp)
+      if (asks) asks = any(abs(self%graph%derivative(coordinates_of(self, pass))) > 0.0_dp)
    end function asks_derivative
 
-   !> Places of a pass; those of the first one by its conductances.
-   pure function places_of(self, pass) result(place)
+   !> Coordinates of a pass; those of the first one by its conductances.
+   pure function coordinates_of(self, pass) result(coordinate)
       class(newton_type), intent(in) :: self
       type(pass_type), intent(in) :: pass
-      real(dp) :: place(size(pass%omega))
+      real(dp) :: coordinate(size(pass%omega))
 
       if (allocated(self%trial)) then
-         place = self%trial
+         coordinate = self%trial
       else
-         place = self%graph%place_of_omega(pass%omega, pass%opening)
+         coordinate = self%graph%coordinate_of_omega(pass%omega, pass%opening)
       end if
-   end function places_of
+   end function coordinates_of
 
    !> Whether a pass is taken.
    pure function takes(self, pass)
@@ -121,7 +122,7 @@ contains
       type(pass_type), intent(in) :: pass
       real(dp) :: r(size(pass%omega))   !! (m) [length]
 
-      r = self%graph%opening(places_of(self, pass)) - pass%opening
+      r = self%graph%opening(coordinates_of(self, pass)) - pass%opening
    end function residual
 
    !> A new step from a pass that is taken, else a shorter one.
@@ -132,7 +133,7 @@ contains
       real(dp) :: fall
 
       if (allocated(self%path)) then
-         call self%path%next(self%graph, self%body, pass%opening, pass%slope, self%trial)
+         call self%path%next(self%graph, self%body, pass%opening, pass%derivative, self%trial)
          omega = self%graph%omega(self%trial)
          return
       end if
@@ -181,40 +182,41 @@ contains
    subroutine take(self, pass)
       class(newton_type), intent(inout) :: self
       type(pass_type), intent(in) :: pass
-      real(dp) :: slope(size(pass%omega))
+      real(dp) :: derivative(size(pass%omega))
       integer :: k
 
       self%rest = residual(self, pass)
-      self%place = places_of(self, pass)
+      self%coordinate = coordinates_of(self, pass)
       if (.not. allocated(self%filter)) then
-         allocate (self%body(size(slope)), source=1.0_dp)
+         allocate (self%body(size(derivative)), source=1.0_dp)
          allocate (self%filter(2, 0))
       end if
-      if (allocated(pass%slope) .and. .not. allocated(self%own)) then
+      if (allocated(pass%derivative) .and. .not. allocated(self%own)) then
          self%body = pass%body
          self%filter = reshape([real(dp) ::], [2, 0])
       end if
       self%filter = reshape([self%filter, measures(self, pass)], [2, size(self%filter, 2) + 1])
       if (allocated(self%jacobian)) deallocate (self%jacobian)
-      if (.not. allocated(pass%slope)) return
-      slope = self%graph%slope(self%place)
-      self%own = [(pass%slope(k, k), k=1, size(slope))]
-      allocate (self%jacobian, mold=pass%slope)
-      do k = 1, size(slope)
-         self%jacobian(:, k) = -pass%slope(:, k)*slope(k)
-         self%jacobian(k, k) = self%jacobian(k, k) + self%graph(k)%advance(self%place(k))
+      if (.not. allocated(pass%derivative)) return
+      derivative = self%graph%derivative(self%coordinate)
+      self%own = [(pass%derivative(k, k), k=1, size(derivative))]
+      allocate (self%jacobian, mold=pass%derivative)
+      do k = 1, size(derivative)
+         self%jacobian(:, k) = -pass%derivative(:, k)*derivative(k)
+         self%jacobian(k, k) = self%jacobian(k, k) + self%graph(k)%advance(self%coordinate(k))
       end do
    end subroutine take
 
-   !> The next omega*. Without a derivative every pair goes to the opening that was found.
+   !> The next omega*. Without a derivative every contact point goes to the opening that was found.
    subroutine try(self, omega)
       class(newton_type), intent(inout) :: self
       real(dp), intent(out) :: omega(:)
 
       if (allocated(self%jacobian)) then
-         self%trial = self%graph%moved(self%place, self%part*self%step, self%body, self%own)
+         self%trial = self%graph%moved(self%coordinate, self%part*self%step, self%body, self%own)
       else
-         self%trial = self%graph%place_of_opening(self%graph%opening(self%place) + self%step)
+         self%trial = self%graph%coordinate_of_opening(self%graph%opening(self%coordinate) + &
+            self%step)
       end if
       omega = self%graph%omega(self%trial)
       self%g = spread(self%part, 1, size(omega))
@@ -252,13 +254,14 @@ contains
       do k = 1, size(step)
          if (self%time_step < endless) matrix(k, k) = matrix(k, k) + &
             inertia(k)/self%time_step
-         if (.not. self%graph(k)%rests(self%place(k))) cycle
-         ! No conductance at which the pair may rest brings its opening to 0: it does not rest.
+         if (.not. self%graph(k)%rests(self%coordinate(k))) cycle
+         ! No conductance at which the contact point may rest brings its opening to 0: it does not
+         ! rest.
          if (sum(abs(self%jacobian(k, :)))*self%graph(k)%width > abs(self%rest(k))) cycle
          matrix(k, :) = 0.0_dp
          matrix(k, k) = 1.0_dp
          self%own(k) = 0.0_dp
-         step(k, 1) = self%graph(k)%place_of_opening(-self%rest(k)) - self%place(k)
+         step(k, 1) = self%graph(k)%coordinate_of_opening(-self%rest(k)) - self%coordinate(k)
       end do
       call lu%factor(matrix, singular)
       if (singular) return
@@ -266,8 +269,8 @@ contains
       self%step = step(:, 1)
    end subroutine make_step
 
-   !> The diagonal of M: 1, and for a pair at rest what makes the time in which it goes through its
-   !> rest that of the others, however long the rest is.
+   !> The diagonal of M: 1, and for a contact point at rest what makes the time in which it goes
+   !> through its rest that of the others, however long the rest is.
    pure function inertias(self) result(inertia)
       type(newton_type), intent(in) :: self
       real(dp) :: inertia(size(self%rest))
@@ -275,7 +278,7 @@ contains
 
       inertia = 1.0_dp
       do k = 1, size(inertia)
-         if (self%graph(k)%rests(self%place(k)) .and. abs(self%jacobian(k, k)) > 0.0_dp) then
+         if (self%graph(k)%rests(self%coordinate(k)) .and. abs(self%jacobian(k, k)) > 0.0_dp) then
             inertia(k) = abs(self%jacobian(k, k))
          end if
       end do

@@ -1,5 +1,5 @@
-!> The derivative of the contact operator of section 2, pair by pair on the reduced system: how the
-!> openings of the pairs follow their conductances.
+!> The derivative of the contact operator of section 2, point by point on the reduced system: how
+!> the openings of the contact points follow their conductances.
 !>
 !> From (3.4) on the tail, (S_T + diag(d)) theta = Q_c - history with d = weight (a2 omega_i + a3
 !> omega)/a1,
@@ -12,7 +12,7 @@ module opening_derivatives
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: law_jumps
    use contact_operator, only: law_pressure
-   use contact_states, only: contact_state_type, status_open
+   use contact_states, only: contact_state_type, contact_open
    use contact_tangent, only: contact_response
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
@@ -21,27 +21,27 @@ module opening_derivatives
    private
    public :: make_graph, openings, opening_derivative
 
-   !> Smallest stiffness of a pair, of the largest one, that scales its overlap: a pair alone that
-   !> holds a body has none.
+   !> Smallest stiffness of a contact point, of the largest one, that scales its overlap: a contact
+   !> point alone that holds a body has none.
    real(dp), parameter :: least_stiffness = 1.0e-6_dp
 
 contains
 
-   !> Graphs of the conductance of all pairs.
+   !> Graphs of the conductance of all contact points.
    pure function make_graph(bodies, length) result(graph)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: length                          !! of a rest, > 0 [length]
       type(conductance_graph_type), allocatable :: graph(:)   !! (m)
-      real(dp) :: stiffness(size(bodies%pairs%weight)), weight(size(bodies%pairs%weight))
+      real(dp) :: stiffness(size(bodies%points%weight)), weight(size(bodies%points%weight))
       real(dp), allocatable :: conductor(:)
       integer :: k
 
       allocate (graph(size(weight)))
-      weight = bodies%pairs%weight
+      weight = bodies%points%weight
       where (weight <= 0.0_dp) weight = maxval(weight)
       do k = 1, size(weight)
          stiffness(k) = bodies%contact%alone(k)
-         graph(k)%law = bodies%pairs%law(k)
+         graph(k)%law = bodies%points%law(k)
       end do
       stiffness = max(stiffness, least_stiffness*maxval(stiffness))
       where (stiffness <= 0.0_dp) stiffness = 1.0_dp
@@ -49,14 +49,14 @@ contains
       if (.not. any([(law_jumps(graph(k)%law), k=1, size(graph))])) return
       conductor = bodies%conductors()
       do k = 1, size(weight)
-         if (bodies%pairs%weight(k) <= 0.0_dp .or. bodies%jump_place(k) == 0) cycle
+         if (bodies%points%weight(k) <= 0.0_dp .or. bodies%jump_index(k) == 0) cycle
          if (.not. law_jumps(graph(k)%law)) cycle
          graph(k)%width = length
          graph(k)%body = conductor(k)/weight(k)
       end do
    end function make_graph
 
-   !> Openings of the pairs: gaps, or pressures as overlaps.
+   !> Openings of the contact points: gaps, or pressures as overlaps.
    pure function openings(bodies, graph, state) result(opening)
       type(reduced_bodies_type), intent(in) :: bodies
       type(conductance_graph_type), intent(in) :: graph(:)    !! (m) graphs of the conductance
@@ -64,20 +64,21 @@ contains
       real(dp) :: opening(size(graph))                        !! (m) [length]
 
       opening = -law_pressure(bodies, state)/graph%modulus
-      where (state%status == status_open) opening = max(state%gap, 0.0_dp)
+      where (state%contact_state == contact_open) opening = max(state%gap, 0.0_dp)
    end function openings
 
    !> Derivative of the openings by the conductances, for the state that the last pass found with
-   !> the given jumps; unallocated where it does not exist. Pairs of weight 0 carry no heat: their
-   !> rows stay 0.
-   subroutine opening_derivative(bodies, data, workspace, jump, state, slope, body)
+   !> the given jumps; unallocated where it does not exist. Contact points of weight 0 carry no
+   !> heat: their rows stay 0.
+   subroutine opening_derivative(bodies, data, workspace, jump, state, derivative, body)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(in) :: state
-      real(dp), allocatable, intent(out) :: slope(:, :)       !! (m, m)
-      !> (m) conductance that the bodies put in series with each pair, 1 where that means nothing
+      real(dp), allocatable, intent(out) :: derivative(:, :)  !! (m, m)
+      !> (m) conductance that the bodies put in series with each contact point, 1 where that means
+      !> nothing
       real(dp), allocatable, intent(out) :: body(:)
       real(dp), allocatable :: of_jump(:, :), gap(:, :), force(:, :)
       real(dp) :: heat(size(jump))
@@ -85,21 +86,21 @@ contains
       integer :: k, n
       logical :: sound
 
-      allocate (slope(size(jump), size(jump)), source=0.0_dp)
+      allocate (derivative(size(jump), size(jump)), source=0.0_dp)
       allocate (body(size(jump)), source=1.0_dp)
-      associate (weight => bodies%pairs%weight, place => bodies%jump_place, &
+      associate (weight => bodies%points%weight, tail_index => bodies%jump_index, &
          a => data%scheme%a)
          heat = -weight/a(1)*(a(3)*jump + data%scheme%b(3)*data%jump_old)
-         active = pack([(k, k=1, size(jump))], place > 0 .and. abs(heat) > 0.0_dp)
+         active = pack([(k, k=1, size(jump))], tail_index > 0 .and. abs(heat) > 0.0_dp)
          n = size(active)
          if (n == 0) return
          allocate (of_jump(bodies%thermal%map%tail, n), source=0.0_dp)
          do k = 1, n
             associate (j => active(k))
-               of_jump(place(j), k) = heat(j)
+               of_jump(tail_index(j), k) = heat(j)
                call workspace%tail%solve(of_jump(:, k))
-               body(j) = (heat(j)/of_jump(place(j), k) - &
-                  workspace%tail%diagonal(place(j)))/weight(j)
+               body(j) = (heat(j)/of_jump(tail_index(j), k) - &
+                  workspace%tail%diagonal(tail_index(j)))/weight(j)
             end associate
          end do
          where (body <= 0.0_dp) body = 1.0_dp
@@ -108,14 +109,14 @@ contains
             matmul(bodies%jump_load, of_jump), gap, force, sound)
          do k = 1, size(jump)
             if (weight(k) <= 0.0_dp) cycle
-            if (state%status(k) == status_open) then
-               slope(k, active) = gap(k, :)
+            if (state%contact_state(k) == contact_open) then
+               derivative(k, active) = gap(k, :)
             else
-               slope(k, active) = -force(k, :)/(weight(k)*data%graph(k)%modulus)
+               derivative(k, active) = -force(k, :)/(weight(k)*data%graph(k)%modulus)
             end if
          end do
       end associate
-      if (.not. sound) deallocate (slope)
+      if (.not. sound) deallocate (derivative)
    end subroutine opening_derivative
 
 end module opening_derivatives

@@ -51,15 +51,15 @@ contains
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: previous
       real(dp) :: relative
-      real(dp) :: conducted(size(held)), residual(size(held)), pair_heat(size(data%omega_old))
+      real(dp) :: conducted(size(held)), residual(size(held)), contact_heat(size(data%omega_old))
       real(dp) :: scale
 
       conducted = bodies%thermal%matrix%multiply(previous%temperature)
-      pair_heat = bodies%pairs%weight*data%omega_old*data%jump_old
+      contact_heat = bodies%points%weight*data%omega_old*data%jump_old
       residual = heat_residual(conducted, net_heat(previous%heat_load, previous%film, &
-         previous%temperature), bodies%pairs, pair_heat)
+         previous%temperature), bodies%points, contact_heat)
       scale = max(maxval(abs(conducted)), maxval(abs(previous%heat_load)), &
-         maxval([0.0_dp, abs(pair_heat)]), noise*maxval(abs(bodies%thermal%matrix%value))* &
+         maxval([0.0_dp, abs(contact_heat)]), noise*maxval(abs(bodies%thermal%matrix%value))* &
          maxval(abs(previous%temperature)), tiny(1.0_dp))
       relative = maxval([0.0_dp, pack(abs(residual), .not. held)])/scale
    end function start_imbalance

@@ -10,11 +10,11 @@ module solution_report
    type :: iteration_record_type
       integer :: increment = 0           !! running number over all steps
       integer :: iteration = 0           !! pass, from 1
-      real(dp) :: residual = 0.0_dp      !! max |U(w) - w|/w over the pairs that carry heat
-      real(dp) :: g_min = 1.0_dp         !! smallest g of eq. (4.2) over the pairs
+      real(dp) :: residual = 0.0_dp      !! max |U(w) - w|/w over the contact points that carry heat
+      real(dp) :: g_min = 1.0_dp         !! smallest g of eq. (4.2) over the contact points
       real(dp) :: g_max = 1.0_dp         !! largest
-      integer :: g_kept = 0              !! pairs whose g was kept, eq. (4.2) giving none
-      integer :: pairs_changed = 0       !! pairs whose contact status changed in this pass
+      integer :: g_kept = 0              !! contact points whose g was kept, eq. (4.2) giving none
+      integer :: pairs_changed = 0       !! contact points whose contact state changed in this pass
       integer :: cut_backs = 0           !! cut-backs of the increment so far
    end type iteration_record_type
 

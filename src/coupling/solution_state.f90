@@ -12,10 +12,10 @@ module solution_state
 
    !> State at the end of an increment.
    type :: solution_state_type
-      type(contact_state_type) :: contact           !! contact state of all pairs
+      type(contact_state_type) :: contact           !! contact state of all contact points
       real(dp), allocatable :: omega(:)             !! (m) conductance
-      logical, allocatable :: resting(:)            !! (m) pairs that rest, where a law jumps
-      logical, allocatable :: idle(:)               !! (m) closed pairs that carry no force
+      logical, allocatable :: resting(:)          !! (m) contact points that rest, where a law jumps
+      logical, allocatable :: idle(:)               !! (m) closed contact points that carry no force
       real(dp), allocatable :: omega_start(:)       !! (m) omega_i that (3.4) took last
       real(dp), allocatable :: omega_before(:)      !! (m) conductance an increment earlier
       real(dp), allocatable :: jump(:)              !! (m) T_xi - T_eta [temperature]

@@ -69,10 +69,10 @@ contains
          end associate
       end do
       do i = 1, size(simulation%bodies%interfaces)
-         associate (pairs => simulation%bodies%interfaces(i))
-            call line('contact pair '//pairs%name, to_text(size(pairs%slave_node))// &
-               ' node pairs, initial gaps '//to_text(minval(pairs%initial_gap))//' to '// &
-               to_text(maxval(pairs%initial_gap)))
+         associate (points => simulation%bodies%interfaces(i))
+            call line('contact pair '//points%name, to_text(size(points%slave_node))// &
+               ' node pairs, initial gaps '//to_text(minval(points%initial_gap))//' to '// &
+               to_text(maxval(points%initial_gap)))
          end associate
       end do
       if (run%has_biot) call line('contact Biot number', to_text(run%contact_biot(1))//' to '// &

@@ -1,5 +1,5 @@
 !> Polynomials in x and y fitted by least squares to values at sites in the plane. A fit knows the
-!> sites alone: its value at a place is a sum of the values with weights.
+!> sites alone: its value at a position is a sum of the values with weights.
 module patch_fits
    use kinds, only: dp
    implicit none
@@ -60,15 +60,15 @@ contains
       fit%complete = all(fit%kept(:terms))
    end function make_fit
 
-   !> Weights of the values at the sites in the value at a place.
-   pure function weights_at(self, place) result(weights)
+   !> Weights of the values at the sites in the value at a position.
+   pure function weights_at(self, position) result(weights)
       class(fit_type), intent(in) :: self
-      real(dp), intent(in) :: place(2)             !! x, y [length]
+      real(dp), intent(in) :: position(2)          !! x, y [length]
       real(dp) :: weights(size(self%q, 1))         !! their sum is 1
       real(dp) :: value(cubic_terms), local(2)
       integer :: j
 
-      local = matmul(self%scaling, place - self%origin)
+      local = matmul(self%scaling, position - self%origin)
       weights = 0.0_dp
       value = 0.0_dp
       do j = 1, self%terms

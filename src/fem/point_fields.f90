@@ -110,10 +110,10 @@ contains
       end do
    end function make_rule
 
-   pure subroutine map_points(rule, coordinates, thickness, is_ring, inverse, volume)
+   pure subroutine map_points(rule, coordinates, thickness, is_axisymmetric, inverse, volume)
       type(point_rule_type), intent(in) :: rule
       real(dp), intent(in) :: coordinates(:, :), thickness
-      logical, intent(in) :: is_ring
+      logical, intent(in) :: is_axisymmetric
       real(dp), intent(inout) :: inverse(:, :), volume(:)
       real(dp) :: along_xi(2), along_eta(2), jacobian, radius
       integer :: g
@@ -124,7 +124,7 @@ contains
          jacobian = along_xi(1)*along_eta(2) - along_xi(2)*along_eta(1)
          inverse(:, g) = [along_eta(2), -along_xi(2), -along_eta(1), along_xi(1)]/jacobian
          radius = dot_product(rule%shape(g, :rule%nodes), coordinates(1, :))
-         volume(g) = rule%weight(g)*jacobian*area_factor(radius, thickness, is_ring)
+         volume(g) = rule%weight(g)*jacobian*area_factor(radius, thickness, is_axisymmetric)
       end do
    end subroutine map_points
 

@@ -1,9 +1,9 @@
 !> The thermal matrices of (3.3) and the stepping scheme (3.4).
 !>
-!> The unknown of a contact pair is its jump theta = T_xi - T_eta, not two temperatures whose
-!> difference a large omega would swallow. G(omega), lumped on the pairs, then is the diagonal
-!> weight*omega of the jumps: positive semidefinite for any omega >= 0 and exact however large.
-!> Scheme (3.4), divided by a1, reads
+!> The unknown of a contact point is its jump theta = T_xi - T_eta, not two temperatures whose
+!> difference a large omega would swallow. G(omega), lumped on the contact points, then is the
+!> diagonal weight*omega of the jumps: positive semidefinite for any omega >= 0 and exact however
+!> large. Scheme (3.4), divided by a1, reads
 !>
 !>    (K + diag(d)) T_i+1 = rhs,   d = weight (a2 omega_i + a3 omega_i+1)/a1,
 !>    rhs = -(b1 K T_i + weight (b2 omega_i + b3 omega_i+1) theta_i - c1 Q_i - c2 Q_i+1)/a1,

@@ -19,10 +19,10 @@ module metis
 
 contains
 
-   !> Fill-reducing place of each vertex of a graph. METIS's default options fix its random seed.
-   subroutine nested_dissection(graph, place, failed)
+   !> Fill-reducing position of each vertex of a graph. METIS's default options fix its random seed.
+   subroutine nested_dissection(graph, position, failed)
       type(sparse_matrix_type), intent(in) :: graph !! both triangles without the diagonal
-      integer, intent(out) :: place(:)              !! (rows) new place of each vertex
+      integer, intent(out) :: position(:)           !! (rows) new position of each vertex
       logical, intent(out) :: failed                !! METIS refused
       integer(c_int), allocatable :: order(:)
       integer(c_int) :: status
@@ -30,8 +30,8 @@ contains
 
       allocate (order(graph%row_count))
       status = metis_nodend(int(graph%row_count, c_int), graph%row_start - 1, graph%column - 1, &
-         c_null_ptr, c_null_ptr, order, place)
-      place(:) = place + 1
+         c_null_ptr, c_null_ptr, order, position)
+      position(:) = position + 1
       failed = status /= metis_ok
    end subroutine nested_dissection
 

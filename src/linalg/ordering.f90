@@ -34,7 +34,7 @@ contains
    !> pseudo-peripheral vertex.
    pure function profile_order(graph) result(order)
       type(sparse_matrix_type), intent(in) :: graph !! as from adjacency
-      integer :: order(graph%row_count)             !! old index at each new place
+      integer :: order(graph%row_count)             !! old index at each new position
       integer, allocatable :: level(:)
       integer :: start, placed, first
 
@@ -123,9 +123,9 @@ contains
    end function degree
 
    !> The lower triangle in a new order.
-   pure function permuted_lower(lower, place) result(permuted)
+   pure function permuted_lower(lower, position) result(permuted)
       type(sparse_matrix_type), intent(in) :: lower !! lower triangle by rows
-      integer, intent(in) :: place(:)               !! (rows) new place of each old index
+      integer, intent(in) :: position(:)            !! (rows) new position of each old index
       type(sparse_matrix_type) :: permuted          !! lower triangle by rows
       type(triplet_list_type) :: list
       integer :: i, j, k
@@ -134,7 +134,8 @@ contains
       do i = 1, lower%row_count
          do k = lower%row_start(i), lower%row_start(i + 1) - 1
             j = lower%column(k)
-            call list%add(max(place(i), place(j)), min(place(i), place(j)), lower%value(k))
+            call list%add(max(position(i), position(j)), min(position(i), position(j)), &
+               lower%value(k))
          end do
       end do
       permuted = list%compress(lower%row_count, lower%row_count)

@@ -13,7 +13,7 @@ module skyline_solver
    !> Skyline factors behind the common interface.
    type, extends(linear_solver_type) :: skyline_solver_type
       private
-      integer, allocatable :: place(:)      !! (order) new place of each unknown
+      integer, allocatable :: position(:)   !! (order) new position of each unknown
       type(skyline_type) :: skyline         !! the factors
    contains
       procedure :: factor
@@ -38,12 +38,12 @@ contains
       self%tail = tail
       allocate (order(leading))
       order(:) = profile_order(adjacency(lower, leading))
-      allocate (self%place(self%order))
+      allocate (self%position(self%order))
       do i = 1, leading
-         self%place(order(i)) = i
+         self%position(order(i)) = i
       end do
-      self%place(leading + 1:) = [(i, i=leading + 1, self%order)]
-      call self%skyline%set_matrix(permuted_lower(lower, self%place), tail)
+      self%position(leading + 1:) = [(i, i=leading + 1, self%order)]
+      call self%skyline%set_matrix(permuted_lower(lower, self%position), tail)
       call self%skyline%factor_leading(bad_column)
       self%full_flops = self%skyline%leading_flops
       self%smallest_pivot = self%skyline%smallest_pivot
@@ -62,7 +62,7 @@ contains
       real(dp), allocatable :: x(:, :)
 
       allocate (x, mold=rhs)
-      x(self%place, :) = rhs
+      x(self%position, :) = rhs
       call self%skyline%condense(x)
       condensed = x(self%order - self%tail + 1:, :)
    end subroutine condense
@@ -76,18 +76,18 @@ contains
       real(dp), allocatable :: x(:, :)
 
       allocate (x, mold=rhs)
-      x(self%place, :) = rhs
+      x(self%position, :) = rhs
       call self%skyline%condense(x)
       x(self%order - self%tail + 1:, :) = on_tail
       call self%skyline%recover(x)
-      solution = x(self%place, :)
+      solution = x(self%position, :)
    end subroutine recover
 
    !> As release_interface of linear_solver says.
    subroutine release(self)
       class(skyline_solver_type), intent(inout) :: self
 
-      if (allocated(self%place)) deallocate (self%place)
+      if (allocated(self%position)) deallocate (self%position)
       self%skyline = skyline_type()
    end subroutine release
 

@@ -10,14 +10,14 @@ module sparse_matrix
    type :: sparse_matrix_type
       integer :: row_count = 0                !! number of rows
       integer :: column_count = 0             !! number of columns
-      integer, allocatable :: row_start(:)    !! (rows + 1) place of each row's first entry
+      integer, allocatable :: row_start(:)    !! (rows + 1) position of each row's first entry
       integer, allocatable :: column(:)       !! (entries) column of an entry
       real(dp), allocatable :: value(:)       !! (entries) its value
    contains
       procedure :: multiply
    end type sparse_matrix_type
 
-   !> Entries as they come from the elements, in any order; equal places add up.
+   !> Entries as they come from the elements, in any order; equal positions add up.
    type :: triplet_list_type
       integer :: length = 0                   !! entries in use
       integer, allocatable :: row(:)          !! (capacity) row of an entry
@@ -121,7 +121,7 @@ contains
       end do
    end subroutine add_entries
 
-   !> The matrix of a list of entries: a counting sort by column and then by row, equal places
+   !> The matrix of a list of entries: a counting sort by column and then by row, equal positions
    !> summed.
    pure function compress(self, row_count, column_count) result(matrix)
       class(triplet_list_type), intent(in) :: self !! the entries
@@ -165,21 +165,21 @@ contains
       integer, intent(in) :: entries(:)     !! (n) entries in the order so far
       integer, intent(in) :: key_count      !! largest key
       integer :: sorted(size(entries))      !! (n) entries, keys ascending
-      integer, allocatable :: place(:)
+      integer, allocatable :: position(:)
       integer :: k, key
 
-      allocate (place(key_count + 1), source=0)
+      allocate (position(key_count + 1), source=0)
       do k = 1, size(entries)
          key = keys(entries(k)) + 1
-         place(key) = place(key) + 1
+         position(key) = position(key) + 1
       end do
       do k = 2, key_count + 1
-         place(k) = place(k) + place(k - 1)
+         position(k) = position(k) + position(k - 1)
       end do
       do k = 1, size(entries)
          key = keys(entries(k))
-         place(key) = place(key) + 1
-         sorted(place(key)) = entries(k)
+         position(key) = position(key) + 1
+         sorted(position(key)) = entries(k)
       end do
    end function counting_sort
 

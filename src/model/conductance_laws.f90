@@ -34,11 +34,12 @@ module conductance_laws
 
 contains
 
-   !> omega of a pair, eq. (1.8). A side that was not given: an open pair carries no heat, a closed
-   !> pair has the open law's value at gamma = 0. A negative gap or pressure counts as zero.
+   !> omega of a contact point, eq. (1.8). A side that was not given: an open contact point carries
+   !> no heat, a closed contact point has the open law's value at gamma = 0. A negative gap or
+   !> pressure counts as zero.
    pure function conductance(law, closed, gap, pressure) result(omega)
       type(conductance_law_type), intent(in) :: law
-      logical, intent(in) :: closed                 !! whether the pair is closed
+      logical, intent(in) :: closed                 !! whether the contact point is closed
       real(dp), intent(in) :: gap                   !! gamma >= 0 [length]
       real(dp), intent(in) :: pressure              !! p >= 0 in compression [stress]
       real(dp) :: omega                             !! [power/(length^2 temperature)]
@@ -57,38 +58,38 @@ contains
       end select
    end function conductance
 
-   !> Derivative of omega by the gap of an open pair or by the pressure of a closed one, eq. (1.8),
-   !> towards larger gaps or pressures where the law has a kink; 0 below zero, and at p = 0 for
-   !> n < 1, where it is not bounded.
-   pure function conductance_derivative(law, closed, gap, pressure) result(slope)
+   !> Derivative of omega by the gap of an open contact point or by the pressure of a closed one,
+   !> eq. (1.8), towards larger gaps or pressures where the law has a kink; 0 below zero, and at p =
+   !> 0 for n < 1, where it is not bounded.
+   pure function conductance_derivative(law, closed, gap, pressure) result(derivative)
       type(conductance_law_type), intent(in) :: law
-      logical, intent(in) :: closed                 !! whether the pair is closed
+      logical, intent(in) :: closed                 !! whether the contact point is closed
       real(dp), intent(in) :: gap                   !! gamma >= 0 [length]
       real(dp), intent(in) :: pressure              !! p >= 0 in compression [stress]
-      real(dp) :: slope                             !! d omega/d gamma or d omega/d p
+      real(dp) :: derivative                        !! d omega/d gamma or d omega/d p
 
-      slope = 0.0_dp
+      derivative = 0.0_dp
       if (closed .and. pressure >= 0.0_dp) then
          if (law%closed_kind == law_power) then
-            if (pressure > 0.0_dp .or. law%power_n >= 1.0_dp) slope = &
+            if (pressure > 0.0_dp .or. law%power_n >= 1.0_dp) derivative = &
                law%power_c1*law%power_n*pressure**(law%power_n - 1.0_dp)
          else if (law%closed_kind == law_pressure) then
-            slope = line_slope(law%table_pressure, law%closed_omega, pressure)
+            derivative = line_slope(law%table_pressure, law%closed_omega, pressure)
          end if
       else if (.not. closed .and. gap >= 0.0_dp) then
          if (law%open_kind == law_gas) then
-            slope = -(law%gas_a/(law%gas_b + gap))/(law%gas_b + gap)
+            derivative = -(law%gas_a/(law%gas_b + gap))/(law%gas_b + gap)
          else if (law%open_kind == law_clearance) then
-            slope = line_slope(law%table_gap, law%open_omega, gap)
+            derivative = line_slope(law%table_gap, law%open_omega, gap)
          end if
       end if
    end function conductance_derivative
 
-   !> Gap of an open pair, or pressure of a closed one, that has a given omega; negative where there
-   !> is none, or where the law is constant.
+   !> Gap of an open contact point, or pressure of a closed one, that has a given omega; negative
+   !> where there is none, or where the law is constant.
    pure function conductance_inverse(law, closed, omega) result(at)
       type(conductance_law_type), intent(in) :: law
-      logical, intent(in) :: closed                 !! whether the pair is closed
+      logical, intent(in) :: closed                 !! whether the contact point is closed
       real(dp), intent(in) :: omega                 !! [power/(length^2 temperature)]
       real(dp) :: at                                !! gamma [length] or p [stress]
 

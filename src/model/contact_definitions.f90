@@ -1,4 +1,4 @@
-!> What the deck says of contact: surface interactions and contact pairs of surfaces.
+!> What the deck says of contact: surface interactions and interfaces.
 module contact_definitions
    use conductance_laws, only: conductance_law_type
    use kinds, only: dp
@@ -21,7 +21,7 @@ module contact_definitions
       integer :: card = 0                     !! card image of the *CONTACT PAIR
       integer :: interaction = 0              !! index into model%interactions
       logical :: has_clearance = .false.      !! whether *CLEARANCE stands in place of the geometry
-      real(dp) :: clearance = 0.0_dp          !! its gap of all pairs, negative overlap [length]
+      real(dp) :: clearance = 0.0_dp     !! its gap of all contact points, negative overlap [length]
    end type contact_definition_type
 
 end module contact_definitions

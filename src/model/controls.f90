@@ -19,7 +19,7 @@ module controls
    integer, parameter :: solver_mumps = 2     !! MUMPS with METIS ordering
 
    integer, parameter :: start_previous = 1   !! from the last increments
-   integer, parameter :: start_open = 2       !! from no heat across the pairs
+   integer, parameter :: start_open = 2       !! from no heat across the contact points
    integer, parameter :: start_closed = 3     !! from perfect contact
    integer, parameter :: start_both = 4       !! from the last increments, and from both ends
    integer, parameter :: start_given = 5      !! from given conductances

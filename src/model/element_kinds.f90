@@ -38,7 +38,7 @@ contains
    pure function side_nodes(kind, side) result(nodes)
       integer, intent(in) :: kind               !! kind of the element
       integer, intent(in) :: side               !! 1..element_corner_count(kind)
-      integer :: nodes(side_node_count(kind))   !! places in the element's nodes
+      integer :: nodes(side_node_count(kind))   !! positions in the element's nodes
       integer :: corners
 
       corners = element_corner_count(kind)

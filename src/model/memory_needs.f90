@@ -34,7 +34,7 @@ contains
       integer, intent(in) :: levels           !! refinements that are to come
       integer, intent(in) :: order            !! 1 where midside nodes are to be dropped, else 2
       real(dp) :: bytes                       !! [byte]
-      real(dp) :: entries, increments, nodes, pairs
+      real(dp) :: entries, increments, nodes, points
       integer, allocatable :: kinds(:)
       logical :: heat, mechanics
 
@@ -43,12 +43,12 @@ contains
       kinds = model%mesh%element_kind
       if (order == 1) kinds = linear_kind(kinds)
       nodes = size(model%mesh%node_number)*4.0_dp**levels
-      pairs = pair_count(model)*2.0_dp**levels
+      points = contact_point_count(model)*2.0_dp**levels
       entries = entries_of(kinds, heat, mechanics)*4.0_dp**levels
       increments = sum(min(model%steps%period/model%steps%first_increment, &
          real(model%steps%max_increments, dp)))
       bytes = base + per_entry*entries + min(waiting, real_bytes*field_values*nodes*increments) + &
-         dense_matrices*real_bytes*(3*pairs)**2
+         dense_matrices*real_bytes*(3*points)**2
       if (model%estimates_errors .and. size(model%contacts) > 0) bytes = bytes + &
          4*per_fine_entry*entries
       if (model%solver == solver_mumps) then
@@ -56,7 +56,7 @@ contains
             dissected(nodes, heat))
       else
          bytes = bytes + real_bytes*(merge(4, 0, mechanics) + merge(1, 0, heat))* &
-            profile(model, kinds, pairs, levels)
+            profile(model, kinds, points, levels)
       end if
    end function memory_needed
 
@@ -64,10 +64,10 @@ contains
    pure real(dp) function entries_of(kinds, heat, mechanics)
       integer, intent(in) :: kinds(:)
       logical, intent(in) :: heat, mechanics
-      integer :: of_a_pair
+      integer :: of_two_nodes
 
-      of_a_pair = merge(1, 0, heat) + merge(4, 0, mechanics) + merge(2, 0, heat .and. mechanics)
-      entries_of = of_a_pair*sum(real(element_node_count(kinds), dp)**2)
+      of_two_nodes = merge(1, 0, heat) + merge(4, 0, mechanics) + merge(2, 0, heat .and. mechanics)
+      entries_of = of_two_nodes*sum(real(element_node_count(kinds), dp)**2)
    end function entries_of
 
    !> Entries of factors in nested dissection; 0 where a field is not solved.
@@ -80,34 +80,36 @@ contains
    end function dissected
 
    !> Slave nodes of all interfaces.
-   pure real(dp) function pair_count(model)
+   pure real(dp) function contact_point_count(model)
       type(model_type), intent(in) :: model
       integer :: i
 
-      pair_count = 0.0_dp
+      contact_point_count = 0.0_dp
       do i = 1, size(model%contacts)
-         pair_count = pair_count + 2*size(model%mesh%surfaces(model%contacts(i)%slave)%faces, 2) + 1
+         contact_point_count = contact_point_count + &
+            2*size(model%mesh%surfaces(model%contacts(i)%slave)%faces, 2) + 1
       end do
-   end function pair_count
+   end function contact_point_count
 
-   !> Entries of the skyline of one unknown a node, with the columns of the pairs, after refinement.
-   function profile(model, kinds, pairs, levels) result(entries)
+   !> Entries of the skyline of one unknown a node, with the columns of the contact points, after
+   !> refinement.
+   function profile(model, kinds, points, levels) result(entries)
       type(model_type), intent(in) :: model
       integer, intent(in) :: kinds(:), levels
-      real(dp), intent(in) :: pairs
+      real(dp), intent(in) :: points
       real(dp) :: entries
       type(sparse_matrix_type) :: lower
-      integer, allocatable :: order(:), place(:)
+      integer, allocatable :: order(:), position(:)
       integer :: i
 
       lower = node_graph(model, kinds)
-      allocate (order(lower%row_count), place(lower%row_count))
+      allocate (order(lower%row_count), position(lower%row_count))
       order(:) = profile_order(adjacency(lower, lower%row_count))
       do i = 1, size(order)
-         place(order(i)) = i
+         position(order(i)) = i
       end do
-      entries = profile_length(permuted_lower(lower, place))*8.0_dp**levels
-      entries = entries + pairs*size(order)*4.0_dp**levels
+      entries = profile_length(permuted_lower(lower, position))*8.0_dp**levels
+      entries = entries + points*size(order)*4.0_dp**levels
    end function profile
 
    !> Nodes that are joined by an element, lower triangle with its diagonal.

@@ -45,7 +45,7 @@ module model
       type(orientation_type), allocatable :: orientations(:)     !! axes of materials
       type(amplitude_type), allocatable :: amplitudes(:)         !! load curves
       type(interaction_type), allocatable :: interactions(:)     !! surface interactions
-      type(contact_definition_type), allocatable :: contacts(:)  !! contact pairs of surfaces
+      type(contact_definition_type), allocatable :: contacts(:)  !! interfaces
       real(dp), allocatable :: initial_temperature(:)            !! (nodes) [temperature]
       type(step_type), allocatable :: steps(:)                   !! steps in their order
       type(verify_type), allocatable :: verifications(:)         !! *VERIFY cards

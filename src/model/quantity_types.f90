@@ -6,8 +6,8 @@ module quantity_types
    implicit none
    private
    public :: quantity_type, find_quantity
-   public :: of_history, of_bodies, of_passes, of_interface, of_pairs, of_nodes, of_points, &
-      of_elements
+   public :: of_history, of_bodies, of_passes, of_interface, of_contact_points, of_nodes, &
+      of_points, of_elements
    public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
 
    integer, parameter :: name_length = 24
@@ -17,7 +17,7 @@ module quantity_types
    integer, parameter :: of_bodies = 2      !! an increment and body, its errors: /history
    integer, parameter :: of_passes = 3      !! a pass of the fixed point: /convergence
    integer, parameter :: of_interface = 4   !! an increment and interface: /contact/<name>
-   integer, parameter :: of_pairs = 5       !! an increment and pair: /contact/<name>
+   integer, parameter :: of_contact_points = 5 !! an increment and contact point: /contact/<name>
    integer, parameter :: of_nodes = 6       !! an increment and node, of *VERIFY alone
    integer, parameter :: of_points = 7      !! an increment and point: /VTKHDF/PointData
    integer, parameter :: of_elements = 8    !! an increment and element: /VTKHDF/CellData
@@ -38,11 +38,12 @@ module quantity_types
       integer :: values = 1                    !! numbers of one increment, interface, point, ...
       !> Words before its value in the block of an increment of the listing; blank: not there.
       character(30) :: label = ''
-      !> Head of its column in tables: the passes, the pairs, the rows of a trade; blank: no column.
+      !> Head of its column in tables: the passes, the contact points, the rows of a trade; blank:
+      !> no column.
       character(13) :: head = ''
       integer :: width = 0                     !! characters of that column; in a trade it is fixed
       logical :: is_plain = .false.            !! no exponent there
-      logical :: is_integer = .false.          !! has no values between two pairs either
+      logical :: is_integer = .false.          !! has no values between two contact points either
       logical :: is_geometry = .false.         !! that of the undeformed mesh
       logical :: is_on_faces = .false.         !! also a field over the nodes of both faces
       logical :: is_published = .true.         !! in the result file and in *VERIFY
@@ -51,8 +52,8 @@ module quantity_types
       !> Friction on the way decides it, so that one increment on a finer mesh does not tell its
       !> error.
       logical :: is_path_dependent = .false.
-      !> Of an edge of a zone: how far it is known on a mesh, in spacings of the pairs about it; 0
-      !> for what is no edge. Errors of edges are bands to both sides.
+      !> Of an edge of a zone: how far it is known on a mesh, in spacings of the contact points
+      !> about it; 0 for what is no edge. Errors of edges are bands to both sides.
       real(dp) :: resolution = 0.0_dp
    end type quantity_type
 

@@ -20,7 +20,7 @@ module steps
 
    ! Kinds of loads; behind each its item and component, and the unit of its value. A force or heat
    ! that a node has from another one, which ORDER=1 dropped, has a component above 2, odd and even
-   ! as before: it is a place of its own.
+   ! as before: it is a location of its own.
    integer, parameter :: load_force = 1             !! node, dof 1 or 2 [force]
    integer, parameter :: load_pressure = 2          !! element, face; towards the body [stress]
    integer, parameter :: load_traction = 3          !! element, 2*(face - 1) + direction [stress]
@@ -42,13 +42,14 @@ module steps
    !> Least increment as a part of the period; shorter ones are lost in the rounding of the times.
    real(dp), parameter :: least_increment = 1.0e-9_dp
 
-   !> A load on one place, valid from this step on. The loads of a step on one place are added up.
+   !> A load on one location, valid from this step on. The loads of a step on one location are added
+   !> up.
    type :: load_type
       integer :: kind = 0           !! one of the load_* constants
       integer :: item = 0           !! node or element index
       integer :: component = 1      !! as said at the kind
       real(dp) :: value = 0.0_dp    !! value at the end of the step, or factor of the amplitude
-      integer :: amplitude = 0      !! index into model%amplitudes, 0 for the step's own course
+      integer :: amplitude = 0     !! index into model%amplitudes, 0 for the step's own time history
       integer :: card = 0           !! running number of the load's data card, over all steps
    end type load_type
 
@@ -57,7 +58,7 @@ module steps
       integer :: node = 0           !! node index
       integer :: dof = 0            !! 1, 2 or dof_temperature
       real(dp) :: value = 0.0_dp    !! value at the end of the step, before the amplitude
-      integer :: amplitude = 0      !! index into model%amplitudes, 0 for the step's own course
+      integer :: amplitude = 0     !! index into model%amplitudes, 0 for the step's own time history
       integer :: card = 0           !! running number of the *BOUNDARY data card, over all steps
    end type boundary_type
 

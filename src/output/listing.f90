@@ -1,7 +1,7 @@
 !> The print file `NAME.lst`: what was read, what is modelled and why, every increment, the zone
 !> diagrams, the verdicts.
 module listing
-   use contact_pairs, only: contact_pairs_type, never_approached
+   use contact_pairs, only: contact_points_type, never_approached
    use due_output, only: table_is_due
    use errors, only: error_type
    use file_calls, only: append_to_file, empty_file, lock_file, unlock_file
@@ -60,10 +60,10 @@ contains
 
    !> Begins the reserved listing: heading, echo of the deck, defaults, what is modelled.
    !> Error: status_internal, when the file cannot be written.
-   subroutine open_listing(self, model, pairs, cards, run, error)
+   subroutine open_listing(self, model, interfaces, cards, run, error)
       class(listing_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
@@ -72,11 +72,11 @@ contains
       if (allocated(error)) return
       call self%text%open(error)
       if (allocated(error)) return
-      allocate(self%diagrams(size(pairs)), self%warnings(0))
+      allocate(self%diagrams(size(interfaces)), self%warnings(0))
       call print_heading(self%text%unit, model, run)
       call print_deck(self%text%unit, cards)
       call print_list(self%text%unit, 'DEFAULTS AND CARDS NOT NEEDED', model%notes)
-      call print_model(self%text%unit, model, pairs, run)
+      call print_model(self%text%unit, model, interfaces, run)
       call print_title(self%text%unit, 'INCREMENTS')
       call write_text(self, error)
    end subroutine open_listing
@@ -101,32 +101,32 @@ contains
 
    !> Adds the block of an accepted increment, with its PRINT tables where these are due.
    !> Error: status_internal, when the file cannot be written.
-   subroutine add(self, record, model, pairs, error)
+   subroutine add(self, record, model, interfaces, error)
       class(listing_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
 
       call print_increment(self%text%unit, record)
-      do i = 1, size(pairs)
-         call print_interface(self%text%unit, pairs(i), record%contacts(i))
-         call self%diagrams(i)%add(record, record%contacts(i)%status)
+      do i = 1, size(interfaces)
+         call print_interface(self%text%unit, interfaces(i), record%contacts(i))
+         call self%diagrams(i)%add(record, record%contacts(i)%contact_state)
       end do
       call print_balances(self%text%unit, record, model%steps(record%step)%analysis)
       call print_body_errors(self%text%unit, record)
       call print_warnings(self, record)
       self%contacts = record%contacts
       if (allocated(record%errors)) then
-         do i = 1, size(pairs)
-            call print_interface_errors(self%text%unit, pairs(i)%name, record%errors(i))
+         do i = 1, size(interfaces)
+            call print_interface_errors(self%text%unit, interfaces(i)%name, record%errors(i))
          end do
       end if
       call print_requested(self%text%unit, record, model)
       if (table_is_due(model%steps(record%step)%contact_print_frequency, record)) then
-         do i = 1, size(pairs)
-            call print_contact_table(self%text%unit, pairs(i), record%contacts(i), &
+         do i = 1, size(interfaces)
+            call print_contact_table(self%text%unit, interfaces(i), record%contacts(i), &
                model%mesh%node_number)
          end do
       end if
@@ -176,10 +176,10 @@ contains
 
    !> Ends the listing that is open: verdicts, times, zone diagrams, all warnings again.
    !> Error: status_internal, when its end cannot be written.
-   subroutine finish(self, model, pairs, outcomes, run, error)
+   subroutine finish(self, model, interfaces, outcomes, run, error)
       class(listing_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(outcome_type), intent(in) :: outcomes(:)       !! what came of the *VERIFY cards
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
@@ -188,10 +188,10 @@ contains
 
       if (size(outcomes) > 0) call print_verdicts(self%text%unit, model%verifications, outcomes)
       call print_times(self%text%unit, run)
-      do i = 1, size(pairs)
-         call self%diagrams(i)%print(self%text%unit, pairs(i))
+      do i = 1, size(interfaces)
+         call self%diagrams(i)%print(self%text%unit, interfaces(i))
       end do
-      call print_unapproached(self, model%mesh%node_number, pairs)
+      call print_unapproached(self, model%mesh%node_number, interfaces)
       warnings = model%warnings
       do i = 1, size(self%warnings)
          call append(warnings, self%warnings(i)%value)
@@ -247,29 +247,29 @@ contains
       end do
    end subroutine print_warnings
 
-   !> Prints the pairs of each interface that never came nearer than they were.
-   subroutine print_unapproached(self, node_number, pairs)
+   !> Prints the contact points of each interface that never came nearer than they were.
+   subroutine print_unapproached(self, node_number, interfaces)
       class(listing_type), intent(in) :: self
       integer, intent(in) :: node_number(:)
-      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(contact_points_type), intent(in) :: interfaces(:)
       integer, parameter :: most = 20
       integer, allocatable :: far(:)
       character(:), allocatable :: line
       integer :: i, k
 
       if (.not. allocated(self%contacts)) return
-      do i = 1, size(pairs)
-         associate (m => size(pairs(i)%slave_node))
-            far = pack([(k, k=1, m)], never_approached(pairs(i)%initial_gap, &
+      do i = 1, size(interfaces)
+         associate (m => size(interfaces(i)%slave_node))
+            far = pack([(k, k=1, m)], never_approached(interfaces(i)%initial_gap, &
                self%contacts(i)%smallest_gap))
             if (size(far) == 0) cycle
             call print_title(self%text%unit, 'PAIRS THAT NEVER APPROACHED: '//to_text(size(far))// &
-               ' of '//to_text(m)//' of '//pairs(i)%name)
+               ' of '//to_text(m)//' of '//interfaces(i)%name)
          end associate
          line = 'slave and master nodes'
          do k = 1, min(size(far), most)
-            line = line//' '//to_text(node_number(pairs(i)%slave_node(far(k))))//'-'// &
-               to_text(node_number(pairs(i)%master_node(far(k))))
+            line = line//' '//to_text(node_number(interfaces(i)%slave_node(far(k))))//'-'// &
+               to_text(node_number(interfaces(i)%master_node(far(k))))
          end do
          if (size(far) > most) line = line//' and '//to_text(size(far) - most)//' more'
          call print_wrapped(self%text%unit, '   ', line)

@@ -1,9 +1,9 @@
 !> The block of an accepted increment in the listing.
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use contact_quantities, only: contact_values
-   use contact_states, only: status_open, status_stick
+   use contact_states, only: contact_open, contact_stick
    use increment_quantities, only: history_value
    use kinds, only: dp
    use listing_text, only: column, print_wrapped
@@ -54,9 +54,9 @@ contains
    end subroutine print_attempts
 
    !> Prints zones, edges and sums of an interface.
-   subroutine print_interface(unit, pairs, contact)
+   subroutine print_interface(unit, points, contact)
       integer, intent(in) :: unit                         !! unit of the listing
-      type(contact_pairs_type), intent(in) :: pairs       !! the interface
+      type(contact_points_type), intent(in) :: points     !! the interface
       type(contact_record_type), intent(in) :: contact    !! its state
       type(quantity_type) :: quantity
       character(:), allocatable :: edges, sums
@@ -69,19 +69,19 @@ contains
          quantity = quantities(i)
          if (quantity%kind /= of_interface .or. quantity%label == '') cycle
          if (quantity%needs == needs_heat .and. .not. allocated(contact%heat_flux)) cycle
-         value = contact_values(quantity%name, pairs, contact)
+         value = contact_values(quantity%name, points, contact)
          if (quantity%resolution > 0.0_dp) then
             edges = edges//told(quantity, value(1))
          else
             sums = sums//told(quantity, value(1))
          end if
       end do
-      zones = zone_counts(contact%status)
-      write (unit, '(3x, a, 3(a, i0), a)') pairs%name, '   I ', zones(1), '   II ', zones(2), &
+      zones = zone_counts(contact%contact_state)
+      write (unit, '(3x, a, 3(a, i0), a)') points%name, '   I ', zones(1), '   II ', zones(2), &
          '   III ', zones(3), edges
       write (unit, '(3x, a)') sums
-      call print_surplus(unit, 'contact', edge_count(contact%status /= status_open))
-      call print_surplus(unit, 'stick', edge_count(contact%status == status_stick))
+      call print_surplus(unit, 'contact', edge_count(contact%contact_state /= contact_open))
+      call print_surplus(unit, 'stick', edge_count(contact%contact_state == contact_stick))
    end subroutine print_interface
 
    !> The quantities of an increment that need the same, with their labels.
@@ -121,7 +121,7 @@ contains
       end if
    end function told
 
-   !> Ends of zones between two pairs.
+   !> Ends of zones between two contact points.
    pure integer function edge_count(in_zone)
       logical, intent(in) :: in_zone(:)
 

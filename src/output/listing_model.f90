@@ -1,6 +1,6 @@
 !> The listing's summary of the model: what will be modelled and why, sizes, interfaces.
 module listing_model
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use kinds, only: dp
    use listing_text, only: print_title, print_wrapped
    use model, only: model_type
@@ -15,10 +15,10 @@ module listing_model
 contains
 
    !> Prints the summary.
-   subroutine print_model(unit, model, pairs, run)
+   subroutine print_model(unit, model, interfaces, run)
       integer, intent(in) :: unit                         !! unit of the listing
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run
       integer :: i
 
@@ -47,23 +47,23 @@ contains
          call print_entry(unit, 'material '//model%materials(i)%name, &
             material_words(model%materials(i)))
       end do
-      call print_interfaces(unit, model, pairs)
+      call print_interfaces(unit, model, interfaces)
    end subroutine print_model
 
-   subroutine print_interfaces(unit, model, pairs)
+   subroutine print_interfaces(unit, model, interfaces)
       integer, intent(in) :: unit
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(contact_points_type), intent(in) :: interfaces(:)
       logical :: has_heat
       integer :: i
 
       has_heat = any(solves_heat(model%steps%analysis))
-      do i = 1, size(pairs)
-         write (unit, '(/, 3x, 2a)') 'CONTACT PAIR ', pairs(i)%name
-         call print_count(unit, 'node pairs', size(pairs(i)%slave_node))
-         call print_entry(unit, 'length', to_text(maxval(pairs(i)%arc_length)))
+      do i = 1, size(interfaces)
+         write (unit, '(/, 3x, 2a)') 'CONTACT PAIR ', interfaces(i)%name
+         call print_count(unit, 'node pairs', size(interfaces(i)%slave_node))
+         call print_entry(unit, 'length', to_text(maxval(interfaces(i)%arc_length)))
          call print_entry(unit, 'initial gaps', &
-            from_to([minval(pairs(i)%initial_gap), maxval(pairs(i)%initial_gap)]))
+            from_to([minval(interfaces(i)%initial_gap), maxval(interfaces(i)%initial_gap)]))
          associate (interaction => model%interactions(model%contacts(i)%interaction))
             call print_entry(unit, 'coefficient of friction', friction_words(interaction%friction))
             if (.not. has_heat) cycle

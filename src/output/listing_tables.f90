@@ -1,12 +1,12 @@
 !> Tables of the listing: *CONTACT PRINT, the iteration history, the *VERIFY verdicts.
 module listing_tables
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use contact_quantities, only: contact_values, geometry_values
    use increment_quantities, only: pass_value
    use kinds, only: dp
    use listing_text, only: column, table_cell, table_head
    use model, only: verify_type
-   use quantity_types, only: needs_heat, of_pairs, of_passes, quantity_type
+   use quantity_types, only: needs_heat, of_contact_points, of_passes, quantity_type
    use records, only: contact_record_type
    use reported_quantities, only: quantities
    use run_summaries, only: or_blank
@@ -20,28 +20,29 @@ module listing_tables
 
 contains
 
-   !> Prints the pairs of an interface in fixed columns (*CONTACT PRINT); without heat the last four
-   !> are left out.
-   subroutine print_contact_table(unit, pairs, contact, node_number)
+   !> Prints the contact points of an interface in fixed columns (*CONTACT PRINT); without heat the
+   !> last four are left out.
+   subroutine print_contact_table(unit, points, contact, node_number)
       integer, intent(in) :: unit                         !! unit of the listing
-      type(contact_pairs_type), intent(in) :: pairs       !! pairs of the interface
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! their state
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
       type(quantity_type), allocatable :: columns(:)
       real(dp), allocatable :: values(:, :)
       integer :: i, k
 
-      columns = pack(quantities, quantities%kind == of_pairs .and. quantities%width > 0 .and. &
-         (quantities%needs /= needs_heat .or. allocated(contact%conductance)))
-      allocate (values(size(pairs%slave_node), size(columns)))
-      write (unit, '(/, 2a)') '   CONTACT PAIRS OF ', pairs%name
+      columns = pack(quantities, quantities%kind == of_contact_points .and. &
+         quantities%width > 0 .and. (quantities%needs /= needs_heat .or. &
+         allocated(contact%conductance)))
+      allocate (values(size(points%slave_node), size(columns)))
+      write (unit, '(/, 2a)') '   CONTACT PAIRS OF ', points%name
       write (unit, '(a)', advance='no') 'pair'
       do i = 1, size(columns)
          write (unit, '(a)', advance='no') table_head(columns(i))
          if (columns(i)%is_geometry) then
-            values(:, i) = geometry_values(columns(i)%name, pairs, node_number)
+            values(:, i) = geometry_values(columns(i)%name, points, node_number)
          else
-            values(:, i) = contact_values(columns(i)%name, pairs, contact)
+            values(:, i) = contact_values(columns(i)%name, points, contact)
          end if
       end do
       write (unit, '()')

@@ -72,7 +72,7 @@ contains
       if (.not. self%is_shown) return
       zones = 0
       do i = 1, size(record%contacts)
-         zones = zones + zone_counts(record%contacts(i)%status)
+         zones = zones + zone_counts(record%contacts(i)%contact_state)
       end do
       self%last = '  load '//to_text(record%load)
       if (allocated(record%iterations)) self%last = self%last//'  iterations '// &

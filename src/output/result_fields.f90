@@ -3,7 +3,7 @@
 !> The geometry is static, so its offsets are zero at every step.
 module result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use contact_quantities, only: contact_values
    use errors, only: error_type
    use field_quantities, only: element_values, point_values
@@ -12,7 +12,7 @@ module result_fields
    use hdf5_attributes, only: write_attribute
    use hdf5_helpers, only: as_long, as_real, create_group, link_dataset
    use kinds, only: dp
-   use quantity_types, only: of_elements, of_pairs, of_points, quantity_type
+   use quantity_types, only: of_elements, of_contact_points, of_points, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets
    use result_mesh, only: cell_data_names, cell_group, point_group, steps_group
@@ -25,7 +25,7 @@ module result_fields
    integer, parameter :: at_cell_offset = 6
    integer, parameter :: step_sets = 6
 
-   character(*), parameter :: mark = 'contact_'   !! before names of quantities of pairs
+   character(*), parameter :: mark = 'contact_'   !! before names of quantities of contact points
 
    !> Fields of the result file. `sets` holds those of Steps, then one for each of `point_data`,
    !> then one for each of `cell_data`.
@@ -34,7 +34,7 @@ module result_fields
       integer, allocatable, public :: point_node(:)              !! (points) node index
       integer, allocatable :: face_point(:)                      !! points on contact faces
       integer, allocatable :: face_interface(:)                  !! their interface
-      integer, allocatable :: face_pair(:)                       !! their pair in it
+      integer, allocatable :: face_contact_point(:)              !! their contact point in it
       integer :: increments = 0                                  !! increments appended
       type(quantity_type), allocatable :: point_data(:)          !! point data that varies
       type(quantity_type), allocatable :: cell_data(:)           !! cell data that varies
@@ -51,9 +51,9 @@ module result_fields
 contains
 
    !> Prepares the datasets.
-   subroutine start(self, pairs, point_node, cells, has, expected)
+   subroutine start(self, interfaces, point_node, cells, has, expected)
       class(field_results_type), intent(inout) :: self
-      type(contact_pairs_type), intent(in) :: pairs(:)   !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: point_node(:)               !! (points) node index of each point
       integer, intent(in) :: cells                       !! number of elements
       logical, intent(in) :: has(0:)                     !! what the deck solves, by needs_*
@@ -61,9 +61,10 @@ contains
       integer :: i, width
 
       self%point_node = point_node
-      call find_faces(self, pairs)
+      call find_faces(self, interfaces)
       self%point_data = datasets(of_points, has)
-      if (size(pairs) > 0) self%point_data = [self%point_data, on_faces(datasets(of_pairs, has))]
+      if (size(interfaces) > 0) self%point_data = [self%point_data, &
+         on_faces(datasets(of_contact_points, has))]
       self%cells = cells
       self%cell_data = datasets(of_elements, has)
       allocate(self%sets(step_sets + size(self%point_data) + size(self%cell_data)))
@@ -89,10 +90,10 @@ contains
    end subroutine start
 
    !> Adds the fields of an increment.
-   subroutine append(self, record, pairs)
+   subroutine append(self, record, interfaces)
       class(field_results_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
-      type(contact_pairs_type), intent(in) :: pairs(:)   !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer :: i
 
       call self%sets(at_values)%append([record%time])
@@ -103,7 +104,7 @@ contains
       call self%sets(at_cell_offset)%append([real(self%increments, dp)*self%cells])
       do i = 1, size(self%point_data)
          call self%sets(step_sets + i)%append(field_values(self, self%point_data(i), record, &
-            pairs))
+            interfaces))
       end do
       do i = 1, size(self%cell_data)
          call self%sets(step_sets + size(self%point_data) + i)%append(or_nan(element_values( &
@@ -170,7 +171,7 @@ contains
       call write_attribute(file, steps_group, 'NSteps', self%increments, error)
    end subroutine write_count
 
-   !> The quantities of pairs that are fields too, by their names as such.
+   !> The quantities of contact points that are fields too, by their names as such.
    pure function on_faces(of_interface) result(fields)
       type(quantity_type), intent(in) :: of_interface(:)
       type(quantity_type), allocatable :: fields(:)
@@ -182,34 +183,34 @@ contains
       end do
    end function on_faces
 
-   subroutine find_faces(self, pairs)
+   subroutine find_faces(self, interfaces)
       class(field_results_type), intent(inout) :: self
-      type(contact_pairs_type), intent(in) :: pairs(:)
-      integer, allocatable :: interface_of(:), pair_of(:)
+      type(contact_points_type), intent(in) :: interfaces(:)
+      integer, allocatable :: interface_of(:), contact_point_of(:)
       integer :: i, k
 
       allocate(interface_of(maxval([1, self%point_node])), source=0)
-      allocate(pair_of(size(interface_of)), source=0)
-      do i = 1, size(pairs)
-         do k = 1, size(pairs(i)%slave_node)
-            interface_of([pairs(i)%slave_node(k), pairs(i)%master_node(k)]) = i
-            pair_of([pairs(i)%slave_node(k), pairs(i)%master_node(k)]) = k
+      allocate(contact_point_of(size(interface_of)), source=0)
+      do i = 1, size(interfaces)
+         do k = 1, size(interfaces(i)%slave_node)
+            interface_of([interfaces(i)%slave_node(k), interfaces(i)%master_node(k)]) = i
+            contact_point_of([interfaces(i)%slave_node(k), interfaces(i)%master_node(k)]) = k
          end do
       end do
       self%face_point = pack([(k, k=1, size(self%point_node))], interface_of(self%point_node) > 0)
       self%face_interface = interface_of(self%point_node(self%face_point))
-      self%face_pair = pair_of(self%point_node(self%face_point))
+      self%face_contact_point = contact_point_of(self%point_node(self%face_point))
    end subroutine find_faces
 
-   function field_values(self, quantity, record, pairs) result(values)
+   function field_values(self, quantity, record, interfaces) result(values)
       class(field_results_type), intent(in) :: self
       type(quantity_type), intent(in) :: quantity
       type(increment_record_type), intent(in) :: record
-      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(contact_points_type), intent(in) :: interfaces(:)
       real(dp), allocatable :: values(:)
 
-      if (quantity%kind == of_pairs) then
-         values = face_values(self, quantity%name(len(mark) + 1:), record, pairs)
+      if (quantity%kind == of_contact_points) then
+         values = face_values(self, quantity%name(len(mark) + 1:), record, interfaces)
       else
          values = or_nan(point_values(quantity%name, record%fields, self%point_node), &
             quantity%values*size(self%point_node))
@@ -226,19 +227,20 @@ contains
       if (size(values) == 0) filled = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, due)
    end function or_nan
 
-   function face_values(self, name, record, pairs) result(values)
+   function face_values(self, name, record, interfaces) result(values)
       class(field_results_type), intent(in) :: self
       character(*), intent(in) :: name
       type(increment_record_type), intent(in) :: record
-      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(contact_points_type), intent(in) :: interfaces(:)
       real(dp), allocatable :: values(:), face(:)
       integer :: i, k
 
       values = or_nan([real(dp) ::], size(self%point_node))
-      do i = 1, size(pairs)
-         face = contact_values(name, pairs(i), record%contacts(i))
+      do i = 1, size(interfaces)
+         face = contact_values(name, interfaces(i), record%contacts(i))
          do k = 1, size(self%face_point)
-            if (self%face_interface(k) == i) values(self%face_point(k)) = face(self%face_pair(k))
+            if (self%face_interface(k) == i) values(self%face_point(k)) = &
+               face(self%face_contact_point(k))
          end do
       end do
    end function face_values

@@ -1,7 +1,7 @@
 !> Groups `/history`, `/convergence`, `/contact/<name>` and `/errors` of the result file.
 module result_tables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, geometry_values
    use errors, only: error_type
    use growing_datasets, only: growing_dataset, growing_dataset_type
@@ -10,7 +10,7 @@ module result_tables
    use hdf5_helpers, only: as_integer, as_real, create_group, write_array
    use increment_quantities, only: body_values, history_value, pass_value
    use kinds, only: dp
-   use quantity_types, only: of_bodies, of_history, of_interface, of_pairs, of_passes, &
+   use quantity_types, only: of_bodies, of_history, of_interface, of_contact_points, of_passes, &
       quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use reported_quantities, only: datasets, quantities
@@ -147,41 +147,41 @@ contains
    end subroutine append_convergence
 
    !> Prepares the datasets.
-   subroutine start_contact(self, pairs, has, expected)
+   subroutine start_contact(self, points, has, expected)
       class(contact_results_type), intent(inout) :: self  !! the group
-      type(contact_pairs_type), intent(in) :: pairs       !! pairs of the interface
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
       logical, intent(in) :: has(0:)                      !! what the deck solves, by needs_*
       integer, intent(in) :: expected                     !! increments that are expected
       integer :: i, width
 
-      self%quantities = [datasets(of_pairs, has), datasets(of_interface, has)]
+      self%quantities = [datasets(of_contact_points, has), datasets(of_interface, has)]
       allocate(self%sets(size(self%quantities)))
       do i = 1, size(self%sets)
          associate (quantity => self%quantities(i))
             width = merge(quantity%values, 0, quantity%values > 1)
-            if (quantity%kind == of_pairs) width = size(pairs%slave_node)
-            self%sets(i) = dataset('/contact/'//pairs%name//'/', quantity, width, expected)
+            if (quantity%kind == of_contact_points) width = size(points%slave_node)
+            self%sets(i) = dataset('/contact/'//points%name//'/', quantity, width, expected)
          end associate
       end do
    end subroutine start_contact
 
    !> Adds an increment.
-   subroutine append_contact(self, pairs, contact)
+   subroutine append_contact(self, points, contact)
       class(contact_results_type), intent(inout) :: self  !! the group
-      type(contact_pairs_type), intent(in) :: pairs       !! pairs of the interface
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! their state
       integer :: i
 
       do i = 1, size(self%sets)
-         call self%sets(i)%append(contact_values(self%quantities(i)%name, pairs, contact))
+         call self%sets(i)%append(contact_values(self%quantities(i)%name, points, contact))
       end do
    end subroutine append_contact
 
-   !> Creates the group, with the geometry of the pairs.
+   !> Creates the group, with the geometry of the contact points.
    !> Error: status_internal, when HDF5 refuses.
-   subroutine write_contact_static(file, pairs, node_number, friction, error)
+   subroutine write_contact_static(file, points, node_number, friction, error)
       integer(hid_t), intent(in) :: file                  !! the open file
-      type(contact_pairs_type), intent(in) :: pairs       !! pairs of the interface
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
       real(dp), intent(in) :: friction                    !! coefficient of friction [-]
       type(error_type), allocatable, intent(out) :: error !! what went wrong
@@ -189,7 +189,7 @@ contains
       real(dp), allocatable :: values(:)
       integer :: i
 
-      group = '/contact/'//pairs%name
+      group = '/contact/'//points%name
       call create_group(file, group, error)
       if (allocated(error)) return
       call write_attribute(file, group, 'friction', friction, error)
@@ -197,7 +197,7 @@ contains
       do i = 1, size(quantities)
          if (.not. quantities(i)%is_geometry) cycle
          path = group//'/'//trim(quantities(i)%name)
-         values = geometry_values(quantities(i)%name, pairs, node_number)
+         values = geometry_values(quantities(i)%name, points, node_number)
          if (quantities(i)%is_integer) then
             call write_array(file, path, nint(values), as_integer, error)
          else
@@ -208,23 +208,23 @@ contains
    end subroutine write_contact_static
 
    !> Prepares the datasets; none without an interface or without estimates.
-   subroutine start_errors(self, has_estimates, pairs, steps)
+   subroutine start_errors(self, has_estimates, interfaces, steps)
       class(error_results_type), intent(inout) :: self    !! the group
       logical, intent(in) :: has_estimates                !! whether errors are estimated
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: steps                        !! steps of the deck
       integer :: i, q
 
-      if (size(pairs) == 0 .or. .not. has_estimates) then
+      if (size(interfaces) == 0 .or. .not. has_estimates) then
          allocate(self%sets(0))
          return
       end if
-      allocate(self%sets(1 + size(estimated)*size(pairs)))
+      allocate(self%sets(1 + size(estimated)*size(interfaces)))
       self%sets(1) = growing_dataset('/errors/time', as_real, 0, 1, steps)
-      do i = 1, size(pairs)
+      do i = 1, size(interfaces)
          do q = 1, size(estimated)
             self%sets(1 + (i - 1)*size(estimated) + q) = growing_dataset('/errors/'// &
-               pairs(i)%name//'/'//trim(estimated(q)%name), as_real, error_columns, 1, steps)
+               interfaces(i)%name//'/'//trim(estimated(q)%name), as_real, error_columns, 1, steps)
          end do
       end do
    end subroutine start_errors
@@ -247,18 +247,18 @@ contains
 
    !> Creates the groups.
    !> Error: status_internal, when HDF5 refuses.
-   subroutine create_error_groups(self, file, pairs, error)
+   subroutine create_error_groups(self, file, interfaces, error)
       class(error_results_type), intent(in) :: self       !! the group, started
       integer(hid_t), intent(in) :: file                  !! the open file
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
 
       if (size(self%sets) == 0) return
       call create_group(file, '/errors', error)
       if (allocated(error)) return
-      do i = 1, size(pairs)
-         call create_group(file, '/errors/'//pairs(i)%name, error)
+      do i = 1, size(interfaces)
+         call create_group(file, '/errors/'//interfaces(i)%name, error)
          if (allocated(error)) return
       end do
    end subroutine create_error_groups

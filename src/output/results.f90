@@ -6,7 +6,7 @@
 !> end, and in between whenever that costs less than a tenth of the time, or an increment was long.
 !> The first publishing replaces the files of an earlier run.
 module results
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
    use growing_datasets, only: bytes_in, flush_sets
@@ -79,10 +79,10 @@ contains
 
    !> Prepares the results of a run, whose files are reserved; none is touched yet.
    !> Error: status_internal, when HDF5 does not start.
-   subroutine open_results(self, model, pairs, point_node, element_points, cards, error)
+   subroutine open_results(self, model, interfaces, point_node, element_points, cards, error)
       class(results_type), intent(inout) :: self          !! the writer
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
@@ -94,26 +94,26 @@ contains
       if (allocated(error)) return
       self%element_points = element_points
       self%cards = cards
-      has = what_is_solved(model, size(pairs) > 0)
+      has = what_is_solved(model, size(interfaces) > 0)
       expected = expected_increments(model)
-      call self%fields%start(pairs, point_node, size(model%mesh%element_kind), has, expected)
+      call self%fields%start(interfaces, point_node, size(model%mesh%element_kind), has, expected)
       call self%history%start(has, model%mesh%body_count, expected)
       call self%convergence%start(has, 8*expected)
-      call self%errors%start(model%estimates_errors, pairs, size(model%steps))
-      allocate(self%contacts(size(pairs)))
-      do i = 1, size(pairs)
-         call self%contacts(i)%start(pairs(i), has, expected)
+      call self%errors%start(model%estimates_errors, interfaces, size(model%steps))
+      allocate(self%contacts(size(interfaces)))
+      do i = 1, size(interfaces)
+         call self%contacts(i)%start(interfaces(i), has, expected)
       end do
    end subroutine open_results
 
    !> Adds an accepted increment; publishes where that is due. The last increment of the last step
    !> waits for `finish`.
    !> Error: status_internal, when a file cannot be written.
-   subroutine append(self, record, model, pairs, run, error)
+   subroutine append(self, record, model, interfaces, run, error)
       class(results_type), intent(inout) :: self          !! the writer
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run           !! the run so far
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       real(dp) :: since
@@ -128,17 +128,17 @@ contains
          call self%convergence%append(record%iterations)
          call self%passes%add_iterations(record%iterations)
       end if
-      do i = 1, size(pairs)
-         call self%contacts(i)%append(pairs(i), record%contacts(i))
+      do i = 1, size(interfaces)
+         call self%contacts(i)%append(interfaces(i), record%contacts(i))
       end do
       if (allocated(record%errors)) call self%errors%append(record%time, record%errors)
-      if (fields_are_due(record, model)) call self%fields%append(record, pairs)
+      if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
       is_due = self%file%is_due()
       ends_run = record%last_of_step .and. record%step == size(model%steps)
       if ((record%last_of_step .or. is_due) .and. .not. ends_run) then
-         call publish(self, model, pairs, run, error)
+         call publish(self, model, interfaces, run, error)
       else if (waiting_bytes(self) > memory_limit) then
-         call flush_all(self, model, pairs, error)
+         call flush_all(self, model, interfaces, error)
          call self%file%explain(error)
          call self%file%charge(since, ended=.false.)
       end if
@@ -148,10 +148,10 @@ contains
    !> Publishes what is left and ends HDF5. Without any accepted increment the files of an earlier
    !> run stay, but for `.cvg`, which then holds the iterations that failed.
    !> Error: status_internal, when a file cannot be written.
-   subroutine finish(self, model, pairs, run, failed, error)
+   subroutine finish(self, model, interfaces, run, failed, error)
       class(results_type), intent(inout) :: self          !! the writer
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(iteration_record_type), intent(in) :: failed(:) !! passes of the increment that failed
       type(error_type), allocatable, intent(out) :: error !! what went wrong
@@ -160,7 +160,7 @@ contains
       call self%convergence%append(failed)
       call self%passes%add_iterations(failed)
       if (self%accepted > 0) then
-         call publish(self, model, pairs, run, error)
+         call publish(self, model, interfaces, run, error)
       else
          call self%passes%empty(error)
          if (.not. allocated(error)) call self%passes%write_waiting(error)
@@ -223,10 +223,10 @@ contains
       end do
    end function waiting_bytes
 
-   subroutine publish(self, model, pairs, run, error)
+   subroutine publish(self, model, interfaces, run, error)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(contact_points_type), intent(in) :: interfaces(:)
       type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: since
@@ -234,7 +234,7 @@ contains
 
       since = wall_seconds()
       is_first = .not. self%file%in_place
-      call flush_all(self, model, pairs, error)
+      call flush_all(self, model, interfaces, error)
       if (.not. allocated(error)) call write_run(self%file%id, run, model, &
          wall_seconds() - since, error)
       if (.not. allocated(error)) call self%file%close(error)
@@ -255,17 +255,17 @@ contains
       call self%file%charge(since, ended=.true.)
    end subroutine publish
 
-   subroutine flush_all(self, model, pairs, error)
+   subroutine flush_all(self, model, interfaces, error)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(contact_points_type), intent(in) :: interfaces(:)
       type(error_type), allocatable, intent(out) :: error
       logical :: is_new
       integer :: i
 
       call self%file%open(is_new, error)
       if (allocated(error)) return
-      if (is_new) call write_heads(self, model, pairs, error)
+      if (is_new) call write_heads(self, model, interfaces, error)
       if (allocated(error)) return
       call flush_sets(self%fields%sets, self%file%id, error)
       if (allocated(error)) return
@@ -287,10 +287,10 @@ contains
          error)
    end subroutine flush_all
 
-   subroutine write_heads(self, model, pairs, error)
+   subroutine write_heads(self, model, interfaces, error)
       class(results_type), intent(in) :: self
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)
+      type(contact_points_type), intent(in) :: interfaces(:)
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
@@ -305,10 +305,10 @@ contains
       if (allocated(error)) return
       call create_group(self%file%id, '/contact', error)
       if (allocated(error)) return
-      call self%errors%create_groups(self%file%id, pairs, error)
+      call self%errors%create_groups(self%file%id, interfaces, error)
       if (allocated(error)) return
-      do i = 1, size(pairs)
-         call self%contacts(i)%write_static(self%file%id, pairs(i), model%mesh%node_number, &
+      do i = 1, size(interfaces)
+         call self%contacts(i)%write_static(self%file%id, interfaces(i), model%mesh%node_number, &
             model%interactions(model%contacts(i)%interaction)%friction, error)
          if (allocated(error)) return
       end do

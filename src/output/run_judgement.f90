@@ -1,8 +1,8 @@
 !> What only a whole run shows of a deck that may not be meant so: contact that never closes, no
 !> load that acts, large strains.
 module run_judgement
-   use contact_pairs, only: contact_pairs_type
-   use contact_states, only: status_open
+   use contact_pairs, only: contact_points_type
+   use contact_states, only: contact_open
    use kinds, only: dp
    use mesh, only: extent_of
    use model, only: model_type
@@ -23,7 +23,7 @@ module run_judgement
       private
       logical :: moves = .false.                   !! whether a node was displaced
       logical :: warms = .false.                   !! whether a temperature left its initial value
-      logical, allocatable :: closes(:)            !! (interfaces) whether a pair was closed
+      logical, allocatable :: closes(:)           !! (interfaces) whether a contact point was closed
       real(dp), allocatable :: smallest_gap(:)     !! (interfaces) [length]
       real(dp) :: strain = 0.0_dp                  !! largest so far [-]
       integer :: element = 0                       !! element that has it
@@ -38,17 +38,17 @@ module run_judgement
 contains
 
    !> Takes an accepted increment.
-   subroutine take(self, record, model, pairs)
+   subroutine take(self, record, model, interfaces)
       class(run_judgement_type), intent(inout) :: self    !! what was seen
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       real(dp) :: strain
       integer :: element, i
 
       if (.not. allocated(self%closes)) then
-         allocate (self%closes(size(pairs)), source=.false.)
-         self%smallest_gap = [(minval(pairs(i)%initial_gap), i=1, size(pairs))]
+         allocate (self%closes(size(interfaces)), source=.false.)
+         self%smallest_gap = [(minval(interfaces(i)%initial_gap), i=1, size(interfaces))]
       end if
       associate (analysis => model%steps(record%step)%analysis, fields => record%fields)
          if (solves_heat(analysis)) self%warms = self%warms .or. any(abs(fields%temperature - &
@@ -56,8 +56,9 @@ contains
          if (.not. solves_mechanics(analysis)) return
          self%moves = self%moves .or. &
             any(abs(fields%displacement) > unmoved*extent_of(model%mesh%coordinates))
-         do i = 1, size(pairs)
-            self%closes(i) = self%closes(i) .or. any(record%contacts(i)%status /= status_open)
+         do i = 1, size(interfaces)
+            self%closes(i) = self%closes(i) .or. any(record%contacts(i)%contact_state /= &
+               contact_open)
             self%smallest_gap(i) = min(self%smallest_gap(i), &
                minval(record%contacts(i)%smallest_gap))
          end do
@@ -78,10 +79,10 @@ contains
    end subroutine fail
 
    !> What is to be said of the run.
-   pure function warnings(self, model, pairs) result(lines)
+   pure function warnings(self, model, interfaces) result(lines)
       class(run_judgement_type), intent(in) :: self       !! what was seen
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), allocatable :: lines(:)          !! one a warning
       integer :: i
 
@@ -96,9 +97,10 @@ contains
       if (any(solves_mechanics(model%steps%analysis))) then
          if (.not. self%moves) call append(lines, 'no load acts: all displacements are 0 in '// &
             'all increments')
-         do i = 1, size(pairs)
+         do i = 1, size(interfaces)
             if (self%closes(i)) cycle
-            call append(lines, 'contact pair '//pairs(i)%name//' never closes: its smallest '// &
+            call append(lines, &
+               'contact pair '//interfaces(i)%name//' never closes: its smallest '// &
                'gap is '//to_text(self%smallest_gap(i)))
          end do
       end if

@@ -2,7 +2,7 @@
 !> line.
 module run_output
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use errors, only: error_type
    use kinds, only: dp
    use messages, only: print_line
@@ -69,10 +69,10 @@ contains
    !> Begins the output of a run, whose files are reserved: writes the head of the listing and
    !> touches no other file yet. `run` is filled in before, but for its times and verdicts.
    !> Error: status_internal, when the listing cannot be written or HDF5 does not start.
-   subroutine start(self, model, pairs, point_node, element_points, cards, error)
+   subroutine start(self, model, interfaces, point_node, element_points, cards, error)
       class(run_output_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points of each element
       type(string_type), intent(in) :: cards(:)           !! card images as read
@@ -83,29 +83,30 @@ contains
       self%point_node = point_node
       allocate(self%failed(0))
       call self%verifier%start(model)
-      call self%listing%open(model, pairs, cards, self%run, error)
+      call self%listing%open(model, interfaces, cards, self%run, error)
       if (allocated(error)) return
-      call self%results%open(model, pairs, point_node, element_points, cards, error)
+      call self%results%open(model, interfaces, point_node, element_points, cards, error)
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine start
 
    !> Takes an accepted increment.
    !> Error: status_internal, when a file cannot be written.
-   subroutine accept(self, record, model, pairs, error)
+   subroutine accept(self, record, model, interfaces, error)
       class(run_output_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       real(dp) :: since
 
       since = wall_seconds()
-      call self%listing%add(record, model, pairs, error)
-      call self%verifier%judge(record, model, pairs, self%point_node)
-      call self%judgement%take(record, model, pairs)
+      call self%listing%add(record, model, interfaces, error)
+      call self%verifier%judge(record, model, interfaces, self%point_node)
+      call self%judgement%take(record, model, interfaces)
       if (allocated(record%warnings)) call print_warnings(self, record%warnings)
       call self%progress%take(record)
-      if (.not. allocated(error)) call self%results%append(record, model, pairs, self%run, error)
+      if (.not. allocated(error)) call self%results%append(record, model, interfaces, self%run, &
+         error)
       if (allocated(error)) call self%progress%clear()
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine accept
@@ -137,10 +138,10 @@ contains
    !> Ends the output: publishes what is left, then closes the listing. `run` then holds the
    !> verdicts.
    !> Error: status_internal, when a file cannot be written.
-   subroutine finish(self, model, pairs, error)
+   subroutine finish(self, model, interfaces, error)
       class(run_output_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: warnings(:)
       real(dp) :: since
@@ -148,15 +149,15 @@ contains
       since = wall_seconds()
       self%run%verify_passed = self%verifier%passed_count()
       self%run%verify_failed = self%verifier%failed_count()
-      call self%results%finish(model, pairs, self%run, self%failed, error)
+      call self%results%finish(model, interfaces, self%run, self%failed, error)
       if (allocated(error)) then
          call self%break_off(error%message)
          return
       end if
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
-      warnings = self%judgement%warnings(model, pairs)
+      warnings = self%judgement%warnings(model, interfaces)
       call self%listing%warn(warnings)
-      call self%listing%finish(model, pairs, self%verifier%outcomes, self%run, error)
+      call self%listing%finish(model, interfaces, self%verifier%outcomes, self%run, error)
       call print_warnings(self, warnings)
    end subroutine finish
 

@@ -1,7 +1,7 @@
 !> Judges the *VERIFY cards of a deck on the increments as they come.
 module verification
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use due_output, only: is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type
@@ -45,11 +45,11 @@ contains
    end subroutine start
 
    !> Judges the checks that name the time of an increment.
-   subroutine judge(self, record, model, pairs, point_node)
+   subroutine judge(self, record, model, interfaces, point_node)
       class(verifier_type), intent(inout) :: self         !! the checks
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
-      type(contact_pairs_type), intent(in) :: pairs(:)    !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
       real(dp), allocatable :: values(:)
       character(:), allocatable :: reason
@@ -57,7 +57,7 @@ contains
 
       do i = 1, size(self%outcomes)
          if (.not. is_judged(model%verifications(i), record, model)) cycle
-         call values_asked_for(model%verifications(i), record, model%mesh, pairs, point_node, &
+         call values_asked_for(model%verifications(i), record, model%mesh, interfaces, point_node, &
             values, reason)
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
       end do

@@ -1,8 +1,8 @@
-!> The line-printer zone diagram: one row an increment, one column a pair, I (gap), II (slip), III
-!> (stick).
+!> The line-printer zone diagram: one row an increment, one column a contact point, I (gap), II
+!> (slip), III (stick).
 module zone_diagram
-   use contact_pairs, only: contact_pairs_type
-   use contact_states, only: status_open, status_stick
+   use contact_pairs, only: contact_points_type
+   use contact_states, only: contact_open, contact_stick
    use kinds, only: dp
    use records, only: increment_record_type
    use text, only: to_text
@@ -10,7 +10,7 @@ module zone_diagram
    private
    public :: zone_diagram_type, zone_numeral, zone_counts
 
-   integer, parameter :: panel_columns = 28   !! pairs that stand side by side on 132 columns
+   integer, parameter :: panel_columns = 28 !! contact points that stand side by side on 132 columns
 
    !> Zones of one interface at every increment.
    type :: zone_diagram_type
@@ -18,7 +18,7 @@ module zone_diagram
       integer :: rows = 0                         !! increments so far
       integer, allocatable :: increment(:)        !! (rows) their numbers
       real(dp), allocatable :: load(:)            !! (rows) their load
-      integer, allocatable :: status(:, :)        !! (pairs, rows) status of the pairs
+      integer, allocatable :: contact_state(:, :) !! (contact points, rows) contact states
    contains
       procedure :: add
       procedure :: print => print_diagram
@@ -27,72 +27,72 @@ module zone_diagram
 contains
 
    !> The Roman numeral of a zone, set to the right.
-   pure function zone_numeral(status) result(numeral)
-      integer, intent(in) :: status   !! status_open, status_slip or status_stick
+   pure function zone_numeral(contact_state) result(numeral)
+      integer, intent(in) :: contact_state !! contact_open, contact_slip or contact_stick
       character(3) :: numeral         !! I, II or III
 
-      if (status == status_open) then
+      if (contact_state == contact_open) then
          numeral = '  I'
-      else if (status == status_stick) then
+      else if (contact_state == contact_stick) then
          numeral = 'III'
       else
          numeral = ' II'
       end if
    end function zone_numeral
 
-   !> Numbers of pairs in the zones.
-   pure function zone_counts(status) result(counts)
-      integer, intent(in) :: status(:)   !! (pairs) status of the pairs
-      integer :: counts(3)               !! pairs in zones I, II and III
+   !> Numbers of contact points in the zones.
+   pure function zone_counts(contact_state) result(counts)
+      integer, intent(in) :: contact_state(:) !! (contact points) contact states
+      integer :: counts(3)               !! contact points in zones I, II and III
 
-      counts(1) = count(status == status_open)
-      counts(3) = count(status == status_stick)
-      counts(2) = size(status) - counts(1) - counts(3)
+      counts(1) = count(contact_state == contact_open)
+      counts(3) = count(contact_state == contact_stick)
+      counts(2) = size(contact_state) - counts(1) - counts(3)
    end function zone_counts
 
    !> Adds an increment.
-   subroutine add(self, record, status)
+   subroutine add(self, record, contact_state)
       class(zone_diagram_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
-      integer, intent(in) :: status(:)                   !! (pairs) status of the pairs
+      integer, intent(in) :: contact_state(:)            !! (contact points) contact states
 
-      if (self%rows == 0) call resize(self, size(status), 64)
-      if (self%rows == size(self%load)) call resize(self, size(status), 2*self%rows)
+      if (self%rows == 0) call resize(self, size(contact_state), 64)
+      if (self%rows == size(self%load)) call resize(self, size(contact_state), 2*self%rows)
       self%rows = self%rows + 1
       self%increment(self%rows) = record%increment
       self%load(self%rows) = record%load
-      self%status(:, self%rows) = status
+      self%contact_state(:, self%rows) = contact_state
    end subroutine add
 
-   subroutine resize(self, pairs, rows)
+   subroutine resize(self, points, rows)
       class(zone_diagram_type), intent(inout) :: self
-      integer, intent(in) :: pairs
+      integer, intent(in) :: points
       integer, intent(in) :: rows
-      integer, allocatable :: increment(:), status(:, :)
+      integer, allocatable :: increment(:), contact_state(:, :)
       real(dp), allocatable :: load(:)
 
-      allocate(increment(rows), load(rows), status(pairs, rows))
+      allocate(increment(rows), load(rows), contact_state(points, rows))
       if (self%rows > 0) then
          increment(:self%rows) = self%increment(:self%rows)
          load(:self%rows) = self%load(:self%rows)
-         status(:, :self%rows) = self%status(:, :self%rows)
+         contact_state(:, :self%rows) = self%contact_state(:, :self%rows)
       end if
       call move_alloc(increment, self%increment)
       call move_alloc(load, self%load)
-      call move_alloc(status, self%status)
+      call move_alloc(contact_state, self%contact_state)
    end subroutine resize
 
-   !> Prints the diagram, in several panels where the pairs do not fit side by side.
-   subroutine print_diagram(self, unit, pairs)
+   !> Prints the diagram, in several panels where the contact points do not fit side by side.
+   subroutine print_diagram(self, unit, points)
       class(zone_diagram_type), intent(in) :: self
       integer, intent(in) :: unit                      !! unit of the listing
-      type(contact_pairs_type), intent(in) :: pairs    !! pairs of the interface
+      type(contact_points_type), intent(in) :: points  !! contact points of the interface
       integer :: m, panels, width, first, last, row, k
       character(13) :: load
 
-      m = size(pairs%slave_node)
-      write (unit, '(/, 3a, i0, 2a, /, a)') 'ZONE DIAGRAM OF ', pairs%name, ': ', m, &
-         ' pairs in columns, from s = 0 to s = ', to_text(pairs%arc_length(m)), &
+      m = size(points%slave_node)
+      write (unit, '(/, 3a, i0, 2a, /, a)') 'ZONE DIAGRAM OF ', points%name, ': ', m, &
+         ' pairs in columns, from s = 0 to s = ', to_text(points%arc_length(m)), &
          'I gap, II slip, III stick'
       panels = (m + panel_columns - 1)/panel_columns
       width = (m + panels - 1)/panels
@@ -102,7 +102,7 @@ contains
          do row = 1, self%rows
             load = to_text(self%load(row))
             write (unit, '(i5, a, 28a4)') self%increment(row), adjustr(load), &
-               (zone_numeral(self%status(k, row)), k=first, last)
+               (zone_numeral(self%contact_state(k, row)), k=first, last)
          end do
       end do
    end subroutine print_diagram

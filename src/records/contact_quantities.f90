@@ -1,9 +1,9 @@
-!> Reported quantities of an interface and of its pairs.
+!> Reported quantities of an interface and of its contact points.
 module contact_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use kinds, only: dp
-   use quantity_types, only: needs_heat, of_interface, of_pairs, quantity_type
+   use quantity_types, only: needs_heat, of_interface, of_contact_points, quantity_type
    use records, only: contact_record_type, interface_errors_type
    use zone_edges, only: edges_kept
    implicit none
@@ -11,7 +11,8 @@ module contact_quantities
    public :: contact_table, estimated, contact_values, geometry_values, total_errors
 
    ! Of the edges of the published cylinder nine tenths are no further from the converged ones than
-   ! their resolution (docs/accuracy.md). Pairs are in the order of the columns of *CONTACT PRINT.
+   ! their resolution (docs/accuracy.md). Contact points are in the order of the columns of *CONTACT
+   ! PRINT.
    type(quantity_type), parameter :: contact_table(*) = [ &
       quantity_type('normal_force', of_interface, 'stress length^2', label='normal force', &
       head='force', is_estimated=.true., is_traded=.true.), &
@@ -27,41 +28,41 @@ module contact_quantities
       head='stick', is_estimated=.true., is_traded=.true., resolution=0.6_dp), &
       quantity_type('edges_contact', of_interface, 'length', values=edges_kept), &
       quantity_type('edges_stick', of_interface, 'length', values=edges_kept), &
-      quantity_type('slave_node', of_pairs, '-', head='slave', width=8, is_integer=.true., &
-      is_geometry=.true.), &
-      quantity_type('master_node', of_pairs, '-', head='master', width=8, is_integer=.true., &
-      is_geometry=.true.), &
-      quantity_type('x', of_pairs, 'length', head='x', width=11, is_geometry=.true.), &
-      quantity_type('y', of_pairs, 'length', head='y', width=11, is_geometry=.true.), &
-      quantity_type('s', of_pairs, 'length', is_geometry=.true.), &
-      quantity_type('weight', of_pairs, 'length^2', is_geometry=.true.), &
-      quantity_type('status', of_pairs, '-', head='zone', width=5, is_integer=.true., &
+      quantity_type('slave_node', of_contact_points, '-', head='slave', width=8, &
+      is_integer=.true., is_geometry=.true.), &
+      quantity_type('master_node', of_contact_points, '-', head='master', width=8, &
+      is_integer=.true., is_geometry=.true.), &
+      quantity_type('x', of_contact_points, 'length', head='x', width=11, is_geometry=.true.), &
+      quantity_type('y', of_contact_points, 'length', head='y', width=11, is_geometry=.true.), &
+      quantity_type('s', of_contact_points, 'length', is_geometry=.true.), &
+      quantity_type('weight', of_contact_points, 'length^2', is_geometry=.true.), &
+      quantity_type('status', of_contact_points, '-', head='zone', width=5, is_integer=.true., &
       is_on_faces=.true.), &
-      quantity_type('gap', of_pairs, 'length', head='gap', width=10, is_on_faces=.true.), &
-      quantity_type('pressure', of_pairs, 'stress', head='p', width=10, is_on_faces=.true.), &
-      quantity_type('shear', of_pairs, 'stress', head='tau', width=11, is_on_faces=.true.), &
-      quantity_type('slip', of_pairs, 'length', head='slip', width=11), &
-      quantity_type('slave_temperature', of_pairs, 'temperature', needs_heat, head='T1', &
+      quantity_type('gap', of_contact_points, 'length', head='gap', width=10, is_on_faces=.true.), &
+      quantity_type('pressure', of_contact_points, 'stress', head='p', width=10, &
+      is_on_faces=.true.), quantity_type('shear', of_contact_points, 'stress', head='tau', &
+      width=11, is_on_faces=.true.), quantity_type('slip', of_contact_points, 'length', &
+      head='slip', width=11), quantity_type('slave_temperature', of_contact_points, 'temperature', &
+      needs_heat, head='T1', width=11), &
+      quantity_type('master_temperature', of_contact_points, 'temperature', needs_heat, head='T2', &
       width=11), &
-      quantity_type('master_temperature', of_pairs, 'temperature', needs_heat, head='T2', &
-      width=11), &
-      quantity_type('conductance', of_pairs, 'power/(length^2 temp.)', needs_heat, &
+      quantity_type('conductance', of_contact_points, 'power/(length^2 temp.)', needs_heat, &
       head='omega', width=10, is_on_faces=.true.), &
-      quantity_type('heat_flux', of_pairs, 'power/length^2', needs_heat, head='q', width=11, &
-      is_on_faces=.true.)]
+      quantity_type('heat_flux', of_contact_points, 'power/length^2', needs_heat, head='q', &
+      width=11, is_on_faces=.true.)]
 
    !> Those with an estimated error; components of interface_errors_type are in this order.
    type(quantity_type), parameter :: estimated(*) = pack(contact_table, contact_table%is_estimated)
 
 contains
 
-   !> A quantity of an interface, or of its pairs: those of the mesh excepted.
-   pure function contact_values(name, pairs, contact) result(values)
-      character(*), intent(in) :: name                     !! one of of_interface or of_pairs
-      type(contact_pairs_type), intent(in) :: pairs         !! pairs of the interface
+   !> A quantity of an interface, or of its contact points: those of the mesh excepted.
+   pure function contact_values(name, points, contact) result(values)
+      character(*), intent(in) :: name                   !! one of of_interface or of_contact_points
+      type(contact_points_type), intent(in) :: points       !! contact points of the interface
       type(contact_record_type), intent(in) :: contact     !! its state
-      !> One a pair, one an edge, or one alone; NaN where the step has none; empty for a name that
-      !> is not known.
+      !> One a contact point, one an edge, or one alone; NaN where the step has none; empty for a
+      !> name that is not known.
       real(dp), allocatable :: values(:)
 
       select case (name)
@@ -82,29 +83,29 @@ contains
       case ('edges_stick')
          values = contact%edges_stick
       case ('status')
-         values = real(contact%status, dp)
+         values = real(contact%contact_state, dp)
       case ('gap')
-         values = or_nan(contact%gap, size(pairs%slave_node))
+         values = or_nan(contact%gap, size(points%slave_node))
       case ('pressure')
-         values = or_nan(contact%pressure, size(pairs%slave_node))
+         values = or_nan(contact%pressure, size(points%slave_node))
       case ('shear')
-         values = or_nan(contact%shear, size(pairs%slave_node))
+         values = or_nan(contact%shear, size(points%slave_node))
       case ('slip')
-         values = or_nan(contact%slip, size(pairs%slave_node))
+         values = or_nan(contact%slip, size(points%slave_node))
       case ('slave_temperature')
-         values = or_nan(contact%slave_temperature, size(pairs%slave_node))
+         values = or_nan(contact%slave_temperature, size(points%slave_node))
       case ('master_temperature')
-         values = or_nan(contact%master_temperature, size(pairs%slave_node))
+         values = or_nan(contact%master_temperature, size(points%slave_node))
       case ('conductance')
-         values = or_nan(contact%conductance, size(pairs%slave_node))
+         values = or_nan(contact%conductance, size(points%slave_node))
       case ('heat_flux')
-         values = or_nan(contact%heat_flux, size(pairs%slave_node))
+         values = or_nan(contact%heat_flux, size(points%slave_node))
       case default
          allocate (values(0))
       end select
    end function contact_values
 
-   !> Values, or a NaN for each of n pairs where there are none.
+   !> Values, or a NaN for each of n contact points where there are none.
    pure function or_nan(given, n) result(filled)
       real(dp), allocatable, intent(in) :: given(:)
       integer, intent(in) :: n
@@ -117,26 +118,26 @@ contains
       end if
    end function or_nan
 
-   !> A quantity of the pairs that the mesh gives.
-   pure function geometry_values(name, pairs, node_number) result(values)
+   !> A quantity of the contact points that the mesh gives.
+   pure function geometry_values(name, points, node_number) result(values)
       character(*), intent(in) :: name                     !! one of those with is_geometry
-      type(contact_pairs_type), intent(in) :: pairs         !! pairs of the interface
+      type(contact_points_type), intent(in) :: points       !! contact points of the interface
       integer, intent(in) :: node_number(:)                !! (nodes) numbers in the deck
       real(dp), allocatable :: values(:)                   !! (m), empty for an unknown name
 
       select case (name)
       case ('slave_node')
-         values = real(node_number(pairs%slave_node), dp)
+         values = real(node_number(points%slave_node), dp)
       case ('master_node')
-         values = real(node_number(pairs%master_node), dp)
+         values = real(node_number(points%master_node), dp)
       case ('x')
-         values = pairs%position(1, :)
+         values = points%position(1, :)
       case ('y')
-         values = pairs%position(2, :)
+         values = points%position(2, :)
       case ('s')
-         values = pairs%arc_length
+         values = points%arc_length
       case ('weight')
-         values = pairs%weight
+         values = points%weight
       case default
          allocate (values(0))
       end select

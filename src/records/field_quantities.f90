@@ -100,10 +100,10 @@ contains
    end function element_values
 
    !> Rows of a field one beside the other, row 0 being zeros.
-   pure function rows(field, components, places) result(values)
+   pure function rows(field, components, indexes) result(values)
       real(dp), allocatable, intent(in) :: field(:, :)
       integer, intent(in) :: components(:)
-      integer, intent(in) :: places(:)
+      integer, intent(in) :: indexes(:)
       real(dp), allocatable :: values(:)
       integer :: i
 
@@ -111,9 +111,9 @@ contains
          allocate (values(0))
          return
       end if
-      allocate (values(size(components)*size(places)), source=0.0_dp)
+      allocate (values(size(components)*size(indexes)), source=0.0_dp)
       do i = 1, size(components)
-         if (components(i) > 0) values(i::size(components)) = field(components(i), places)
+         if (components(i) > 0) values(i::size(components)) = field(components(i), indexes)
       end do
    end function rows
 

@@ -24,9 +24,10 @@ module records
       real(dp), allocatable :: iteration(:)    !! largest error of the fixed point, >= 0
    end type interface_errors_type
 
-   !> State of one contact interface; arrays over its pairs, in the order of contact_pairs_type.
+   !> State of one contact interface; arrays over its contact points, in the order of
+   !> contact_points_type.
    type :: contact_record_type
-      integer, allocatable :: status(:)                !! status_open, status_slip or status_stick
+      integer, allocatable :: contact_state(:)        !! contact_open, contact_slip or contact_stick
       real(dp), allocatable :: gap(:)                  !! gamma >= 0 open [length]
       real(dp), allocatable :: pressure(:)             !! >= 0 in compression [stress]
       real(dp), allocatable :: shear(:)                !! on the slave, towards growing s [stress]
@@ -37,7 +38,7 @@ module records
       real(dp), allocatable :: heat_flux(:)            !! slave to master [power/length^2]
       real(dp), allocatable :: slave_temperature(:)    !! [temperature]
       real(dp), allocatable :: master_temperature(:)   !! [temperature]
-      real(dp) :: normal_force = 0.0_dp                !! sum over the pairs [stress length^2]
+      real(dp) :: normal_force = 0.0_dp             !! sum over the contact points [stress length^2]
       real(dp) :: shear_force = 0.0_dp                 !! alike [stress length^2]
       real(dp) :: heat_rate = 0.0_dp                   !! heat from slave to master [power]
       real(dp) :: edge_contact = 0.0_dp                !! outer edge, zone with largest s; or NaN

@@ -4,7 +4,7 @@ module reported_quantities
    use contact_quantities, only: contact_table
    use field_quantities, only: field_table
    use increment_quantities, only: increment_table
-   use quantity_types, only: of_history, of_interface, of_nodes, of_pairs, quantity_type
+   use quantity_types, only: of_history, of_interface, of_nodes, of_contact_points, quantity_type
    implicit none
    private
    public :: quantities, verifiable, traded, datasets
@@ -14,7 +14,7 @@ module reported_quantities
    !> Those that *VERIFY may name.
    type(quantity_type), parameter :: verifiable(*) = pack(quantities, quantities%is_published &
       .and. (quantities%kind == of_history .or. quantities%kind == of_interface .or. &
-      quantities%kind == of_pairs .or. quantities%kind == of_nodes))
+      quantities%kind == of_contact_points .or. quantities%kind == of_nodes))
 
    !> Those that rows of a trade are judged by: of an interface, then of points.
    type(quantity_type), parameter :: traded(*) = pack(quantities, quantities%is_traded)

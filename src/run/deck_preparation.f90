@@ -12,15 +12,15 @@ module deck_preparation
    use loads, only: loads_type
    use messages, only: print_error
    use model, only: model_type
-   use pair_reports, only: pair_all
-   use pair_rows, only: over_constrained
+   use interface_reports, only: make_interfaces
+   use all_contact_points, only: over_constrained
    use progress, only: progress_type
    use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
    use text, only: string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
    use variations, only: variation_type
-   use verify_places, only: check_arc_lengths
+   use verify_positions, only: check_arc_lengths
    implicit none
    private
    public :: prepare_deck
@@ -45,7 +45,7 @@ contains
       call read_deck(path, command%width, command%settings, cards, report)
       call build_model(cards, verifiable, model, report, error, variation)
       if (.not. (report%has_errors() .or. allocated(error))) then
-         call pair_all(model, simulation%bodies%interfaces, report)
+         call make_interfaces(model, simulation%bodies%interfaces, report)
       end if
       if (.not. (report%has_errors() .or. allocated(error))) then
          call simulation%start(model, error)
@@ -91,7 +91,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(string_type), allocatable :: messages(:)
 
-      associate (analysis => model%steps(step)%analysis, points => simulation%bodies%pairs)
+      associate (analysis => model%steps(step)%analysis, points => simulation%bodies%points)
          if (solves_mechanics(analysis)) then
             call report_over_constrained(model, simulation, loads%displacement%active, step, report)
             call unconstrained_in_step(model, points, loads%displacement%active, messages)
@@ -120,19 +120,19 @@ contains
       logical, intent(in) :: held(:)
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
-      logical :: too_much(size(simulation%bodies%pairs%slave))
+      logical :: too_much(size(simulation%bodies%points%slave))
       integer :: i, k
 
-      too_much = over_constrained(simulation%bodies%pairs, held)
+      too_much = over_constrained(simulation%bodies%points, held)
       do i = 1, size(model%contacts)
-         associate (pairs => simulation%bodies%interfaces(i), number => model%mesh%node_number, &
-            start => simulation%bodies%pairs%interface_start)
+         associate (points => simulation%bodies%interfaces(i), number => model%mesh%node_number, &
+            start => simulation%bodies%points%interface_start)
             k = findloc(too_much(start(i):start(i + 1) - 1), .true., dim=1)
             if (k == 0) cycle
             call report%error(place_type(image=model%contacts(i)%card), 'step '// &
-               to_text(step)//': contact pair '//pairs%name//': *BOUNDARY prescribes the '// &
-               'motion of slave node '//to_text(number(pairs%slave_node(k)))// &
-               ' and master node '//to_text(number(pairs%master_node(k)))//' towards each '// &
+               to_text(step)//': contact pair '//points%name//': *BOUNDARY prescribes the '// &
+               'motion of slave node '//to_text(number(points%slave_node(k)))// &
+               ' and master node '//to_text(number(points%master_node(k)))//' towards each '// &
                'other, so that their contact force is undetermined; free one of the two '// &
                'nodes along the normal of the faces')
          end associate

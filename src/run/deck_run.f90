@@ -138,10 +138,10 @@ contains
       logical :: is_written
 
       associate (model => self%model, simulation => self%simulation, output => self%output, &
-         pairs => self%simulation%bodies%interfaces, points => self%simulation%recovery%points)
+         interfaces => self%simulation%bodies%interfaces, points => self%simulation%recovery%points)
          call self%end%hold(.true.)
-         call output%start(model, pairs, points%node, points%element_points, self%cards%images, &
-            error)
+         call output%start(model, interfaces, points%node, points%element_points, &
+            self%cards%images, error)
          if (allocated(error)) return
          call prepare_end(self, end_at_once)
          call self%end%hold(.false.)
@@ -163,7 +163,7 @@ contains
             call output%fail(error%message, record)
             call outcome%note(record, output%accepted())
          end if
-         call output%finish(model, pairs, output_error)
+         call output%finish(model, interfaces, output_error)
          if (allocated(output_error)) then
             if (allocated(error)) output_error%message = error%message//'; '//output_error%message
             call move_alloc(output_error, error)

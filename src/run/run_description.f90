@@ -131,11 +131,11 @@ contains
          element = model%mesh%surfaces(model%contacts(i)%slave)%faces(1, 1)
          associate (material => &
             model%materials(model%sections(model%mesh%element_section(element))%material), &
-            pairs => simulation%bodies%pairs)
+            points => simulation%bodies%points)
             conductivity = sqrt(product(material%conductivity))
             length = maxval(simulation%bodies%interfaces(i)%arc_length)
-            first = pairs%interface_start(i)
-            last = pairs%interface_start(i + 1) - 1
+            first = points%interface_start(i)
+            last = points%interface_start(i + 1) - 1
          end associate
          associate (biot => simulation%state%omega(first:last)*length/conductivity)
             run%contact_biot = [min(run%contact_biot(1), minval(biot)), &

@@ -21,7 +21,7 @@ contains
       type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: state            !! state at the end
-      type(increment_record_type), intent(in) :: increment      !! place of the increment
+      type(increment_record_type), intent(in) :: increment      !! position of the increment
       type(element_points_record_type), allocatable :: records(:)
       integer :: i
 
@@ -63,20 +63,20 @@ contains
       type(solution_state_type), intent(in) :: state
       integer, intent(in) :: first
       type(element_points_record_type), intent(inout) :: record
-      real(dp) :: places(2, most_points), weights(most_points), axes(2, 2, most_points)
+      real(dp) :: xi_eta(2, most_points), weights(most_points), axes(2, 2, most_points)
       integer :: g, n, last
 
       n = point_count(model%mesh%element_kind(element))
       last = first + n - 1
-      call integration_rule(model%mesh%element_kind(element), places(:, :n), weights(:n))
+      call integration_rule(model%mesh%element_kind(element), xi_eta(:, :n), weights(:n))
       record%element(first:last) = element
       record%point(first:last) = [(g, g=1, n)]
-      record%position(:, first:last) = element_positions(model%mesh, element, places(:, :n))
+      record%position(:, first:last) = element_positions(model%mesh, element, xi_eta(:, :n))
       axes(:, :, :n) = element_axes(model%mesh, model%sections, model%orientations, element, &
-         places(:, :n))
+         xi_eta(:, :n))
       if (allocated(record%stress)) then
          record%stress(:, first:last) = element_stress(model%mesh, model%sections, &
-            model%materials, model%orientations, element, places(:, :n), &
+            model%materials, model%orientations, element, xi_eta(:, :n), &
             reshape(state%displacement, [2, size(state%temperature)]), &
             state%stress_temperature - model%initial_temperature)
          if (local_axes) then
@@ -88,7 +88,7 @@ contains
       end if
       if (allocated(record%heat_flux)) then
          record%heat_flux(:, first:last) = element_heat_flux(model%mesh, model%sections, &
-            model%materials, model%orientations, element, places(:, :n), state%temperature)
+            model%materials, model%orientations, element, xi_eta(:, :n), state%temperature)
          if (local_axes) then
             do g = 1, n
                record%heat_flux(:, first - 1 + g) = matmul(record%heat_flux(:, first - 1 + g), &

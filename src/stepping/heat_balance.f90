@@ -1,6 +1,6 @@
 !> Heat balances of an increment: of the discrete equation (3.4), and of the state at its end.
 module heat_balance
-   use balances, only: heat_residual, imbalance, scheme_pair_heat
+   use balances, only: heat_residual, imbalance, scheme_contact_heat
    use controls, only: thermal_scheme_type
    use films, only: net_heat, scheme_net_heat
    use kinds, only: dp
@@ -31,34 +31,34 @@ contains
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(in) :: next           !! state at the end
       type(increment_record_type), intent(inout) :: record    !! receives rates and balances
-      real(dp), allocatable :: conducted(:), heat(:), residual(:), pair_heat(:)
+      real(dp), allocatable :: conducted(:), heat(:), residual(:), contact_heat(:)
       real(dp) :: scale
 
-      pair_heat = bodies%pairs%weight*carrying_conductance(next, scheme)*next%jump
+      contact_heat = bodies%points%weight*carrying_conductance(next, scheme)*next%jump
       conducted = bodies%thermal%matrix%multiply(next%temperature)
       heat = net_heat(next%heat_load, next%film, next%temperature)
-      residual = heat_residual(conducted, heat, bodies%pairs, pair_heat)
+      residual = heat_residual(conducted, heat, bodies%points, contact_heat)
       call sum_rates(loads, next%temperature, residual, record)
-      associate (held => loads%temperature%active, weight => bodies%pairs%weight, &
+      associate (held => loads%temperature%active, weight => bodies%points%weight, &
          body => model%mesh%node_body)
-         scale = max(record%heat_in, record%heat_out, abs(sum(pair_heat)), &
+         scale = max(record%heat_in, record%heat_out, abs(sum(contact_heat)), &
             maxval(abs(residual), mask=held), maxval(abs(heat)), &
             noise*maxval(abs(bodies%thermal%matrix%value))*maxval(abs(next%temperature)), &
             tiny(1.0_dp))
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + heat
-         residual = heat_residual(conducted, heat, bodies%pairs, weight*next%omega*next%jump)
+         residual = heat_residual(conducted, heat, bodies%points, weight*next%omega*next%jump)
          record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, [.true.], &
             scale)
          associate (whole => scheme%a(1) + scheme%b(1))
             conducted = (scheme%a(1)*conducted + scheme%b(1)* &
                bodies%thermal%matrix%multiply(previous%temperature))/whole
-            pair_heat = scheme_pair_heat(scheme, weight, next%omega_start, next%omega, &
+            contact_heat = scheme_contact_heat(scheme, weight, next%omega_start, next%omega, &
                previous%jump, next%jump)/whole
             heat = scheme_net_heat(scheme, previous%heat_load, next%heat_load, previous%film, &
                next%film, previous%temperature, next%temperature)/whole
          end associate
-         residual = heat_residual(conducted, heat, bodies%pairs, pair_heat)
+         residual = heat_residual(conducted, heat, bodies%points, contact_heat)
          record%heat_imbalance = imbalance(conducted, residual, held, body, [.true.], &
             scale)
       end associate

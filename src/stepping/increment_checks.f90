@@ -1,6 +1,6 @@
 !> What a solved increment must satisfy before it is accepted.
 module increment_checks
-   use contact_states, only: status_open
+   use contact_states, only: contact_open
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
@@ -78,8 +78,8 @@ contains
          end if
       end associate
       do i = 1, size(record%contacts)
-         associate (pairs => record%contacts(i))
-            call check_finite([pairs%gap, pairs%pressure, pairs%shear, pairs%slip], &
+         associate (points => record%contacts(i))
+            call check_finite([points%gap, points%pressure, points%shear, points%slip], &
                'gaps and pressures', status_no_convergence, error)
             if (allocated(error)) return
          end associate
@@ -98,9 +98,9 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       character(:), allocatable :: words
 
-      associate (pairs => bodies%pairs)
-         words = undetermined_now(model, pairs, loads%temperature%active, step, &
-            contact_diagonal(model%steps(step)%scheme, pairs%weight, next%omega_start, &
+      associate (points => bodies%points)
+         words = undetermined_now(model, points, loads%temperature%active, step, &
+            contact_diagonal(model%steps(step)%scheme, points%weight, next%omega_start, &
             next%omega) > 0.0_dp)
       end associate
       if (len(words) == 0) return
@@ -123,9 +123,9 @@ contains
       words = ''
       if (contact%several) words = &
          'with so much friction other contact states satisfy all conditions, too'
-      if (size(contact%loose, 2) > 0 .or. any(next%idle)) then
-         free = unconstrained_now(model, bodies%pairs, loads%displacement%active, &
-            merge(status_open, next%contact%status, next%idle .or. next%resting))
+      if (size(contact%unconstrained, 2) > 0 .or. any(next%idle)) then
+         free = unconstrained_now(model, bodies%points, loads%displacement%active, &
+            merge(contact_open, next%contact%contact_state, next%idle .or. next%resting))
          if (len(free) > 0) words = &
             'the least motion is taken where nothing drives or holds one'//free
       end if

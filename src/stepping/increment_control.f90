@@ -11,7 +11,7 @@ module increment_control
    private
    public :: increment_control_type
 
-   !> Place in the steps, and size of the next increment.
+   !> Position in the steps, and size of the next increment.
    type :: increment_control_type
       integer :: step = 0                     !! present step
       integer :: increments = 0               !! increments so far, over all steps
@@ -37,7 +37,7 @@ contains
 
    !> Enters the next step.
    pure subroutine enter_step(self, model)
-      class(increment_control_type), intent(inout) :: self   !! place in the steps
+      class(increment_control_type), intent(inout) :: self   !! position in the steps
       type(model_type), intent(in) :: model
 
       if (self%step > 0) self%step_start = self%step_start + model%steps(self%step)%period
@@ -73,7 +73,7 @@ contains
 
    !> Whether the present step is solved to its end.
    pure logical function step_is_over(self, model)
-      class(increment_control_type), intent(in) :: self   !! place in the steps
+      class(increment_control_type), intent(in) :: self   !! position in the steps
       type(model_type), intent(in) :: model
 
       step_is_over = self%step_time >= model%steps(self%step)%period
@@ -81,7 +81,7 @@ contains
 
    !> The end of the next increment.
    pure function next_instant(self, model) result(clock)
-      class(increment_control_type), intent(in) :: self   !! place in the steps
+      class(increment_control_type), intent(in) :: self   !! position in the steps
       type(model_type), intent(in) :: model
       type(step_clock_type) :: clock                      !! the instant
 
@@ -97,7 +97,7 @@ contains
    !> How many increments the whole run takes where no further one is cut back or ends before its
    !> time on an instant of the deck.
    pure integer function planned(self, model)
-      class(increment_control_type), intent(in) :: self   !! place in the steps
+      class(increment_control_type), intent(in) :: self   !! position in the steps
       type(model_type), intent(in) :: model
       real(dp), parameter :: rounding = 1.0e-6_dp
       real(dp) :: left(size(model%steps))
@@ -111,7 +111,7 @@ contains
 
    !> Goes on behind an increment that converged.
    pure subroutine accept(self, model, clock)
-      class(increment_control_type), intent(inout) :: self   !! place in the steps
+      class(increment_control_type), intent(inout) :: self   !! position in the steps
       type(model_type), intent(in) :: model
       type(step_clock_type), intent(in) :: clock             !! its end
 
@@ -126,7 +126,7 @@ contains
 
    !> Whether an increment that failed may be tried again with a smaller size.
    pure logical function can_cut_back(self, model, failed)
-      class(increment_control_type), intent(in) :: self   !! place in the steps
+      class(increment_control_type), intent(in) :: self   !! position in the steps
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: failed                      !! size that failed [time]
 
@@ -137,7 +137,7 @@ contains
 
    !> Makes the next attempt shorter than one that failed.
    pure subroutine cut_back(self, model, failed)
-      class(increment_control_type), intent(inout) :: self   !! place in the steps
+      class(increment_control_type), intent(inout) :: self   !! position in the steps
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: failed                         !! size that failed [time]
 
@@ -147,7 +147,7 @@ contains
 
    !> Says where the run ends, and why the increment is not tried again.
    pure function why_not_again(self, model, failed) result(words)
-      class(increment_control_type), intent(in) :: self   !! place in the steps
+      class(increment_control_type), intent(in) :: self   !! position in the steps
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: failed                      !! size that failed [time]
       character(:), allocatable :: words                  !! part of a sentence

@@ -4,8 +4,8 @@ module increment_records
    use balances, only: contact_violation, force_residual, imbalance
    use conductance_laws, only: conductance
    use contact_operator, only: kept_contact, thermal_forces
-   use contact_pairs, only: contact_pairs_type
-   use contact_states, only: contact_state_type, status_open, status_slip, status_stick
+   use contact_pairs, only: contact_points_type
+   use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery
    use element_kinds, only: axisymmetric
@@ -15,7 +15,7 @@ module increment_records
    use loads, only: loads_type
    use mesh, only: extent_of
    use model, only: model_type
-   use pair_tractions, only: in_contact, pressures, shears
+   use contact_tractions, only: in_contact, pressures, shears
    use records, only: contact_record_type, increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: carrying_conductance, solution_state_type
@@ -34,7 +34,7 @@ module increment_records
 
 contains
 
-   !> Completes the record of an increment, which has its place in the steps and its passes, with
+   !> Completes the record of an increment, which has its position in the steps and its passes, with
    !> contact state, fields and balances. What the step does not solve stands as the last step that
    !> did left it; stress and flux with their errors are made where needed.
    pure subroutine complete_record(bodies, model, recovery, loads, previous, next, record)
@@ -120,58 +120,58 @@ contains
       logical :: closed(size(bodies%interfaces(i)%slave_node)), touches(size(closed))
       integer :: first, k, last
 
-      first = bodies%pairs%interface_start(i)
-      last = bodies%pairs%interface_start(i + 1) - 1
+      first = bodies%points%interface_start(i)
+      last = bodies%points%interface_start(i + 1) - 1
       contact = kept_contact(next%contact, next%has_mechanics)
-      associate (pairs => bodies%interfaces(i))
-         record%status = contact%status(first:last)
-         where (next%idle(first:last)) record%status = merge(status_slip, status_open, &
+      associate (points => bodies%interfaces(i))
+         record%contact_state = contact%contact_state(first:last)
+         where (next%idle(first:last)) record%contact_state = merge(contact_slip, contact_open, &
             next%resting(first:last))
          record%gap = contact%gap(first:last)
          record%smallest_gap = next%smallest_gap(first:last)
-         closed = record%status /= status_open
-         if (next%has_mechanics) closed = in_contact(pairs, closed, record%gap, &
+         closed = record%contact_state /= contact_open
+         if (next%has_mechanics) closed = in_contact(points, closed, record%gap, &
             contact%force(first:last), bodies%contact%alone(first:last))
-         touches = closed .and. record%status == status_open
+         touches = closed .and. record%contact_state == contact_open
          where (touches)
-            record%status = merge(status_stick, status_slip, &
-               bodies%pairs%friction(first:last) > 0.0_dp)
+            record%contact_state = merge(contact_stick, contact_slip, &
+               bodies%points%friction(first:last) > 0.0_dp)
             record%gap = 0.0_dp
          end where
-         call measure_contact(pairs, bodies%pairs%friction(first), closed, &
+         call measure_contact(points, bodies%points%friction(first), closed, &
             contact%force(first:last), contact%shear_force(first:last), record)
          record%slip = contact%tangential(first:last) - contact%slip_origin(first:last)
          if (allocated(bodies%thermal%matrix%value)) then
-            record%slave_temperature = next%temperature(pairs%slave_node)
-            record%master_temperature = next%temperature(pairs%master_node)
+            record%slave_temperature = next%temperature(points%slave_node)
+            record%master_temperature = next%temperature(points%master_node)
          end if
          if (.not. with_heat) return
          record%conductance = carrying(first:last)
          do k = 1, size(touches)
             if (touches(k)) record%conductance(k) = conductance( &
-               bodies%pairs%law(first - 1 + k), .true., 0.0_dp, record%pressure(k))
+               bodies%points%law(first - 1 + k), .true., 0.0_dp, record%pressure(k))
          end do
          record%heat_flux = record%conductance*next%jump(first:last)
-         record%heat_rate = sum(pairs%weight*record%heat_flux)
+         record%heat_rate = sum(points%weight*record%heat_flux)
       end associate
    end function contact_record
 
    !> Tractions, sums and edges of an interface from its nodal forces.
-   pure subroutine measure_contact(pairs, friction, closed, force, shear_force, record)
-      type(contact_pairs_type), intent(in) :: pairs        !! the pairs of the interface
+   pure subroutine measure_contact(points, friction, closed, force, shear_force, record)
+      type(contact_points_type), intent(in) :: points      !! the contact points of the interface
       real(dp), intent(in) :: friction                     !! mu [-]
-      logical, intent(in) :: closed(:)                     !! (m) pairs that have a traction
+      logical, intent(in) :: closed(:)                    !! (m) contact points that have a traction
       real(dp), intent(in) :: force(:)                     !! (m) 0 at the others [force]
       real(dp), intent(in) :: shear_force(:)               !! (m) on the slave [force]
       type(contact_record_type), intent(inout) :: record   !! has states and gaps
 
-      record%pressure = pressures(pairs, force, closed)
-      record%shear = shears(pairs, shear_force, closed, friction, record%pressure)
+      record%pressure = pressures(points, force, closed)
+      record%shear = shears(points, shear_force, closed, friction, record%pressure)
       record%normal_force = sum(force)
       record%shear_force = sum(shear_force)
-      call contact_edges(pairs%arc_length, record%status, record%pressure, record%gap, &
+      call contact_edges(points%arc_length, record%contact_state, record%pressure, record%gap, &
          record%edges_contact, record%edge_contact)
-      call stick_edges(pairs%arc_length, pairs%weight, record%status, record%pressure, &
+      call stick_edges(points%arc_length, points%weight, record%contact_state, record%pressure, &
          record%shear, record%gap, friction, record%edges_stick, record%edge_stick)
    end subroutine measure_contact
 
@@ -204,12 +204,12 @@ contains
 
       least = least_displacement(model, next%temperature)
       length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp))
-      if (size(bodies%pairs%initial_gap) > 0) then
-         length = max(length, noise*maxval(abs(bodies%pairs%initial_gap)))
+      if (size(bodies%points%initial_gap) > 0) then
+         length = max(length, noise*maxval(abs(bodies%points%initial_gap)))
       end if
       internal = bodies%mechanical%matrix%multiply(next%displacement) - &
          thermal_forces(bodies, next%temperature)
-      residual = force_residual(internal, next%force_load, bodies%pairs, next%contact)
+      residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       associate (held => loads%displacement%active)
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*maxval(abs(bodies%mechanical%matrix%value))* &
@@ -218,7 +218,7 @@ contains
          record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
             [along_x, .true.], scale)
          record%contact_violation = contact_violation(next%displacement, &
-            internal - next%force_load, held, bodies%pairs, next%contact, &
+            internal - next%force_load, held, bodies%points, next%contact, &
             bodies%contact%tangent > 0, length, scale)
          record%fields%reaction = reshape(merge(residual, 0.0_dp, held), &
             [2, size(next%temperature)])

@@ -10,7 +10,7 @@ module increments
    use increment_control, only: increment_control_type
    use increment_data, only: increment_workspace_type
    use increment_records, only: complete_record
-   use increment_solution, only: recover_fields, solve_pairs
+   use increment_solution, only: recover_fields, solve_points
    use initial_state, only: make_initial_state
    use kinds, only: dp
    use load_histories, only: step_clock_type
@@ -38,7 +38,7 @@ module increments
       type(recovery_type) :: recovery               !! stress and flux with their errors
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
-      type(increment_control_type) :: control       !! place in the steps, size of increments
+      type(increment_control_type) :: control       !! position in the steps, size of increments
       type(run_seconds_type) :: seconds             !! where the time went
       type(run_size_type) :: sizes                  !! sizes over all steps
       character(:), allocatable :: undecided        !! what was last warned of
@@ -72,7 +72,7 @@ contains
       call self%loads%prepare(model)
       self%state = make_initial_state(model, self%bodies)
       self%seconds%assemble = (wall_seconds() - since)
-      call measure_steps(model, self%bodies%pairs, self%loads, self%state, self%sizes, error)
+      call measure_steps(model, self%bodies%points, self%loads, self%state, self%sizes, error)
       if (.not. allocated(error)) call enter_step(self, model, error)
    end subroutine start
 
@@ -268,7 +268,7 @@ contains
             call measure_factors(bodies, self%sizes)
          end if
          since = wall_seconds()
-         call solve_pairs(bodies, self%loads, step, self%state, workspace, next, error)
+         call solve_points(bodies, self%loads, step, self%state, workspace, next, error)
          record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
@@ -276,8 +276,8 @@ contains
          end if
          if (allocated(error)) then
             if (workspace%contact%driven) error%message = error%message// &
-               unconstrained_now(model, bodies%pairs, self%loads%displacement%active, &
-               next%contact%status)
+               unconstrained_now(model, bodies%points, self%loads%displacement%active, &
+               next%contact%contact_state)
             return
          end if
          if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &

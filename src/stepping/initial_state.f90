@@ -1,8 +1,8 @@
-!> The state before the first increment: nothing moved, pairs at their initial gaps. Pairs without
-!> a gap conduct as closed ones that carry no pressure.
+!> The state before the first increment: nothing moved, contact points at their initial gaps.
+!> Contact points without a gap conduct as closed ones that carry no pressure.
 module initial_state
    use contact_operator, only: kept_contact, law_conductance
-   use contact_states, only: status_open
+   use contact_states, only: contact_open
    use kinds, only: dp
    use model, only: model_type
    use reduced_bodies, only: reduced_bodies_type
@@ -16,16 +16,16 @@ contains
    !> State before the first increment.
    pure function make_initial_state(model, bodies) result(state)
       type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies     !! the bodies, paired
+      type(reduced_bodies_type), intent(in) :: bodies     !! the bodies, matched
       type(solution_state_type) :: state                          !! see above
 
-      associate (m => size(bodies%pairs%slave), n => size(model%mesh%node_number), &
+      associate (m => size(bodies%points%slave), n => size(model%mesh%node_number), &
          contact => state%contact)
-         allocate (contact%status(m), source=status_open)
+         allocate (contact%contact_state(m), source=contact_open)
          allocate (contact%direction(m), source=0)
          allocate (contact%reference(m), contact%tangential(m), contact%slip_origin(m), &
             contact%force(m), contact%shear_force(m), source=0.0_dp)
-         contact%gap = bodies%pairs%initial_gap
+         contact%gap = bodies%points%initial_gap
          state%smallest_gap = contact%gap
          allocate (state%resting(m), state%idle(m), source=.false.)
          state%omega = law_conductance(bodies, kept_contact(contact, has_mechanics=.false.))
@@ -33,8 +33,8 @@ contains
          state%omega_start = state%omega
          allocate (state%displacement(2*n), state%heat_load(n), source=0.0_dp)
          state%temperature = model%initial_temperature
-         state%jump = model%initial_temperature(bodies%pairs%slave) - &
-            model%initial_temperature(bodies%pairs%master)
+         state%jump = model%initial_temperature(bodies%points%slave) - &
+            model%initial_temperature(bodies%points%master)
       end associate
    end function make_initial_state
 

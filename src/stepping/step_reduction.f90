@@ -1,5 +1,5 @@
-!> The bodies as a step needs them: unknowns numbered for its supports, fields reduced to the pairs.
-!> What is numbered and reduced already is kept from step to step.
+!> The bodies as a step needs them: unknowns numbered for its supports, fields reduced to the
+!> contact points. What is numbered and reduced already is kept from step to step.
 module step_reduction
    use clock, only: wall_seconds
    use conductance_laws, only: is_constant
@@ -8,7 +8,7 @@ module step_reduction
    use linear_solver, only: linear_solver_type
    use loads, only: loads_type
    use model, only: model_type
-   use pair_rows, only: pair_row_type
+   use all_contact_points, only: all_contact_points_type
    use reduced_bodies, only: reduced_bodies_type
    use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
@@ -62,9 +62,9 @@ contains
 
    !> Numbers every step in turn, for the largest problems and for mistakes in its supports.
    !> Error: as number.
-   subroutine measure_steps(model, pairs, loads, state, sizes, error)
+   subroutine measure_steps(model, points, loads, state, sizes, error)
       type(model_type), intent(in) :: model
-      type(pair_row_type), intent(in) :: pairs              !! pairs of all interfaces
+      type(all_contact_points_type), intent(in) :: points   !! contact points of all interfaces
       type(loads_type), intent(in) :: loads                 !! loads before the first step
       type(solution_state_type), intent(in) :: state        !! state before it
       type(run_size_type), intent(inout) :: sizes           !! receives the numbers of unknowns
@@ -74,8 +74,8 @@ contains
       type(step_reduction_type) :: reduction
       integer :: step, unknowns
 
-      ! Supports say which pairs are held; those of later steps must not show in the first.
-      trial%pairs = pairs
+      ! Supports say which contact points are held; those of later steps must not show in the first.
+      trial%points = points
       given = loads
       do step = 1, size(model%steps)
          call given%begin_step(model%steps(step), state%displacement, state%temperature)
@@ -135,7 +135,7 @@ contains
       since = wall_seconds()
       if (heat) bodies%thermal%added = film
       call bodies%reduce(model, mechanics, heat, solves_heat(step%analysis) .and. &
-         solves_mechanics(step%analysis) .and. .not. all(is_constant(bodies%pairs%law)), error)
+         solves_mechanics(step%analysis) .and. .not. all(is_constant(bodies%points%law)), error)
       self%mechanics_is_reduced = self%mechanics_is_reduced .or. (mechanics .and. &
          .not. allocated(error))
       self%heat_is_reduced = self%heat_is_reduced .or. (heat .and. .not. allocated(error))

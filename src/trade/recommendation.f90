@@ -1,10 +1,10 @@
-!> Which rows of a trade are worth their cost: those that none beats, and the cheapest for a wish.
+!> Which rows of a trade are worth their cost: those that none beats, and the cheapest for a target.
 module recommendation
    use kinds, only: dp
    use reported_quantities, only: traded
    use text, only: to_text
    use trade_quantities, only: is_there, quantity_count
-   use trade_rows, only: trade_type, wish_count, wishes
+   use trade_rows, only: trade_type, target_count, targets
    implicit none
    private
    public :: judge_rows, are_optimal, rounded
@@ -14,19 +14,19 @@ module recommendation
 contains
 
    !> Marks the rows that are Pareto-optimal by CPU seconds and worst error, both with two digits,
-   !> negligible errors as one; recommends one row for each wish, the cheapest that meets it in all
-   !> quantities that can be known so well, and meets the wishes before it likewise.
+   !> negligible errors as one; recommends one row for each target, the cheapest that meets it in
+   !> all quantities that can be known so well, and meets the targets before it likewise.
    pure subroutine judge_rows(trade)
       type(trade_type), intent(inout) :: trade   !! the trade, with the errors of its rows
-      integer :: wish
+      integer :: target_index
 
       associate (rows => trade%rows(:trade%count))
          rows%is_optimal = are_optimal(rounded(rows%cpu_seconds), &
             rounded(max(rows%worst, negligible)), &
             rows%status == 0 .and. is_there(rows%worst))
       end associate
-      do wish = 1, wish_count
-         call recommend(trade, wish)
+      do target_index = 1, target_count
+         call recommend(trade, target_index)
       end do
    end subroutine judge_rows
 
@@ -45,20 +45,20 @@ contains
       end do
    end function are_optimal
 
-   pure subroutine recommend(trade, wish)
+   pure subroutine recommend(trade, target_index)
       type(trade_type), intent(inout) :: trade
-      integer, intent(in) :: wish
+      integer, intent(in) :: target_index
       logical :: is_reachable(quantity_count), meets
       integer :: q, i, k, best
 
-      is_reachable = reachable(trade, wish)
+      is_reachable = reachable(trade, target_index)
       best = 0
       if (any(is_reachable)) then
          do i = 1, trade%count
             associate (row => trade%rows(i))
                meets = row%status == 0
-               do k = 1, wish
-                  meets = meets .and. all(row%errors <= wishes(k) .or. .not. reachable(trade, k))
+               do k = 1, target_index
+                  meets = meets .and. all(row%errors <= targets(k) .or. .not. reachable(trade, k))
                end do
                if (.not. meets) cycle
                if (best > 0) meets = row%cpu_seconds < trade%rows(best)%cpu_seconds
@@ -66,41 +66,42 @@ contains
             end associate
          end do
       end if
-      if (best > 0) trade%rows(best)%is_recommended(wish) = .true.
-      trade%remarks(wish)%value = ''
+      if (best > 0) trade%rows(best)%is_recommended(target_index) = .true.
+      trade%remarks(target_index)%value = ''
       do q = 1, quantity_count
          if (is_reachable(q) .or. .not. trade%is_known(q)) cycle
-         call remark(trade, wish, q, trade%remarks(wish)%value)
+         call remark(trade, target_index, q, trade%remarks(target_index)%value)
       end do
-      if (best > 0 .or. len(trade%remarks(wish)%value) > 0) return
-      trade%remarks(wish)%value = 'no row meets it in all quantities'
-      if (.not. any(trade%is_known)) trade%remarks(wish)%value = 'there is nothing to judge by'
+      if (best > 0 .or. len(trade%remarks(target_index)%value) > 0) return
+      trade%remarks(target_index)%value = 'no row meets it in all quantities'
+      if (.not. any(trade%is_known)) trade%remarks(target_index)%value = &
+         'there is nothing to judge by'
    end subroutine recommend
 
-   !> Quantities that some row has as well as wished.
-   pure function reachable(trade, wish) result(is_reachable)
+   !> Quantities that some row has as well as its target asks.
+   pure function reachable(trade, target_index) result(is_reachable)
       type(trade_type), intent(in) :: trade
-      integer, intent(in) :: wish
+      integer, intent(in) :: target_index
       logical :: is_reachable(quantity_count)
       integer :: i
 
       is_reachable = .false.
       do i = 1, trade%count
          if (trade%rows(i)%status == 0) is_reachable = is_reachable .or. (trade%is_known .and. &
-            trade%rows(i)%errors <= wishes(wish))
+            trade%rows(i)%errors <= targets(target_index))
       end do
    end function reachable
 
-   !> Says how well a quantity is known that no row has as well as wished.
-   pure subroutine remark(trade, wish, q, words)
+   !> Says how well a quantity is known that no row has as well as its target asks.
+   pure subroutine remark(trade, target_index, q, words)
       type(trade_type), intent(in) :: trade
-      integer, intent(in) :: wish, q
+      integer, intent(in) :: target_index, q
       character(:), allocatable, intent(inout) :: words
       real(dp) :: closest
       integer :: i
 
       if (len(words) > 0) words = words//'; '
-      if (trade%uncertainty(q) >= wishes(wish)) then
+      if (trade%uncertainty(q) >= targets(target_index)) then
          words = words//trim(traded(q)%name)//': the reference itself is uncertain by '// &
             to_text(100.0_dp*rounded(trade%uncertainty(q)))//' %'
          return

@@ -68,8 +68,8 @@ contains
       call simulation%reduce(model, error)
       if (allocated(error)) return
       nodes = node_indexes(model, self%nodes)
-      associate (pairs => simulation%bodies%interfaces)
-         call values%prepare(size(pairs), size(nodes), size(self%instants))
+      associate (interfaces => simulation%bodies%interfaces)
+         call values%prepare(size(interfaces), size(nodes), size(self%instants))
          do while (.not. simulation%finished(model))
             if (caught_signal() /= '') then
                call set_error(error, status_interrupted, 'ended by '//caught_signal())
@@ -84,7 +84,7 @@ contains
                values%imbalance = record%heat_imbalance_pointwise
             end if
             instant = instant_at(self%instants, record%time)
-            if (instant > 0) call values%sample(record, pairs, nodes, instant)
+            if (instant > 0) call values%sample(record, interfaces, nodes, instant)
          end do
       end associate
    end subroutine solve

@@ -57,7 +57,7 @@ contains
 
    !> Largest distance over the interfaces and instants.
    pure real(dp) function distance(expected, found, scale)
-      real(dp), intent(in) :: expected(:, :), found(:, :), scale(:, :)   !! (pairs, instants)
+      real(dp), intent(in) :: expected(:, :), found(:, :), scale(:, :) !! (contact points, instants)
       integer :: i, t
 
       distance = 0.0_dp
@@ -75,7 +75,7 @@ contains
 
    !> What errors are relative to: the value at the instant, for edges the length of the contact; a
    !> quarter of the largest over time where that is more, and a hundredth of the largest of all
-   !> contact pairs. 0 where there is nothing to measure.
+   !> interfaces. 0 where there is nothing to measure.
    pure function scales_of(reference) result(scales)
       type(reference_type), intent(in) :: reference
       real(dp), allocatable :: scales(:, :, :)

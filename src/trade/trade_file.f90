@@ -7,7 +7,7 @@ module trade_file
    use reported_quantities, only: traded
    use text, only: to_text
    use trade_quantities, only: is_there, quantity_count
-   use trade_rows, only: trade_row_type, trade_type, wish_count
+   use trade_rows, only: trade_row_type, trade_type, target_count
    use trade_table, only: elements_of
    implicit none
    private
@@ -15,7 +15,7 @@ module trade_file
 
    character(*), parameter :: first_columns = 'row,default,elements,level,increment_factor,'// &
       'varied,status,reason,increments,passes,runs,cpu_seconds,peak_megabytes'
-   character(3), parameter :: wish_names(wish_count) = ['10 ', '1  ', '0.1']
+   character(3), parameter :: target_names(target_count) = ['10 ', '1  ', '0.1']
 
 contains
 
@@ -45,8 +45,8 @@ contains
          line = line//',error_'//trim(traded(i)%name)
       end do
       line = line//',error_worst,pareto'
-      do i = 1, wish_count
-         line = line//',recommended_'//trim(wish_names(i))
+      do i = 1, target_count
+         line = line//',recommended_'//trim(target_names(i))
       end do
    end function heading
 
@@ -64,7 +64,7 @@ contains
          scientific(row%cpu_seconds)//','//scientific(row%peak_bytes/1.0e6_dp)// &
          errors_text(row%errors)//','// &
          number_or_empty(row%worst)//','//flag(row%is_optimal)
-      do i = 1, wish_count
+      do i = 1, target_count
          line = line//','
          if (.not. row%is_recommended(i)) cycle
          if (len(trade%remarks(i)%value) == 0) then
@@ -80,7 +80,7 @@ contains
       character(:), allocatable :: line
 
       line = 'reference'//repeat(',', 12)//errors_text(trade%uncertainty)//','// &
-         number_or_empty(maxval(trade%uncertainty))//repeat(',', wish_count + 1)
+         number_or_empty(maxval(trade%uncertainty))//repeat(',', target_count + 1)
    end function reference_text
 
    pure function errors_text(errors) result(text)

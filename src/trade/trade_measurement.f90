@@ -87,16 +87,16 @@ contains
    end subroutine set_error_once
 
    !> Begins a run of a row.
-   subroutine begin(self, trade, row, place, slot, error)
+   subroutine begin(self, trade, row, position, slot, error)
       class(measurement_type), intent(inout) :: self
       type(trade_type), intent(in) :: trade
-      integer, intent(in) :: row, place
+      integer, intent(in) :: row, position
       type(slot_type), intent(out) :: slot
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: line
 
       self%task%variation = trade%rows(row)%variation
-      self%task%values_path = values_path(self, place)
+      self%task%values_path = values_path(self, position)
       line = 'row '//to_text(row)//' of level '//to_text(trade%rows(row)%level)
       if (allocated(trade%rows(row)%cpu)) line = line//', run '// &
          to_text(size(trade%rows(row)%cpu) + 1)
@@ -135,11 +135,11 @@ contains
    end subroutine wait_for_one
 
    !> Takes what a run left; after the first one its repetitions are queued.
-   subroutine take(self, row, slot, place, queue, queued)
+   subroutine take(self, row, slot, position, queue, queued)
       class(measurement_type), intent(in) :: self
       type(trade_row_type), intent(inout) :: row
       type(slot_type), intent(inout) :: slot
-      integer, intent(in) :: place
+      integer, intent(in) :: position
       integer, intent(inout) :: queue(:), queued
       integer :: again
 
@@ -151,7 +151,7 @@ contains
             return
          end if
          row%cpu = [ended%cpu_seconds]
-         call take_outcome(self, row, slot, place)
+         call take_outcome(self, row, slot, position)
          if (row%status /= 0) return
          again = runs_within(count(ended%cpu_seconds > moments) + 1) - 1
       end associate
@@ -159,11 +159,11 @@ contains
       queued = queued + again
    end subroutine take
 
-   subroutine take_outcome(self, row, slot, place)
+   subroutine take_outcome(self, row, slot, position)
       class(measurement_type), intent(in) :: self
       type(trade_row_type), intent(inout) :: row
       type(slot_type), intent(inout) :: slot
-      integer, intent(in) :: place
+      integer, intent(in) :: position
       type(report_type) :: report
       type(error_type), allocatable :: error
 
@@ -178,19 +178,19 @@ contains
       if (slot%child%end%signal /= 0 .or. report%is_whole == 0) return
       row%status = int(report%status)
       row%reason = reason_of(report)
-      call row%values%load(values_path(self, place), error)
+      call row%values%load(values_path(self, position), error)
       if (row%status == 0 .and. allocated(error)) then
          row%status = error%status
          row%reason = error%message
       end if
    end subroutine take_outcome
 
-   pure function values_path(self, place) result(path)
+   pure function values_path(self, position) result(path)
       class(measurement_type), intent(in) :: self
-      integer, intent(in) :: place
+      integer, intent(in) :: position
       character(:), allocatable :: path
 
-      path = self%scratch//'.'//to_text(place)//'.values.tmp'
+      path = self%scratch//'.'//to_text(position)//'.values.tmp'
    end function values_path
 
    !> The median of some numbers.

@@ -1,10 +1,10 @@
-!> What rows of a trade are compared by: figures of every contact pair and temperatures, at instants
+!> What rows of a trade are compared by: figures of every interface and temperatures, at instants
 !> that all rows meet.
 module trade_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use contact_pairs, only: contact_pairs_type
+   use contact_pairs, only: contact_points_type
    use contact_quantities, only: contact_values
-   use contact_states, only: status_open
+   use contact_states, only: contact_open
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
    use records, only: contact_record_type, increment_record_type
@@ -16,7 +16,7 @@ module trade_quantities
 
    integer, parameter :: quantity_count = size(traded)   !! quantities that rows are judged by
    integer, parameter :: temperature = quantity_count    !! the last: of the nodes, the worst
-   integer, parameter :: figure_count = quantity_count - 1   !! the others: a number a contact pair
+   integer, parameter :: figure_count = quantity_count - 1   !! the others: a number an interface
 
    real(dp), parameter :: absent = -1.0e300_dp   !! in place of what there is none of
 
@@ -25,9 +25,9 @@ module trade_quantities
       integer :: increments = 0                        !! increments that were accepted
       integer :: passes = 0                            !! passes of the fixed point in all of them
       real(dp) :: imbalance = 0.0_dp !! largest of heat at the end of an increment, relative
-      !> (figure_count, contact pairs or 1 without, instants); absent where there is none
+      !> (figure_count, interfaces or 1 without, instants); absent where there is none
       real(dp), allocatable :: figures(:, :, :)
-      real(dp), allocatable :: length(:, :)            !! (pairs, instants) closed length [length]
+      real(dp), allocatable :: length(:, :)     !! (contact points, instants) closed length [length]
       real(dp), allocatable :: temperatures(:, :)      !! (nodes, instants), 0 nodes without heat
    contains
       procedure :: prepare
@@ -48,7 +48,7 @@ contains
    !> Makes room; nothing is there yet.
    pure subroutine prepare(self, interfaces, nodes, instants)
       class(row_values_type), intent(inout) :: self
-      integer, intent(in) :: interfaces               !! number of contact pairs of surfaces
+      integer, intent(in) :: interfaces               !! number of interfaces
       integer, intent(in) :: nodes                    !! nodes whose temperature is compared
       integer, intent(in) :: instants                 !! instants at which rows are compared
 
@@ -58,23 +58,24 @@ contains
    end subroutine prepare
 
    !> Takes what there is at an instant.
-   subroutine sample(self, record, pairs, nodes, instant)
+   subroutine sample(self, record, interfaces, nodes, instant)
       class(row_values_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record     !! the increment that ends there
-      type(contact_pairs_type), intent(in) :: pairs(:)      !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: nodes(:)                       !! (nodes) indexes
       integer, intent(in) :: instant                        !! which instant
       integer :: i, q
 
       self%temperatures(:, instant) = record%fields%temperature(nodes)
       ! Without contact the heat that enters stands for that through the contact.
-      if (size(pairs) == 0) self%figures(figure('heat_rate'), 1, instant) = finite(record%heat_in)
-      do i = 1, size(pairs)
+      if (size(interfaces) == 0) self%figures(figure('heat_rate'), 1, instant) = &
+         finite(record%heat_in)
+      do i = 1, size(interfaces)
          do q = 1, figure_count
-            self%figures(q:q, i, instant) = finite(contact_values(traded(q)%name, pairs(i), &
+            self%figures(q:q, i, instant) = finite(contact_values(traded(q)%name, interfaces(i), &
                record%contacts(i)))
          end do
-         self%length(i, instant) = closed_length(record%contacts(i), pairs(i)%arc_length)
+         self%length(i, instant) = closed_length(record%contacts(i), interfaces(i)%arc_length)
       end do
    end subroutine sample
 
@@ -94,7 +95,7 @@ contains
 
       length = 0.0_dp
       do k = 1, size(s)
-         if (contact%status(k) == status_open) cycle
+         if (contact%contact_state(k) == contact_open) cycle
          length = length + 0.5_dp*(s(min(k + 1, size(s))) - s(max(k - 1, 1)))
       end do
    end function closed_length

@@ -24,10 +24,11 @@ module trade_reference
    !> The reference.
    type :: reference_type
       logical :: is_known = .false.                    !! whether there is one
-      real(dp), allocatable :: figures(:, :, :)        !! (figures, pairs, instants), or absent
+      real(dp), allocatable :: figures(:, :, :)    !! (figures, contact points, instants), or absent
       real(dp), allocatable :: temperatures(:, :)      !! (nodes, instants)
-      real(dp), allocatable :: length(:, :)            !! (pairs, instants) closed length [length]
-      real(dp), allocatable :: uncertainty(:, :, :)    !! (figures, pairs, instants), as figures
+      real(dp), allocatable :: length(:, :)     !! (contact points, instants) closed length [length]
+      !> (figures, contact points, instants), as figures
+      real(dp), allocatable :: uncertainty(:, :, :)
       real(dp) :: temperature_uncertainty = 0.0_dp     !! largest of nodes and instants [temp.]
       logical :: is_contradictory(quantity_count) = .false.   !! some rows have it, others not
    end type reference_type

@@ -6,10 +6,10 @@ module trade_rows
    use variations, only: variation_type
    implicit none
    private
-   public :: trade_row_type, trade_type, wishes, wish_count
+   public :: trade_row_type, trade_type, targets, target_count
 
-   integer, parameter :: wish_count = 3                                   !! wishes for accuracy
-   real(dp), parameter :: wishes(wish_count) = [0.1_dp, 0.01_dp, 0.001_dp]   !! relative errors
+   integer, parameter :: target_count = 3                                 !! target accuracies
+   real(dp), parameter :: targets(target_count) = [0.1_dp, 0.01_dp, 0.001_dp] !! relative errors
 
    !> One row: a variation of the deck, measured.
    type :: trade_row_type
@@ -28,7 +28,7 @@ module trade_rows
       real(dp) :: errors(quantity_count) = absent       !! stated errors [-]
       real(dp) :: worst = absent                        !! largest of them
       logical :: is_optimal = .false.                   !! no row is both cheaper and better
-      logical :: is_recommended(wish_count) = .false.   !! for a wish
+      logical :: is_recommended(target_count) = .false. !! for a target
    end type trade_row_type
 
    !> A trade.
@@ -39,7 +39,7 @@ module trade_rows
       real(dp) :: uncertainty(quantity_count) = absent  !! of the reference; absent: not judged
       logical :: is_known(quantity_count) = .false.     !! whether there is a reference to judge by
       !> What a recommendation does not hold for, or why there is none; empty for neither
-      type(string_type) :: remarks(wish_count)
+      type(string_type) :: remarks(target_count)
       real(dp), allocatable :: instants(:)              !! total times of comparison [time]
    end type trade_type
 

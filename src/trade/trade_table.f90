@@ -6,7 +6,7 @@ module trade_table
    use reported_quantities, only: traded
    use text, only: to_text
    use trade_quantities, only: is_there, quantity_count
-   use trade_rows, only: trade_row_type, trade_type, wish_count, wishes
+   use trade_rows, only: trade_row_type, trade_type, target_count, targets
    implicit none
    private
    public :: print_trade, print_imbalances, elements_of, factor_text
@@ -44,8 +44,8 @@ contains
          write (unit, '(2a)') 'left out by --limit or memory: ', trade%left_out(i)%value
       end do
       write (unit, '(a)') ''
-      do i = 1, wish_count
-         call print_wish(unit, trade, i)
+      do i = 1, target_count
+         call print_target(unit, trade, i)
       end do
    end subroutine print_trade
 
@@ -115,14 +115,14 @@ contains
       write (unit, '(2a)') 'compared at the times', times
    end subroutine print_instants
 
-   subroutine print_wish(unit, trade, wish)
-      integer, intent(in) :: unit, wish
+   subroutine print_target(unit, trade, target_index)
+      integer, intent(in) :: unit, target_index
       type(trade_type), intent(in) :: trade
       integer :: i
 
-      associate (rows => trade%rows(:trade%count), remark => trade%remarks(wish)%value)
-         i = findloc(rows%is_recommended(wish), .true., dim=1)
-         write (unit, '(3a)', advance='no') 'for ', to_text(100.0_dp*wishes(wish)), ' %'
+      associate (rows => trade%rows(:trade%count), remark => trade%remarks(target_index)%value)
+         i = findloc(rows%is_recommended(target_index), .true., dim=1)
+         write (unit, '(3a)', advance='no') 'for ', to_text(100.0_dp*targets(target_index)), ' %'
          if (i == 0) then
             write (unit, '(2a)') ': no row; ', remark
             return
@@ -134,7 +134,7 @@ contains
             seconds_text(rows(i)%cpu_seconds), ' s of CPU'
          if (len(remark) > 0) write (unit, '(7x, 2a)') 'but not for ', remark
       end associate
-   end subroutine print_wish
+   end subroutine print_target
 
    pure function seconds_text(seconds) result(text)
       real(dp), intent(in) :: seconds

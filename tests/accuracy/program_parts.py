@@ -2,20 +2,20 @@
 that all decks need, which exist for that part only."""
 
 CONTACT_FOLDER = {
-    "active_set", "pair_tractions", "chain_geometry", "closing_instant", "lemke_path",
+    "active_set", "contact_tractions", "chain_geometry", "closing_instant", "lemke_path",
     "contact_pairs", "contact_rows", "contact_states", "contact_system", "contact_tangent",
-    "contact_workspace", "friction", "pair_checks", "pair_warnings", "surface_chains",
+    "contact_workspace", "friction", "interface_checks", "interface_warnings", "surface_chains",
     "unconstrained_motions", "zone_edges",
 }
 COUPLING = {
     "accelerators", "anderson", "conductance_graph", "contact_operator:contact_operator_pass",
     "contact_operator:residual_floor", "contact_tangent", "coupled_increment", "coupling_gains",
     "fixed_point", "increment_iteration", "reduced_bodies:form_jump_load", "newton",
-    "opening_derivatives", "resting_pairs",
+    "opening_derivatives", "resting_points",
 }
 PARTS = {
     "heat": {
-        "balances:heat_residual", "balances:scheme_pair_heat", "element_conduction",
+        "balances:heat_residual", "balances:scheme_contact_heat", "element_conduction",
         "element_fields:element_heat_flux",
         "field_recovery:recover_heat_flux", "films", "heat_balance",
         "increment_checks:check_heat", "increment_solution:conduct",
@@ -31,8 +31,8 @@ PARTS = {
     },
     "mechanics": CONTACT_FOLDER - {
         # Pairs conduct, whether bodies move or not: these make them and their results.
-        "pair_tractions", "chain_geometry", "contact_pairs", "pair_checks",
-        "pair_warnings", "surface_chains", "zone_edges"} | {
+        "contact_tractions", "chain_geometry", "contact_pairs", "interface_checks",
+        "interface_warnings", "surface_chains", "zone_edges"} | {
         "balances:contact_violation", "balances:force_residual", "contact_reduction",
         "element_elasticity", "element_fields:element_stress", "field_recovery:recover_stress",
         "increment_checks:check_violation", "increment_checks:warn_of_choices",
@@ -47,7 +47,7 @@ PARTS = {
         "increment_records:contact_record",
         "friction_memory", "increment_solution:conduct",
         "listing_increments:print_interface", "listing_tables:print_contact_table",
-        "pair_reports", "pair_rows", "result_fields:face_values", "result_fields:find_faces",
+        "interface_reports", "all_contact_points", "result_fields:face_values", "result_fields:find_faces",
         "zone_diagram",
     },
     "friction": {
@@ -62,12 +62,12 @@ PARTS = {
     "films": {"films", "loads:film_matrix", "loads:integrate_films"},
     "estimated errors": {
         "companion_steps", "doubled_increments", "error_estimator", "interface_quantities", "linked_relaxation",
-        "refined_model", "refined_pairs", "refinement_error",
+        "refined_model", "refined_points", "refinement_error",
     },
     "refinement": {"load_refinement", "mesh_division", "refinement"},
     "printed tables": {"element_points", "listing_prints",
                                 "listing_tables:print_contact_table"},
-    "checks of the deck": {"deck_builder_verify", "verification", "verify_places",
+    "checks of the deck": {"deck_builder_verify", "verification", "verify_positions",
                            "verify_values"},
     "MUMPS": {"metis", "mumps_solver"},
 }

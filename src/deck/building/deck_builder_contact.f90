@@ -20,11 +20,11 @@ module deck_builder_contact
 
 contains
 
-   !> Takes all contact pairs and their clearances.
+   !> Takes all interfaces and their clearances.
    subroutine build_contacts(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives notes
-      type(model_type), intent(inout) :: model             !! receives the pairs
+      type(model_type), intent(inout) :: model             !! receives the interfaces
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k, n
 
@@ -43,7 +43,7 @@ contains
       end do
    end subroutine build_contacts
 
-   !> Takes one clearance, for the contact pair of the two surfaces that it names.
+   !> Takes one clearance, for the interface of the two surfaces that it names.
    subroutine build_clearance(card, mesh, report, contacts)
       type(keyword_card_type), intent(in) :: card
       type(mesh_type), intent(in) :: mesh

@@ -70,7 +70,7 @@ contains
       n = 0
       do j = card%first_data, card%last_data
          i = decimal_comma(cards%data(j))
-         if (i > 0 .and. .not. is_course(cards%data(j), amplitude%times(:n))) then
+         if (i > 0 .and. .not. is_history(cards%data(j), amplitude%times(:n))) then
             call report_decimal_comma(cards%data(j), i, report)
             return
          end if
@@ -88,7 +88,7 @@ contains
    end subroutine build_amplitude
 
    !> Whether a data card has pairs of time and value, and times that ascend behind those before.
-   pure logical function is_course(data, before)
+   pure logical function is_history(data, before)
       type(data_card_type), intent(in) :: data
       real(dp), intent(in) :: before(:)
       real(dp) :: last, time
@@ -96,14 +96,14 @@ contains
 
       last = -huge(last)
       if (size(before) > 0) last = before(size(before))
-      is_course = mod(size(data%fields), 2) == 0
+      is_history = mod(size(data%fields), 2) == 0
       do i = 1, size(data%fields), 2
-         if (.not. is_course) return
-         call read_real(data%fields(i)%text, time, is_course)
-         is_course = is_course .and. time > last
+         if (.not. is_history) return
+         call read_real(data%fields(i)%text, time, is_history)
+         is_history = is_history .and. time > last
          last = time
       end do
-   end function is_course
+   end function is_history
 
    !> Takes all initial temperatures.
    subroutine build_temperatures(cards, context, model, report)

@@ -19,7 +19,7 @@ contains
    subroutine build_start(cards, card, model, report, start)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model              !! its contact pairs
+      type(model_type), intent(in) :: model              !! its interfaces
       type(deck_report_type), intent(inout) :: report    !! receives errors
       type(start_type), intent(inout) :: start           !! receives the start
       character(:), allocatable :: from
@@ -48,7 +48,7 @@ contains
       end select
    end subroutine build_start
 
-   !> Contact pair and conductance, a card each.
+   !> Interface and conductance, a card each.
    subroutine build_given(cards, card, model, report, start)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
@@ -86,7 +86,7 @@ contains
       start = start_type(kind=start_given, conductance=given)
    end subroutine build_given
 
-   !> The contact pair that a card names.
+   !> The interface that a card names.
    subroutine find_contact(data, model, report, contact, valid)
       type(data_card_type), intent(in) :: data
       type(model_type), intent(in) :: model

@@ -11,7 +11,7 @@ module deck_builder_verify
    use kinds, only: dp
    use model, only: model_type, verify_type
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_history, of_interface, &
-      of_nodes, of_pairs, quantity_type
+      of_nodes, of_contact_points, quantity_type
    use steps, only: analysis_static
    use text, only: nearest_known, read_real, string_type, to_text, to_upper
    implicit none
@@ -153,7 +153,8 @@ contains
             check%quantity//' has no place: leave this field empty')
          return
       end if
-      if ((kind == of_interface .or. kind == of_pairs) .and. size(model%contacts) == 0) then
+      if ((kind == of_interface .or. kind == of_contact_points) .and. size(model%contacts) == &
+         0) then
          call report%missing(field_place(data, 1), 'the deck has no *CONTACT PAIR: there is no '// &
             check%quantity)
          return
@@ -218,7 +219,7 @@ contains
       if (at > 0) then
          call read_real(trim(adjustl(name(at + 1:))), s, valid)
          if (valid) valid = s >= 0.0_dp
-         if (kind /= of_pairs .or. .not. valid) then
+         if (kind /= of_contact_points .or. .not. valid) then
             call report%error(field_place(data, 2), ''''//name//''' is no place of this quantity')
             return
          end if

@@ -82,7 +82,7 @@ contains
       type(keyword_card_type), intent(in) :: card         !! the property
       character(*), intent(in) :: names(:)                !! (constants) what they are called
       real(dp), intent(in) :: constants(:)                !! (constants) as read
-      integer, intent(in) :: which(:)                     !! places of those that must be positive
+      integer, intent(in) :: which(:)                     !! indexes of those that must be positive
       type(deck_report_type), intent(inout) :: report     !! receives errors
       integer :: i
 

@@ -142,7 +142,7 @@ contains
       end do
    end subroutine check_conflicts
 
-   !> Whether two cards prescribe different courses.
+   !> Whether two cards prescribe different time histories.
    pure logical function differs(one, other)
       type(request_type), intent(in) :: one, other
 

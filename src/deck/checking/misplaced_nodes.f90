@@ -1,7 +1,7 @@
 !> Which nodes are out of place where elements are inverted. With all other nodes where they are,
 !> the Jacobian at a point and the area of a corner are linear in the coordinates of one node, so
-!> the places at which all elements round it are sound form a convex polygon. A node for which that
-!> is not empty explains its inverted elements.
+!> the positions at which all elements round it are sound form a convex polygon. A node for which
+!> that is not empty explains its inverted elements.
 module misplaced_nodes
    use element_kinds, only: element_corner_count, element_node_count
    use kinds, only: dp
@@ -12,7 +12,7 @@ module misplaced_nodes
    private
    public :: find_misplaced, element_jacobians, corner_areas
 
-   real(dp), parameter :: rounding = 1.0e-9_dp   !! part of the square searched that is no place
+   real(dp), parameter :: rounding = 1.0e-9_dp   !! part of the square searched that is no position
 
 contains
 
@@ -42,7 +42,7 @@ contains
    end subroutine find_misplaced
 
    !> Of nodes that explain the same, keeps those that leave the elements round all of them the
-   !> least bent, once moved to the place that their neighbours predict.
+   !> least bent, once moved to the position that their neighbours predict.
    subroutine keep_likeliest(mesh, valid, nodes)
       type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: valid(:)
@@ -67,14 +67,14 @@ contains
 
    !> Where a node is expected: a midside node in the middle of its side, a corner where it makes
    !> parallelograms of the elements round it, on the mean; of triangles midway between the others.
-   function predicted(mesh, node, around) result(place)
+   function predicted(mesh, node, around) result(position)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: node
       integer, intent(in) :: around(:)
-      real(dp) :: place(2)
+      real(dp) :: position(2)
       integer :: corners, i, k, n
 
-      place = 0.0_dp
+      position = 0.0_dp
       n = 0
       do i = 1, size(around)
          k = findloc(mesh%element_nodes(:, around(i)), node, dim=1)
@@ -83,16 +83,17 @@ contains
          corners = element_corner_count(mesh%element_kind(around(i)))
          associate (x => mesh%coordinates(:, mesh%element_nodes(:corners, around(i))))
             if (k > corners) then
-               place = place + 0.5_dp*(x(:, k - corners) + x(:, mod(k - corners, corners) + 1))
+               position = position + 0.5_dp*(x(:, k - corners) + &
+                  x(:, mod(k - corners, corners) + 1))
             else if (corners == 4) then
-               place = place + x(:, mod(k, 4) + 1) + x(:, mod(k + 2, 4) + 1) - &
+               position = position + x(:, mod(k, 4) + 1) + x(:, mod(k + 2, 4) + 1) - &
                   x(:, mod(k + 1, 4) + 1)
             else
-               place = place + 0.5_dp*(sum(x, dim=2) - x(:, k))
+               position = position + 0.5_dp*(sum(x, dim=2) - x(:, k))
             end if
          end associate
       end do
-      place = place/max(n, 1)
+      position = position/max(n, 1)
    end function predicted
 
    !> How far an element is from straight sides with midside nodes in the middle, a quadrilateral
@@ -115,7 +116,7 @@ contains
       end associate
    end function bend
 
-   !> Whether there is a place for a node at which all elements round it are sound.
+   !> Whether there is a position for a node at which all elements round it are sound.
    logical function has_place(mesh, node, around)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: node
@@ -145,21 +146,21 @@ contains
       has_place = area(polygon) > rounding
    end function has_place
 
-   !> What must be positive in an element, with a node of it at other places.
-   function soundness(mesh, element, node, places) result(values)
+   !> What must be positive in an element, with a node of it at other positions.
+   function soundness(mesh, element, node, positions) result(values)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element, node
-      real(dp), intent(in) :: places(:, :)          ! (2, places)
-      real(dp), allocatable :: values(:, :)         ! (conditions, places)
+      real(dp), intent(in) :: positions(:, :)          ! (2, positions)
+      real(dp), allocatable :: values(:, :)         ! (conditions, positions)
       real(dp), allocatable :: coordinates(:, :)
       integer :: n, p
 
       associate (kind => mesh%element_kind(element))
          n = element_node_count(kind)
-         allocate(values(point_count(kind) + element_corner_count(kind), size(places, 2)))
-         do p = 1, size(places, 2)
+         allocate(values(point_count(kind) + element_corner_count(kind), size(positions, 2)))
+         do p = 1, size(positions, 2)
             coordinates = mesh%coordinates(:, mesh%element_nodes(:n, element))
-            coordinates(:, findloc(mesh%element_nodes(:n, element), node, dim=1)) = places(:, p)
+            coordinates(:, findloc(mesh%element_nodes(:n, element), node, dim=1)) = positions(:, p)
             values(:, p) = [element_jacobians(kind, coordinates), corner_areas( &
                coordinates(:, :element_corner_count(kind)))]
          end do

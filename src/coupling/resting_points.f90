@@ -1,9 +1,9 @@
-!> Pairs that rest: gamma = p = 0 with a conductance between the values of a law that jumps there.
-!> Without them some increments have no solution, (1.8) asking for a law without a jump.
-module resting_pairs
+!> Contact points that rest: gamma = p = 0 with a conductance between the values of a law that jumps
+!> there. Without them some increments have no solution, (1.8) asking for a law without a jump.
+module resting_points
    use conductance_graph, only: conductance_graph_type
-   use contact_states, only: contact_state_type, status_open, status_slip
-   use fixed_point, only: pair_residual, pass_type
+   use contact_states, only: contact_state_type, contact_open, contact_slip
+   use fixed_point, only: point_residual, pass_type
    use increment_data, only: contact_scales_type, increment_data_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
@@ -22,7 +22,7 @@ module resting_pairs
 contains
 
    !> Largest values that are known at the start of an increment. Its load counts by the overlap
-   !> that it makes at a pair alone.
+   !> that it makes at a contact point alone.
    pure function contact_scales(bodies, data) result(scales)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
@@ -33,30 +33,30 @@ contains
       scales%force = maxval(data%previous%force)
       scales%length = max(data%displacement_scale, maxval(abs(data%previous%gap)))
       do k = 1, size(bodies%contact%normal)
-         associate (place => bodies%contact%normal(k))
+         associate (row => bodies%contact%normal(k))
             stiffness = bodies%contact%alone(k)
             if (stiffness > 0.0_dp) scales%length = max(scales%length, &
-               abs(data%welded_load(place))/stiffness)
+               abs(data%welded_load(row))/stiffness)
          end associate
       end do
       if (scales%length <= 0.0_dp) scales%length = 1.0_dp
    end function contact_scales
 
-   !> Largest residual of a pass over the pairs that carry heat, which those of weight 0 do not,
-   !> and the pairs that rest in it: a conductance between the two
-   !> values of its law needs no more of a pair than that neither gap nor pressure is left.
+   !> Largest residual of a pass over the contact points that carry heat, which those of weight 0 do
+   !> not, and the contact points that rest in it: a conductance between the two
+   !> values of its law needs no more of a contact point than that neither gap nor pressure is left.
    pure subroutine find_residual(graph, scales, weight, pass, residual, resting)
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
       type(contact_scales_type), intent(in) :: scales       !! largest values of the increment
       real(dp), intent(in) :: weight(:)                     !! (m) tributary areas [length^2]
       type(pass_type), intent(in) :: pass
       real(dp), intent(out) :: residual                     !! relative
-      logical, intent(out) :: resting(:)                    !! (m) pairs that rest
+      logical, intent(out) :: resting(:)                    !! (m) contact points that rest
       real(dp) :: by_law(size(graph)), by_rest(size(graph)), pressure(size(graph))
       real(dp) :: largest
 
       by_law = 0.0_dp
-      where (weight > 0.0_dp) by_law = pair_residual(pass%omega, pass%image)
+      where (weight > 0.0_dp) by_law = point_residual(pass%omega, pass%image)
       resting = graph%may_rest(pass%omega)
       if (any(resting)) then
          pressure = graph%modulus*max(-pass%opening, 0.0_dp)
@@ -70,14 +70,14 @@ contains
       residual = maxval(by_law)
    end subroutine find_residual
 
-   !> Leaves nothing of gap, pressure and shear at pairs that rest; they count as closed.
+   !> Leaves nothing of gap, pressure and shear at contact points that rest; they count as closed.
    pure subroutine settle(resting, state)
-      logical, intent(in) :: resting(:)                  !! (m) pairs that rest
+      logical, intent(in) :: resting(:)                  !! (m) contact points that rest
       type(contact_state_type), intent(inout) :: state
 
-      where (resting .and. state%status == status_open) state%reference = state%tangential
+      where (resting .and. state%contact_state == contact_open) state%reference = state%tangential
       where (resting)
-         state%status = status_slip
+         state%contact_state = contact_slip
          state%direction = 0
          state%gap = 0.0_dp
          state%force = 0.0_dp
@@ -85,4 +85,4 @@ contains
       end where
    end subroutine settle
 
-end module resting_pairs
+end module resting_points

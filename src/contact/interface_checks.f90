@@ -1,5 +1,5 @@
-!> Whether two lines of nodes can be paired, and how it is said where they cannot.
-module pair_checks
+!> Whether two lines of nodes can be matched, and how it is said where they cannot.
+module interface_checks
    use chain_geometry, only: chain_tangents
    use contact_definitions, only: contact_definition_type
    use errors, only: error_type, set_error, status_deck
@@ -15,8 +15,8 @@ module pair_checks
    !> far from the contact may stand at right angles there.
    real(dp), parameter :: same_way = 0.1_dp
 
-   !> Part of the model's extent within which two nodes lie in one place.
-   real(dp), parameter :: same_place = 1.0e-9_dp
+   !> Part of the model's extent within which two nodes coincide.
+   real(dp), parameter :: same_position = 1.0e-9_dp
 
    !> Cosine of a turn of a surface between two faces, 60 degrees, from which on the faces behind it
    !> may have been named by mistake.
@@ -79,20 +79,20 @@ contains
       integer :: k, partner
 
       do k = 1, size(long)
-         partner = nearest_place(mesh, short, long(k))
-         if (nearest_place(mesh, long, short(partner)) /= k) exit
+         partner = nearest_position(mesh, short, long(k))
+         if (nearest_position(mesh, long, short(partner)) /= k) exit
       end do
       first_alone = mesh%node_number(long(min(k, size(long))))
    end function first_alone
 
-   !> Place of the node that is nearest to another node.
-   pure integer function nearest_place(mesh, nodes, node)
+   !> Position of the node that is nearest to another node.
+   pure integer function nearest_position(mesh, nodes, node)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: nodes(:), node
 
-      nearest_place = minloc((mesh%coordinates(1, nodes) - mesh%coordinates(1, node))**2 + &
+      nearest_position = minloc((mesh%coordinates(1, nodes) - mesh%coordinates(1, node))**2 + &
          (mesh%coordinates(2, nodes) - mesh%coordinates(2, node))**2, dim=1)
-   end function nearest_place
+   end function nearest_position
 
    !> Says which node both lines have, unless both end in it; empty where there is none.
    function shared_node(mesh, slave, master) result(message)
@@ -127,8 +127,8 @@ contains
       type(surface_chain_type), intent(in) :: slave       !! line of the slave
       type(surface_chain_type), intent(in) :: master      !! line of the master
       logical, intent(in) :: turned(2) !! whether slave and master run against their chains
-      integer, intent(in) :: compared(2)                  !! first and last pair looked at
-      type(error_type), allocatable, intent(out) :: error !! the first such pair
+      integer, intent(in) :: compared(2)                  !! first and last contact point looked at
+      type(error_type), allocatable, intent(out) :: error !! the first such contact point
       real(dp) :: cosine, outward(2)
       integer :: k
 
@@ -161,7 +161,7 @@ contains
       type(error_type), intent(inout) :: error
       integer :: surface
 
-      if (abs(ahead) <= same_place*extent_of(mesh%coordinates)) then
+      if (abs(ahead) <= same_position*extent_of(mesh%coordinates)) then
          error%message = error%message//'; name the faces that look at each other'
          return
       end if
@@ -229,14 +229,14 @@ contains
          '; its midside nodes are too far from the middle')
    end subroutine check_weights
 
-   !> Refuses a pair whose tangential offset exceeds half of what is allowed it.
+   !> Refuses a contact point whose tangential offset exceeds half of what is allowed it.
    subroutine check_opposite(mesh, name, slave, master, tangent, twice_allowed, error)
       type(mesh_type), intent(in) :: mesh
       character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
       integer, intent(in) :: slave(:), master(:)          !! (m) nodes
       real(dp), intent(in) :: tangent(:, :)               !! (2, m) unit tangents, 0 where none
       real(dp), intent(in) :: twice_allowed(:)            !! (m) element edge or gap [length]
-      type(error_type), allocatable, intent(out) :: error !! the first such pair
+      type(error_type), allocatable, intent(out) :: error !! the first such contact point
       real(dp) :: offset(size(slave))
       integer :: k
 
@@ -248,4 +248,4 @@ contains
          to_text(mesh%node_number(master(k)))//' are not opposite each other'//way_out)
    end subroutine check_opposite
 
-end module pair_checks
+end module interface_checks

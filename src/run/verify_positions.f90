@@ -1,6 +1,6 @@
-!> Places of *VERIFY cards that only the pairs of the refined mesh can tell.
-module verify_places
-   use contact_pairs, only: contact_pairs_type
+!> Positions of *VERIFY cards that only the contact points of the refined mesh can tell.
+module verify_positions
+   use contact_pairs, only: contact_points_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp
@@ -14,9 +14,9 @@ module verify_places
 contains
 
    !> Reports every check at an arc length beyond the end of its interface.
-   subroutine check_arc_lengths(model, pairs, report)
+   subroutine check_arc_lengths(model, interfaces, report)
       type(model_type), intent(in) :: model                !! its checks name known interfaces
-      type(contact_pairs_type), intent(in) :: pairs(:)     !! pairs of every interface
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp) :: s
       integer :: at, i, k
@@ -28,15 +28,15 @@ contains
             if (at == 0) cycle
             call read_real(trim(adjustl(check%where(at + 1:))), s, valid)
             if (.not. valid) cycle
-            do k = 1, size(pairs)
-               if (to_upper(pairs(k)%name) /= to_upper(trim(check%where(:at - 1)))) cycle
-               if (is_on_interface(s, pairs(k))) cycle
+            do k = 1, size(interfaces)
+               if (to_upper(interfaces(k)%name) /= to_upper(trim(check%where(:at - 1)))) cycle
+               if (is_on_interface(s, interfaces(k))) cycle
                call report%error(place_type(check%line, check%columns(2)), &
-                  'the arc length of contact pair '//pairs(k)%name//' ends at '// &
-                  to_text(pairs(k)%arc_length(size(pairs(k)%arc_length))))
+                  'the arc length of contact pair '//interfaces(k)%name//' ends at '// &
+                  to_text(interfaces(k)%arc_length(size(interfaces(k)%arc_length))))
             end do
          end associate
       end do
    end subroutine check_arc_lengths
 
-end module verify_places
+end module verify_positions

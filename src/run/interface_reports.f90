@@ -1,53 +1,53 @@
-!> What is said of the contact pairs of a deck once they are made.
-module pair_reports
-   use contact_pairs, only: contact_pairs_type
+!> What is said of the interfaces of a deck once they are made.
+module interface_reports
+   use contact_pairs, only: contact_points_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric
    use errors, only: error_type
    use kinds, only: dp
    use model, only: model_type
-   use pair_rows, only: pair_surfaces
-   use pair_warnings, only: offset_warning, overlap_warning
+   use all_contact_points, only: match_surfaces
+   use interface_warnings, only: offset_warning, overlap_warning
    use text, only: to_text
    implicit none
    private
-   public :: pair_all, first_repeated
+   public :: make_interfaces, first_repeated
 
    real(dp), parameter :: parallel = 0.99_dp   !! cosine between normals that count as one
 
 contains
 
-   !> Pairs the surfaces of every *CONTACT PAIR; reports those that cannot be paired, and warns of
-   !> those that may not be meant so.
-   subroutine pair_all(model, interfaces, report)
+   !> Matches the surfaces of every *CONTACT PAIR; reports those that cannot be matched, and warns
+   !> of those that may not be meant so.
+   subroutine make_interfaces(model, interfaces, report)
       type(model_type), intent(in) :: model
-      !> (interfaces) their pairs
-      type(contact_pairs_type), allocatable, intent(out) :: interfaces(:)
+      !> (interfaces) their contact points
+      type(contact_points_type), allocatable, intent(out) :: interfaces(:)
       type(deck_report_type), intent(inout) :: report        !! receives errors and warnings
       type(error_type), allocatable :: error
       integer, allocatable :: slave(:), master(:), blamed(:)
       real(dp), allocatable :: normal(:, :)
-      integer :: i, known, pair
+      integer :: i, known, repeated
 
       allocate (slave(0), master(0), normal(2, 0), interfaces(size(model%contacts)), blamed(0))
       do i = 1, size(model%contacts)
-         call pair_surfaces(model, i, interfaces(i), error)
+         call match_surfaces(model, i, interfaces(i), error)
          if (allocated(error)) then
             call report_once(merge(error%card, model%contacts(i)%card, error%card > 0))
             cycle
          end if
-         call warn_of_pairs(model, i, interfaces(i), report)
+         call warn_of_interface(model, i, interfaces(i), report)
          known = size(slave)
          slave = [slave, interfaces(i)%slave_node]
          master = [master, interfaces(i)%master_node]
          normal = reshape([normal, interfaces(i)%normal], [2, size(slave)])
-         pair = first_repeated(slave, master, normal)
-         if (pair == 0) cycle
+         repeated = first_repeated(slave, master, normal)
+         if (repeated == 0) cycle
          associate (number => model%mesh%node_number)
             call report%error(place_type(image=model%contacts(i)%card), 'contact pair '// &
-               interfaces(i)%name//': nodes '//to_text(number(slave(pair)))//' and '// &
-               to_text(number(master(pair)))//' are paired along the same normal by an '// &
+               interfaces(i)%name//': nodes '//to_text(number(slave(repeated)))//' and '// &
+               to_text(number(master(repeated)))//' are paired along the same normal by an '// &
                'earlier *CONTACT PAIR already; leave one of the two out')
          end associate
          slave = slave(:known)
@@ -55,7 +55,7 @@ contains
          normal = normal(:, :known)
       end do
    contains
-      !> What is wrong with a surface is reported for the first of its contact pairs.
+      !> What is wrong with a surface is reported for the first of its interfaces.
       subroutine report_once(card)
          integer, intent(in) :: card
 
@@ -63,7 +63,7 @@ contains
          blamed = [blamed, card]
          call report%error(place_type(image=card), error%message)
       end subroutine report_once
-   end subroutine pair_all
+   end subroutine make_interfaces
 
    !> The first contact point that stands among those before it already: the same two nodes, and
    !> normals along one line; 0 where there is none.
@@ -84,14 +84,14 @@ contains
       first_repeated = 0
    end function first_repeated
 
-   subroutine warn_of_pairs(model, i, pairs, report)
+   subroutine warn_of_interface(model, i, points, report)
       type(model_type), intent(in) :: model
       integer, intent(in) :: i
-      type(contact_pairs_type), intent(in) :: pairs
+      type(contact_points_type), intent(in) :: points
       type(deck_report_type), intent(inout) :: report
 
-      call warn(offset_warning(model%mesh, pairs))
-      if (.not. model%contacts(i)%has_clearance) call warn(overlap_warning(model%mesh, pairs))
+      call warn(offset_warning(model%mesh, points))
+      if (.not. model%contacts(i)%has_clearance) call warn(overlap_warning(model%mesh, points))
       call warn(thickness_warning(model, i))
    contains
       subroutine warn(message)
@@ -100,10 +100,10 @@ contains
          if (len(message) > 0) call report%warning(place_type(image=model%contacts(i)%card), &
             message)
       end subroutine warn
-   end subroutine warn_of_pairs
+   end subroutine warn_of_interface
 
-   !> The areas of all pairs are those of the slave's first element; empty where all elements at the
-   !> interface are as thick.
+   !> The areas of all contact points are those of the slave's first element; empty where all
+   !> elements at the interface are as thick.
    pure function thickness_warning(model, i) result(warning)
       type(model_type), intent(in) :: model
       integer, intent(in) :: i
@@ -128,4 +128,4 @@ contains
       end associate
    end function thickness_warning
 
-end module pair_reports
+end module interface_reports

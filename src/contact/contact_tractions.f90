@@ -1,0 +1,141 @@
+!> Tractions from nodal forces, and their limits at contact points of weight 0: on the axis of an
+!> axisymmetric model, where a three-node side gives its corner the integral of N1 2 pi r, and at
+!> the tip of sides with quarter points.
+module contact_tractions
+   use contact_pairs, only: contact_points_type, on_axis
+   use kinds, only: dp
+   implicit none
+   private
+   public :: in_contact, pressures, shears
+
+   !> Part of the side's length below which a gap is rounding.
+   real(dp), parameter :: no_gap = 1.0e-12_dp
+
+contains
+
+   !> Contact points in contact. The force of a contact point of weight 0 is a difference of
+   !> pressures: 0 where the pressure is uniform, and a tension, which opens the contact point,
+   !> where the pressure grows away from it. Such a contact point is in contact where the contact
+   !> points beside it press more than it takes to close it.
+   pure function in_contact(points, closed, gap, force, stiffness) result(contact)
+      type(contact_points_type), intent(in) :: points !! contact points of one interface
+      logical, intent(in) :: closed(:)               !! (m) as the active set has them
+      real(dp), intent(in) :: gap(:)                 !! (m) [length]
+      real(dp), intent(in) :: force(:)         !! (m) nodal forces, 0 at open contact points [force]
+      real(dp), intent(in) :: stiffness(:)     !! (m) of a contact point, others held [force/length]
+      logical :: contact(size(closed))               !! (m)
+      real(dp) :: lacking, pressure(size(closed))
+      integer :: k
+
+      contact = closed
+      pressure = over_weight(points, force)
+      do k = 1, size(closed)
+         if (points%weight(k) > 0.0_dp .or. closed(k)) cycle
+         if (.not. any(closed(max(k - 1, 1):min(k + 1, size(closed))))) cycle
+         lacking = stiffness(k)*max(gap(k) - no_gap*points%edge(k), 0.0_dp)
+         contact(k) = lacking <= limit(points, pressure, k)*area_beside(points, k)
+      end do
+   end function in_contact
+
+   !> Nodal force at a contact point of weight 0 by which its pressure exceeds that at the far ends
+   !> of its sides, over that excess: the integral of N1^2, a thirtieth of the sides. Those of N1 N2
+   !> and N1 (N1 + N3) vanish, and N2, of the contact point in the middle of a side, has two thirds
+   !> of the side.
+   pure real(dp) function area_beside(points, k)
+      type(contact_points_type), intent(in) :: points
+      integer, intent(in) :: k
+
+      area_beside = sum(points%weight(max(k - 1, 1):min(k + 1, size(points%weight))))/20
+   end function area_beside
+
+   !> Nodal force over weight. A closed contact point of weight 0 has the limit of the profile, no
+   !> further than 0 where the contact points beside it press; an open one has none.
+   pure function pressures(points, force, closed) result(pressure)
+      type(contact_points_type), intent(in) :: points !! contact points of one interface
+      real(dp), intent(in) :: force(:)         !! (m) nodal forces, 0 at open contact points [force]
+      logical, intent(in) :: closed(:)               !! (m) contact points in contact
+      real(dp) :: pressure(size(force))              !! (m) [stress]
+      integer :: k
+
+      pressure = over_weight(points, force)
+      do k = 1, size(force)
+         if (closed(k) .and. points%weight(k) <= 0.0_dp) pressure(k) = limit(points, pressure, k)
+      end do
+   end function pressures
+
+   !> The same of friction. On the axis it vanishes; elsewhere the limit is no larger than the
+   !> friction that the limit of the pressure allows.
+   pure function shears(points, force, closed, friction, pressure) result(shear)
+      type(contact_points_type), intent(in) :: points !! contact points of one interface
+      real(dp), intent(in) :: force(:)         !! (m) nodal forces, 0 at open contact points [force]
+      logical, intent(in) :: closed(:)               !! (m) contact points in contact
+      real(dp), intent(in) :: friction               !! mu [-]
+      real(dp), intent(in) :: pressure(:)            !! (m) as from pressures [stress]
+      real(dp) :: shear(size(force))                 !! (m) [stress]
+      integer :: k
+
+      shear = over_weight(points, force)
+      do k = 1, size(force)
+         if (points%weight(k) > 0.0_dp .or. .not. closed(k) .or. on_axis(points, k)) cycle
+         shear(k) = limit(points, shear, k)
+         shear(k) = sign(min(abs(shear(k)), friction*pressure(k)), shear(k))
+      end do
+   end function shears
+
+   !> Nodal force over weight, 0 where that is 0.
+   pure function over_weight(points, force) result(traction)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: force(:)
+      real(dp) :: traction(size(force))
+
+      traction = 0.0_dp
+      where (points%weight > 0.0_dp) traction = force/points%weight
+   end function over_weight
+
+   !> Limit of a profile at contact point k: the mean of those from the sides that meet there. With
+   !> a single neighbour it is that one's value, with none 0.
+   pure real(dp) function limit(points, values, k)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: values(:)
+      integer, intent(in) :: k
+      integer :: sides, way
+
+      limit = 0.0_dp
+      sides = 0
+      do way = -1, 1, 2
+         if (k + way < 1 .or. k + way > size(values)) cycle
+         sides = sides + 1
+         if (k + 2*way < 1 .or. k + 2*way > size(values)) then
+            limit = limit + values(k + way)
+         else
+            limit = limit + continued(values(k + [way, 2*way]), coordinate(points, k, &
+               k + [way, 2*way]))
+         end if
+      end do
+      if (sides > 0) limit = limit/sides
+   end function limit
+
+   !> Coordinate from contact point k in which a profile begins as a line: the square of the radius
+   !> on the axis, where a pressure is even; at the tip of sides with quarter points the root of the
+   !> distance, which is their own coordinate.
+   elemental real(dp) function coordinate(points, k, other)
+      type(contact_points_type), intent(in) :: points
+      integer, intent(in) :: k, other
+
+      if (on_axis(points, k)) then
+         coordinate = points%position(1, other)**2
+      else
+         coordinate = sqrt(abs(points%arc_length(other) - points%arc_length(k)))
+      end if
+   end function coordinate
+
+   !> The line through two values continued to 0, no further than 0 where both have one sign.
+   pure real(dp) function continued(values, position)
+      real(dp), intent(in) :: values(2), position(2)
+
+      continued = values(1) + (values(1) - values(2))*position(1)/(position(2) - position(1))
+      if (minval(values) >= 0.0_dp) continued = max(continued, 0.0_dp)
+      if (maxval(values) <= 0.0_dp) continued = min(continued, 0.0_dp)
+   end function continued
+
+end module contact_tractions

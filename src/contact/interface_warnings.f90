@@ -1,0 +1,83 @@
+!> Contact points that can be solved, but perhaps not as meant: nodes beside each other, bodies
+!> inside each other.
+module interface_warnings
+   use contact_pairs, only: contact_points_type
+   use kinds, only: dp
+   use mesh, only: extent_of, mesh_type
+   use text, only: to_text
+   implicit none
+   private
+   public :: offset_warning, overlap_warning
+
+   !> Part of the node spacing from which on an offset is warned of. It misplaces the force of the
+   !> contact point, as lumping does: where the pressure varies by half of its mean from node to
+   !> node, the resultant over a tributary length lies 1/24 of the spacing beside the node. Smaller
+   !> offsets are no coarser than the mesh itself, and far larger ones than those of rounded
+   !> coordinates.
+   real(dp), parameter :: small_offset = 0.05_dp
+   real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
+
+contains
+
+   !> Names the contact point whose nodes lie farthest beside each other, as a part of the node
+   !> spacing. Offsets up to half the gap are those of curved faces that part far from the contact.
+   pure function offset_warning(mesh, points) result(warning)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points    !! contact points of one interface
+      character(:), allocatable :: warning               !! empty where all lie opposite
+      real(dp) :: offset(size(points%edge)), part(size(points%edge)), apart(2)
+      integer :: k
+
+      do k = 1, size(offset)
+         apart = mesh%coordinates(:, points%master_node(k)) - &
+            mesh%coordinates(:, points%slave_node(k))
+         offset(k) = abs(dot_product(points%tangent(:, k), apart))
+         part(k) = offset(k)/(points%edge(k)/(points%side_nodes - 1))
+         if (offset(k) <= 0.5_dp*abs(dot_product(points%normal(:, k), apart))) part(k) = 0.0_dp
+      end do
+      warning = ''
+      if (count(part > small_offset) == 0) return
+      k = findloc(part >= (1.0_dp - rounding)*maxval(part), .true., dim=1)
+      warning = 'contact pair '//points%name//': '//nodes_of(mesh, points, k)//' lie '// &
+         to_text(offset(k))//' beside each other, '//percent(part(k))//' of the node spacing '// &
+         '(pairs with more than '//percent(small_offset)//': '// &
+         to_text(count(part > small_offset))//'); their contact forces are not in one line, '// &
+         'and a moment of force times offset is lost; put the nodes opposite each other'
+   end function offset_warning
+
+   !> Names the contact point whose faces overlap most, where that is more than the rounding of
+   !> coordinates.
+   pure function overlap_warning(mesh, points) result(warning)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points    !! contact points of one interface
+      character(:), allocatable :: warning               !! empty where none do
+      integer :: k
+
+      warning = ''
+      if (.not. any(-points%initial_gap > rounding*extent_of(mesh%coordinates))) return
+      k = minloc(points%initial_gap, dim=1)
+      warning = 'contact pair '//points%name//': the faces overlap by '// &
+         to_text(-points%initial_gap(k))//' at '//nodes_of(mesh, points, k)// &
+         ', where the element edge is '//to_text(points%edge(k))//'; they are pressed apart in '// &
+         'the first increment: see whether the bodies are where they should be, or say by '// &
+         '*CLEARANCE what is meant'
+   end function overlap_warning
+
+   pure function nodes_of(mesh, points, k) result(words)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points
+      integer, intent(in) :: k
+      character(:), allocatable :: words
+
+      words = 'slave node '//to_text(mesh%node_number(points%slave_node(k)))// &
+         ' and master node '//to_text(mesh%node_number(points%master_node(k)))
+   end function nodes_of
+
+   pure function percent(part) result(words)
+      real(dp), intent(in) :: part
+      character(:), allocatable :: words
+
+      words = to_text(nint(100.0_dp*part))//' %'
+   end function percent
+
+end module interface_warnings
