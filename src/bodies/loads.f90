@@ -24,7 +24,7 @@ module loads
       real(dp), allocatable :: mass(:, :)      !! (n, n) integral of psi^p psi^q [length^2]
    end type film_side_type
 
-   !> Courses of the loads; displacements by degree of freedom, temperatures by node, all other ones
+   !> Histories of the loads; displacements by degree of freedom, temperatures by node, all other ones
    !> by the locations on which the deck puts loads.
    type :: loads_type
       type(load_history_type) :: displacement  !! (2 nodes) prescribed displacements [length]

@@ -40,7 +40,7 @@ module contact_workspace
       type(lu_type), private :: lu                !! factors on the free rows, bordered
       real(dp), private :: border = 1.0_dp        !! scale of the border [force/length]
       real(dp), allocatable, private :: scale(:)  !! (free) factor of the rows, 1 beside a border
-      integer, allocatable, private :: factored(:)   !! (m) condition codes of the factors
+      integer, allocatable, private :: factored(:)   !! (m) state codes of the factors
       type(closing_law_type), allocatable, private :: factored_closing(:) !! (m) and their laws
    contains
       procedure :: another

@@ -4,10 +4,10 @@
 !> Unknowns are the coordinates z of the contact points on the graphs of their laws
 !> (conductance_graph), in which the equation is
 !>
-!>    r(z) = opening(z) - H(L(omega(z))) = 0,    J = diag(opening') - derivative diag(omega'),
+!>    r(z) = opening(z) - H(L(omega(z))) = 0,    J = diag(opening') - D diag(omega'),
 !>
-!> derivative being the derivative of the openings H(L(omega)) by omega. Each contact point then
-!> goes along the curve of its own law, not along the tangent (conductance_graph, `moved`).
+!> D being the derivative of the openings H(L(omega)) by omega. Each contact point then goes along
+!> the curve of its own law, not along the tangent (conductance_graph, `moved`).
 !>
 !> A pass is taken unless earlier ones, all but one, were better by both of its measures: |r|, and
 !> the mismatch of the shares omega/(omega + body) by which the heat goes (a filter: Gould, Leyffer

@@ -78,8 +78,8 @@ contains
          end if
       end associate
       do i = 1, size(record%contacts)
-         associate (points => record%contacts(i))
-            call check_finite([points%gap, points%pressure, points%shear, points%slip], &
+         associate (contact => record%contacts(i))
+            call check_finite([contact%gap, contact%pressure, contact%shear, contact%slip], &
                'gaps and pressures', status_no_convergence, error)
             if (allocated(error)) return
          end associate

@@ -47,8 +47,8 @@ PARTS = {
         "increment_records:contact_record",
         "friction_memory", "increment_solution:conduct",
         "listing_increments:print_interface", "listing_tables:print_contact_table",
-        "interface_reports", "all_contact_points", "result_fields:face_values", "result_fields:find_faces",
-        "zone_diagram",
+        "interface_reports", "all_contact_points", "result_fields:face_values",
+        "result_fields:find_faces", "zone_diagram",
     },
     "friction": {
         "contact_rows:combine", "friction", "zone_edges:stick_edges",

@@ -113,7 +113,7 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
-      character(:), allocatable :: course
+      character(:), allocatable :: history
 
       call take_parameter(card, 'INC', report, step%max_increments)
       if (step%max_increments < 1) then
@@ -122,9 +122,9 @@ contains
       if (.not. has_parameter(card, 'INC')) then
          call context%note('*STEP without INC=: '//to_text(step%max_increments)//' increments')
       end if
-      course = 'RAMP'
-      call choose(card, 'AMPLITUDE', 'RAMP/STEP', report, course)
-      step%ramped = course == 'RAMP'
+      history = 'RAMP'
+      call choose(card, 'AMPLITUDE', 'RAMP/STEP', report, history)
+      step%ramped = history == 'RAMP'
       step%field_frequency = before%field_frequency
       step%contact_print_frequency = before%contact_print_frequency
       if (allocated(before%node_prints)) step%node_prints = before%node_prints
