@@ -122,7 +122,7 @@ contains
       type(string_type), allocatable :: messages(:)
 
       call find_undetermined(model, points, with_source(model, held, step), conducts, messages)
-      words = joined(messages, ': all its pairs have conductance 0')
+      words = joined(messages, ': all its contact points have conductance 0')
    end function undetermined_now
 
    !> Bodies whose temperature nothing determines beside some nodes, even if all contact points

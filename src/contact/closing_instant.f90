@@ -97,7 +97,7 @@ contains
          end if
       end do
       call set_error(error, status_no_convergence, &
-         'the instants at which pairs close do not settle')
+         'the instants at which contact points close do not settle')
    end subroutine settle_laws
 
    !> Closing laws of the contact points that are closed now and were open at the start of the

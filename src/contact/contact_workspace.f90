@@ -228,7 +228,7 @@ contains
       self%driven = is_driven(self%unconstrained, self%drive, terms(self%rows%free), &
          least(self%rows%free))
       if (self%driven) call set_error(error, status_no_convergence, &
-         'the bodies are not held by their supports and the pairs that are in contact')
+         'the bodies are not held by their supports and the points that are in contact')
    end subroutine check_balance
 
    !> Moves unconstrained bodies so that contact points slip least, and open ones stay at the

@@ -40,7 +40,7 @@ contains
       k = findloc(part >= (1.0_dp - rounding)*maxval(part), .true., dim=1)
       warning = 'contact pair '//points%name//': '//nodes_of(mesh, points, k)//' lie '// &
          to_text(offset(k))//' beside each other, '//percent(part(k))//' of the node spacing '// &
-         '(pairs with more than '//percent(small_offset)//': '// &
+         '(contact points with more than '//percent(small_offset)//': '// &
          to_text(count(part > small_offset))//'); their contact forces are not in one line, '// &
          'and a moment of force times offset is lost; put the nodes opposite each other'
    end function offset_warning

@@ -56,7 +56,7 @@ contains
       else if (any(data%graph%width > 0.0_dp)) then
          deallocate (error)
          call append(workspace%record%notes, &
-            'a pair whose conductance jumps comes to no state by the '// &
+            'a contact point whose conductance jumps comes to no state by the '// &
             'method of the deck; the increment is handed to NEWTON')
          next = start
          call use_method(bodies, by_newton(controls), data, workspace, next, error)

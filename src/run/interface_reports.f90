@@ -122,7 +122,7 @@ contains
          if (f == 0) return
          warning = 'contact pair '//contact%name//': element '// &
             to_text(mesh%element_number(elements(f)))//' is '//to_text(thickness(f))// &
-            ' thick; pressure and flux of all pairs are for the thickness '// &
+            ' thick; pressure and flux of all contact points are for the thickness '// &
             to_text(thickness(1))//' of the slave''s element '// &
             to_text(mesh%element_number(elements(1)))
       end associate

@@ -67,7 +67,7 @@ def test_nodes_beside_each_other(tmp_path, shift, told):
         ("A", XS, [0.0, 1.0, 2.0], 1, 0.0)))
     assert f"contact pair F: slave node {slave} and master node {master} lie " in message
     assert float(re.search(r"lie (\S+) beside each other", message)[1]) == abs(shift)
-    assert f"{told} of the node spacing (pairs with more than 5 %: 9)" in message
+    assert f"{told} of the node spacing (contact points with more than 5 %: 9)" in message
     assert "moment" in message
 
 
@@ -189,7 +189,7 @@ def test_bodies_of_different_thickness(tmp_path):
     """The areas are the slave's; axisymmetric models have no thickness."""
     cards = blocks(thickness=("1.", "5."))
     message = one(warnings(tmp_path, cards, PRESSED), "*CONTACT PAIR")
-    assert "is 1 thick; pressure and flux of all pairs are for the thickness 5 of" in message
+    assert "is 1 thick; pressure and flux of all contact points are for the thickness 5 of" in message
     assert warnings(tmp_path, blocks(thickness=("5.", "5.")), PRESSED) == []
     assert warnings(tmp_path, ["*OPTIONS, PLANE=AXISYMMETRIC"], cards, PRESSED) == []
 

@@ -72,7 +72,7 @@ contains
       call choose(card, 'TYPE', 'ELEMENT/NODE', report, kind)
       if (kind == 'NODE') then
          call report%error(parameter_place(card, 'TYPE'), 'TYPE=NODE is refused on *SURFACE: '// &
-            'pairs need the areas and normals of faces; name elements and faces S1 to S4')
+            'contact needs the areas and normals of faces; name elements and faces S1 to S4')
          allocate(surface%faces(2, 0))
          return
       end if
