@@ -62,7 +62,7 @@ contains
       type(reduced_bodies_type), intent(inout) :: bodies !! the bodies; films change them
       type(loads_type), intent(in) :: loads                      !! loads at its end
       type(solution_state_type), intent(in) :: accepted          !! the run's state there
-      type(increment_record_type), intent(in) :: record          !! its place in the steps
+      type(increment_record_type), intent(in) :: record          !! its position in the steps
       type(error_type), allocatable :: error
       type(solution_state_type) :: before, next
       type(step_type) :: step

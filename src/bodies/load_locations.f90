@@ -97,7 +97,7 @@ contains
       end do
    end function entries_of
 
-   !> Whether an entry belongs to the place of the entry before it.
+   !> Whether an entry belongs to the location of the entry before it.
    pure logical function is_repeated(self, i)
       class(load_locations_type), intent(in) :: self
       integer, intent(in) :: i                      !! entry

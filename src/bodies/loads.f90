@@ -24,8 +24,8 @@ module loads
       real(dp), allocatable :: mass(:, :)      !! (n, n) integral of psi^p psi^q [length^2]
    end type film_side_type
 
-   !> Histories of the loads; displacements by degree of freedom, temperatures by node, all other ones
-   !> by the locations on which the deck puts loads.
+   !> Histories of the loads; displacements by degree of freedom, temperatures by node, all other
+   !> ones by the locations on which the deck puts loads.
    type :: loads_type
       type(load_history_type) :: displacement  !! (2 nodes) prescribed displacements [length]
       type(load_history_type) :: temperature   !! (nodes) prescribed temperatures [temperature]

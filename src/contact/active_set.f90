@@ -37,7 +37,7 @@ contains
    !> contact points. Motions that nothing drives or holds are least from the positions of the
    !> guess, whatever sets are tried.
    !> Errors: no active set satisfies all conditions; the bodies are not held, and then driven is
-   !> set, and the status is the one in which they are driven away.
+   !> set, and the state is the one in which they are driven away.
    subroutine solve_contact(system, load, work, state, error)
       type(contact_system_type), intent(in) :: system     !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
@@ -211,7 +211,7 @@ contains
       end associate
    end function stiffness_of_points
 
-   !> What status each contact point should have, and by how much it violates the present one.
+   !> The state that each contact point should have, and by how much it violates the present one.
    subroutine judge(system, load, work, state, next, excess)
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)

@@ -102,8 +102,9 @@ contains
       if (allocated(step%loads)) call reduce_loads(corners, new_index, step%loads)
    end subroutine reduce_step
 
-   !> Loads of nodes follow them, or are shared; those of elements stay. A share is a place of its
-   !> own, told by the node that it comes from, so that what a later step gives there replaces it.
+   !> Loads of nodes follow them, or are shared; those of elements stay. A share is a location
+   !> of its own, told by the node that it comes from, so that what a later step gives there
+   !> replaces it.
    pure subroutine reduce_loads(corners, new_index, loads)
       integer, intent(in) :: corners(:, :)
       integer, intent(in) :: new_index(:)

@@ -103,7 +103,7 @@ contains
       if (size(command%decks) > 1) command%is_batch = .true.
    end subroutine read_command
 
-   !> Reads the argument at a place, with its value where it has one.
+   !> Reads the argument at a position, with its value where it has one.
    subroutine read_argument(command, i, error)
       type(command_type), intent(inout) :: command
       integer, intent(inout) :: i
