@@ -7,8 +7,8 @@
 !> inner corner, end with one whose rows follow from those of the others: they become links.
 !>
 !> Contact points of a cycle that all stick share their friction in a way that statics leaves open,
-!> and their relations depend on each other. They therefore give by a small part of what the bodies
-!> give.
+!> and their relations depend on each other. They therefore have a small part of the bodies'
+!> compliance.
 module contact_constraints
    use constraint_elimination, only: constraint_rows_type, eliminate
    use errors, only: error_type, set_error, status_deck
@@ -21,7 +21,7 @@ module contact_constraints
    public :: constrain_displacements, constrain_temperatures, in_cycle, stiffness_alone, &
       cycle_compliance
 
-   !> Part of the bodies' compliance at its nodes by which a stuck contact point of a cycle gives.
+   !> Compliance of a stuck contact point of a cycle, as a part of the bodies' at its nodes.
    real(dp), parameter :: cycle_compliance = 1.0e-8_dp
 
    !> Part of the bodies' stiffness at its nodes below which a contact point's own is rounding.

@@ -63,7 +63,7 @@ contains
       end associate
    end subroutine set_motions
 
-   !> The links of the cycles, and how much their stuck contact points give.
+   !> The links of the cycles, and the compliance of their stuck contact points.
    pure subroutine set_cycles(mechanical, points, contact)
       type(field_problem_type), intent(in) :: mechanical
       type(all_contact_points_type), intent(in) :: points

@@ -15,8 +15,8 @@
 !>    stick  d_n = h           (1 - f) (d_t - d_t,i) + f (c_n lambda_n + c_t lambda_t) = 0
 !>
 !> Contact points that form cycles have the forces of their links (linear_constraints) among the
-!> unknowns, on which nothing else acts; where such a contact point sticks it gives a little: d_t +
-!> compliance lambda_t takes the place of d_t.
+!> unknowns, on which nothing else acts; where such a contact point sticks it has a small
+!> compliance: d_t + compliance lambda_t replaces d_t.
 !>
 !> Supports may leave bodies free to move as rigid ones: S has these motions as null vectors. Where
 !> an active set does not hold them either, the system is solved beside the motions, bordered by
