@@ -1,7 +1,7 @@
 !> The quantities of an interface whose errors are estimated.
 module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
    use contact_states, only: contact_open
    use controls, only: thermal_scheme_type

@@ -2,7 +2,7 @@
 !> loads, and the maps between both meshes. The old mesh's fields are fields of the new one.
 module refined_model
    use bodies, only: find_bodies
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use errors, only: error_type
    use kinds, only: dp
    use loads, only: loads_type

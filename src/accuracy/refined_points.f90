@@ -251,7 +251,7 @@ contains
       real(dp), intent(in) :: temperature(:)         !! (nodes) [temperature]
       real(dp) :: rates(size(self%contact_state))    !! (m) [power]
 
-      rates = points%weight*self%omega*(temperature(points%slave) - temperature(points%master))
+      rates = points%weight*self%omega*points%jumps(temperature)
    end function heat
 
 end module refined_points

@@ -229,8 +229,7 @@ contains
 
       associate (points => bodies%points, t => temperature)
          heat = heat_residual(bodies%thermal%matrix%multiply(t), net_heat(0.0_dp*t, &
-            coarse%film, t), points, points%weight*coarse%omega*(t(points%slave) - &
-            t(points%master)))
+            coarse%film, t), points, points%weight*coarse%omega*points%jumps(t))
       end associate
    end function heat_taken
 

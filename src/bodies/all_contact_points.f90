@@ -1,14 +1,16 @@
 !> The contact points of all interfaces in one row, as the solution works on them.
 module all_contact_points
    use conductance_laws, only: conductance_law_type
-   use contact_pairs, only: contact_points_type, make_contact_points
+   use interface_points, only: make_contact_points
+   use contact_points, only: contact_points_type
    use errors, only: error_type
    use kinds, only: dp
    use model, only: model_type
+   use sum_lists, only: sum_list_type
    implicit none
    private
    public :: all_contact_points_type, match_surfaces, joined_points
-   public :: find_held_axes, over_constrained, held_approach, tangential_position
+   public :: find_held_axes, over_constrained, held_approach, tangential_positions
 
    !> Component of a normal along the only free axis that is rounding: the normal motion of such a
    !> contact point is prescribed.
@@ -18,6 +20,8 @@ module all_contact_points
    type :: all_contact_points_type
       integer, allocatable :: interface_start(:)     !! (interfaces + 1) first contact point of each
       integer, allocatable :: slave(:), master(:)             !! (m) node indexes
+      !> (m, nodes) slave's value less master's, as the mean that the contact point takes of each
+      type(sum_list_type) :: difference
       real(dp), allocatable :: weight(:)                      !! (m) tributary areas [length^2]
       real(dp), allocatable :: initial_gap(:)                 !! (m) h [length]
       real(dp), allocatable :: friction(:)                    !! (m) mu [-]
@@ -26,6 +30,12 @@ module all_contact_points
       !> (m) the axis, 1 or 2, along which supports hold both nodes, while they leave one of them
       !> free along the other axis; else 0
       integer, allocatable :: held_axis(:)
+   contains
+      procedure :: jumps
+      procedure :: relative
+      procedure :: add_heat
+      procedure :: add_forces
+      procedure :: nodes_of
    end type all_contact_points_type
 
 contains
@@ -53,7 +63,7 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! in the order of the deck
       type(model_type), intent(in) :: model
       type(all_contact_points_type) :: row                  !! all their contact points
-      integer :: i, first, last, m
+      integer :: i, first, k, last, m
 
       allocate (row%interface_start(size(interfaces) + 1))
       row%interface_start(1) = 1
@@ -64,6 +74,7 @@ contains
       allocate (row%slave(m), row%master(m), row%weight(m), row%initial_gap(m), row%friction(m), &
          row%normal(2, m), row%tangent(2, m), row%law(m))
       allocate (row%held_axis(m), source=0)
+      call row%difference%reserve(m, 2*m)
       do i = 1, size(interfaces)
          first = row%interface_start(i)
          last = row%interface_start(i + 1) - 1
@@ -75,12 +86,66 @@ contains
          row%tangent(:, first:last) = interfaces(i)%tangent
          row%friction(first:last) = model%interactions(model%contacts(i)%interaction)%friction
          row%law(first:last) = model%interactions(model%contacts(i)%interaction)%law
+         do k = 1, last - first + 1
+            call row%difference%add(interfaces(i)%difference%values_of(k), &
+               interfaces(i)%difference%coefficients_of(k))
+         end do
       end do
    end function joined_points
 
-   !> Finds the contact points that supports hold along one axis on both nodes. Their contact
-   !> condition stays, along their own normal; the only relative motion that is free is the one
-   !> along the other axis.
+   !> Slave's value less master's of a field, at every contact point.
+   pure function jumps(self, field)
+      class(all_contact_points_type), intent(in) :: self
+      real(dp), intent(in) :: field(:)             !! (nodes)
+      real(dp) :: jumps(size(self%slave))          !! (m)
+
+      jumps = 0.0_dp
+      call self%difference%add_totals(field, jumps)
+   end function jumps
+
+   !> Slave's displacement less master's, at every contact point.
+   pure function relative(self, displacement)
+      class(all_contact_points_type), intent(in) :: self
+      real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
+      real(dp) :: relative(2, size(self%slave))    !! (2, m) [length]
+
+      relative(1, :) = self%jumps(displacement(1::2))
+      relative(2, :) = self%jumps(displacement(2::2))
+   end function relative
+
+   !> Adds what leaves the slave's nodes through the contact points, and enters the master's.
+   pure subroutine add_heat(self, heat, rates)
+      class(all_contact_points_type), intent(in) :: self
+      real(dp), intent(in) :: heat(:)              !! (m) heat from slave to master [power]
+      real(dp), intent(inout) :: rates(:)          !! (nodes) [power]
+
+      call self%difference%add_shares(heat, rates)
+   end subroutine add_heat
+
+   !> Adds the nodal forces of forces on the slave at the contact points, and of their opposites on
+   !> the master.
+   pure subroutine add_forces(self, on_slave, forces)
+      class(all_contact_points_type), intent(in) :: self
+      real(dp), intent(in) :: on_slave(:, :)       !! (2, m) [force]
+      real(dp), intent(inout) :: forces(:)         !! (2 nodes) [force]
+
+      call self%difference%add_shares(on_slave(1, :), forces(1::2))
+      call self%difference%add_shares(on_slave(2, :), forces(2::2))
+   end subroutine add_forces
+
+   !> The nodes whose values a contact point takes.
+   pure function nodes_of(self, k) result(nodes)
+      class(all_contact_points_type), intent(in) :: self
+      integer, intent(in) :: k                     !! a contact point
+      integer, allocatable :: nodes(:)
+
+      nodes = self%difference%values_of(k)
+   end function nodes_of
+
+   !> Finds the contact points that supports hold along one axis on all nodes, or on the two
+   !> opposite ones if the axis is their tangent, as on a line of symmetry: no shear acts there.
+   !> Their contact condition stays, along their own normal; the only relative motion that is free
+   !> is the one along the other axis.
    pure subroutine find_held_axes(points, held)
       type(all_contact_points_type), intent(inout) :: points !! all contact points
       logical, intent(in) :: held(:)                        !! (2 nodes) prescribed displacements
@@ -88,7 +153,8 @@ contains
       integer :: k
 
       do k = 1, size(points%slave)
-         both = on_both_nodes(points, held, k)
+         both = on_all_nodes(points, held, k) .or. (on_both_nodes(points, held, k) .and. &
+            abs(points%normal(:, k)) <= least_slant)
          points%held_axis(k) = merge(merge(1, 2, both(1)), 0, both(1) .neqv. both(2))
       end do
    end subroutine find_held_axes
@@ -103,11 +169,23 @@ contains
       integer :: k
 
       do k = 1, size(points%slave)
-         both = on_both_nodes(points, held, k)
+         both = on_all_nodes(points, held, k)
          too_much(k) = any(both) .and. (all(both) .or. &
             abs(points%normal(merge(2, 1, both(1)), k)) <= least_slant)
       end do
    end function over_constrained
+
+   !> Axes along which all nodes whose values a contact point takes are held.
+   pure function on_all_nodes(points, held, k) result(all_held)
+      type(all_contact_points_type), intent(in) :: points
+      logical, intent(in) :: held(:)
+      integer, intent(in) :: k
+      logical :: all_held(2)
+
+      associate (nodes => points%nodes_of(k))
+         all_held = [all(held(2*nodes - 1)), all(held(2*nodes))]
+      end associate
+   end function on_all_nodes
 
    !> Axes along which both nodes of a contact point are held.
    pure function on_both_nodes(points, held, k) result(both)
@@ -125,33 +203,34 @@ contains
       type(all_contact_points_type), intent(in) :: points !! all contact points
       real(dp), intent(in) :: given(:)             !! (2 nodes) prescribed displacements [length]
       real(dp) :: approach(size(points%slave))     !! (m) [length]
+      real(dp) :: relative(2, size(approach))
       integer :: axis, k
 
       approach = 0.0_dp
+      relative = points%relative(given)
       do k = 1, size(approach)
          axis = points%held_axis(k)
-         if (axis > 0) approach(k) = points%normal(axis, k)* &
-            (given(2*points%slave(k) - 2 + axis) - given(2*points%master(k) - 2 + axis))
+         if (axis > 0) approach(k) = points%normal(axis, k)*relative(axis, k)
       end do
    end function held_approach
 
-   !> Position of a slave node along the tangent, relative to its master. A contact point held along
+   !> Positions of the slave along the tangents, relative to the master. A contact point held along
    !> an axis slides only as its supports do: while it is open, the position counts that it would
    !> have if it closed with the supports where they are.
-   pure function tangential_position(points, k, displacement) result(position)
+   pure function tangential_positions(points, displacement) result(position)
       type(all_contact_points_type), intent(in) :: points !! all contact points
-      integer, intent(in) :: k                     !! one of them
       real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
-      real(dp) :: position                         !! [length]
-      real(dp) :: relative(2)
-      integer :: axis
+      real(dp) :: position(size(points%slave))     !! (m) [length]
+      real(dp) :: relative(2, size(position))
+      integer :: axis, k
 
-      relative = displacement(2*points%slave(k) - 1:2*points%slave(k)) - &
-         displacement(2*points%master(k) - 1:2*points%master(k))
-      axis = points%held_axis(k)
-      if (axis > 0) relative(3 - axis) = (points%initial_gap(k) - points%normal(axis, k)* &
-         relative(axis))/points%normal(3 - axis, k)
-      position = dot_product(relative, points%tangent(:, k))
-   end function tangential_position
+      relative = points%relative(displacement)
+      do k = 1, size(position)
+         axis = points%held_axis(k)
+         if (axis > 0) relative(3 - axis, k) = (points%initial_gap(k) - points%normal(axis, k)* &
+            relative(axis, k))/points%normal(3 - axis, k)
+         position(k) = dot_product(relative(:, k), points%tangent(:, k))
+      end do
+   end function tangential_positions
 
 end module all_contact_points

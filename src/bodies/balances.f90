@@ -19,13 +19,9 @@ contains
       type(all_contact_points_type), intent(in) :: points
       real(dp), intent(in) :: contact_heat(:)    !! (m) heat from slave to master [power]
       real(dp) :: residual(size(conducted)) !! (nodes) zero where not prescribed [power]
-      integer :: k
 
       residual = conducted - load
-      do k = 1, size(contact_heat)
-         residual(points%slave(k)) = residual(points%slave(k)) + contact_heat(k)
-         residual(points%master(k)) = residual(points%master(k)) - contact_heat(k)
-      end do
+      call points%add_heat(contact_heat, residual)
    end function heat_residual
 
    !> Heat of the contact points, from slave to master, in (3.4): the terms with G of both sides.
@@ -53,17 +49,12 @@ contains
       type(all_contact_points_type), intent(in) :: points
       type(contact_state_type), intent(in) :: state  !! contact forces
       real(dp) :: residual(size(internal)) !! (2 nodes) zero where not prescribed [force]
-      real(dp) :: on_slave(2)
-      integer :: k, slave_dof, master_dof
+      real(dp) :: from_slave(2, size(points%slave))
 
       residual = internal - load
-      do k = 1, size(points%slave)
-         on_slave = state%shear_force(k)*points%tangent(:, k) - state%force(k)*points%normal(:, k)
-         slave_dof = 2*points%slave(k)
-         master_dof = 2*points%master(k)
-         residual(slave_dof - 1:slave_dof) = residual(slave_dof - 1:slave_dof) - on_slave
-         residual(master_dof - 1:master_dof) = residual(master_dof - 1:master_dof) + on_slave
-      end do
+      from_slave = spread(state%force, 1, 2)*points%normal - &
+         spread(state%shear_force, 1, 2)*points%tangent
+      call points%add_forces(from_slave, residual)
    end function force_residual
 
    !> Largest imbalance, relative: of any single unsupported row, and per body and direction of the
@@ -115,27 +106,29 @@ contains
       real(dp), intent(in) :: length_scale           !! largest displacement [length]
       real(dp), intent(in) :: force_scale            !! largest force [force]
       real(dp) :: violation                          !! relative
-      real(dp) :: force(2), relative(2), gap, normal_force, shear_force, slip, cone
-      real(dp) :: left(size(unbalanced))
+      real(dp) :: force(2), gap, normal_force, shear_force, slip, cone
+      real(dp) :: left(size(unbalanced)), relative(2, size(points%slave))
       integer :: c, k, slave_dof, master_dof
 
       violation = 0.0_dp
       ! A node may be in several contact points: what they leave over goes to each of them.
       left = force_residual(unbalanced, 0.0_dp*unbalanced, points, state)
+      relative = points%relative(displacement)
       do k = 1, size(points%slave)
          force = state%shear_force(k)*points%tangent(:, k) - state%force(k)*points%normal(:, k)
          do c = 1, 2
             slave_dof = 2*points%slave(k) - 2 + c
             master_dof = 2*points%master(k) - 2 + c
-            relative(c) = displacement(slave_dof) - displacement(master_dof)
             if (.not. supported(slave_dof)) then
                force(c) = force(c) + left(slave_dof)
             else if (.not. supported(master_dof)) then
                force(c) = force(c) - left(master_dof)
             end if
          end do
-         gap = (points%initial_gap(k) - dot_product(relative, points%normal(:, k)))/length_scale
-         slip = (dot_product(relative, points%tangent(:, k)) - state%reference(k))/length_scale
+         gap = (points%initial_gap(k) - dot_product(relative(:, k), points%normal(:, k)))/ &
+            length_scale
+         slip = (dot_product(relative(:, k), points%tangent(:, k)) - state%reference(k))/ &
+            length_scale
          normal_force = -dot_product(force, points%normal(:, k))/force_scale
          shear_force = dot_product(force, points%tangent(:, k))/force_scale
          cone = points%friction(k)*normal_force

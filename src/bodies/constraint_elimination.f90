@@ -16,6 +16,13 @@ module constraint_elimination
    !> Sum of coefficients that is rounding, as part of the row's largest coefficient.
    real(dp), parameter :: negligible = 1.0e-14_dp
 
+   !> Coefficient below which a term is dropped, as part of the row's largest coefficient. Rows of
+   !> faces that do not match couple each corner to the next ones, ever more weakly.
+   real(dp), parameter :: dropped = 1.0e-17_dp
+
+   !> Part of a row's largest coefficient that a degree of freedom needs to be written by the row.
+   real(dp), parameter :: pivot_of_choice = 0.1_dp, least_pivot = 0.5_dp
+
    !> The rows.
    type, extends(sum_list_type) :: constraint_rows_type
       integer :: components = 1                 !! degrees of freedom of a node
@@ -23,6 +30,7 @@ module constraint_elimination
       logical, allocatable :: on_tail(:)        !! (introduced values) those that contact acts on
       !> (rows) the constraint that a row is part of; its rows follow each other
       integer, allocatable :: constraint(:)
+      integer, allocatable :: choice(:)         !! (rows) degree of freedom to be written, if left
    end type constraint_rows_type
 
    !> Degrees of freedom as they are written by other values.
@@ -36,7 +44,8 @@ module constraint_elimination
 contains
 
    !> The constraints of these rows. Of the degrees of freedom that are left in a row it writes the
-   !> one that entered the rows last; of the values of one row the last enters first.
+   !> row's choice, else the one that entered the rows last; of the values of one row the last
+   !> enters first.
    pure subroutine eliminate(rows, used, constraints)
       type(constraint_rows_type), intent(in) :: rows
       logical, intent(in) :: used(:)                !! (dofs) whether elements have them
@@ -94,12 +103,16 @@ contains
       real(dp), allocatable :: coefficient(:)
       logical, allocatable :: left(:)
       integer :: chosen
+      real(dp) :: pivot
 
       call resolve(found, rows, row, value, coefficient)
       left = value <= rows%dofs .and. abs(coefficient) > negligible*largest(rows, row)
       if (.not. any(left)) return
-      left = left .and. abs(coefficient) >= 0.5_dp*maxval(abs(coefficient), mask=left)
-      chosen = maxloc(found%entry(value), mask=left, dim=1)
+      pivot = maxval(abs(coefficient), mask=left)
+      chosen = findloc(left .and. value == rows%choice(row) .and. &
+         abs(coefficient) >= pivot_of_choice*pivot, .true., dim=1)
+      if (chosen == 0) chosen = maxloc(found%entry(value), &
+         mask=left .and. abs(coefficient) >= least_pivot*pivot, dim=1)
       found%writer(value(chosen)) = found%sums%count + 1
       associate (factor => -1.0_dp/coefficient(chosen))
          coefficient(chosen) = 0.0_dp
@@ -126,13 +139,20 @@ contains
       integer, allocatable, intent(out) :: value(:)
       real(dp), allocatable, intent(out) :: coefficient(:)
       integer :: k, n, entry
+      real(dp) :: scale
 
       value = sums%value(sums%start(i):sums%start(i + 1) - 1)
       coefficient = sums%coefficient(sums%start(i):sums%start(i + 1) - 1)
       if (all(found%writer(value) == 0)) return
+      scale = maxval(abs(coefficient))
       do
          k = findloc(found%writer(value) > 0, .true., dim=1)
          if (k == 0) exit
+         if (abs(coefficient(k)) <= dropped*scale) then
+            coefficient = [coefficient(:k - 1), coefficient(k + 1:)]
+            value = [value(:k - 1), value(k + 1:)]
+            cycle
+         end if
          associate (first => found%sums%start(found%writer(value(k))), &
             last => found%sums%start(found%writer(value(k)) + 1) - 1)
             coefficient = [coefficient(:k - 1), coefficient(k)*found%sums%coefficient(first:last), &

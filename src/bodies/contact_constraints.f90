@@ -48,7 +48,7 @@ contains
             'a contact pair whose normal motion is prescribed on both nodes')
          return
       end if
-      call begin_rows(held, 2, size(points%slave), rows)
+      call begin_rows(held, 2, points, rows)
       do k = 1, size(points%slave)
          rows%on_tail(2*k - 1:2*k) = [.true., points%friction(k) > 0.0_dp]
          axis = points%held_axis(k)
@@ -75,10 +75,10 @@ contains
       type(constraint_rows_type) :: rows
       integer :: k
 
-      call begin_rows(held, 1, size(points%slave), rows)
+      call begin_rows(held, 1, points, rows)
       rows%on_tail = .true.
       do k = 1, size(points%slave)
-         if (held(points%slave(k)) .and. held(points%master(k))) cycle
+         if (all(held(points%nodes_of(k)))) cycle
          call relate(points, k, 1, slave_leads, [1.0_dp], rows)
       end do
       call eliminate(rows, used, constraints)
@@ -87,40 +87,49 @@ contains
    !> The rows of the supports, u - g = 0.
    pure subroutine begin_rows(held, components, points, rows)
       logical, intent(in) :: held(:)
-      integer, intent(in) :: components, points
+      integer, intent(in) :: components
+      type(all_contact_points_type), intent(in) :: points
       type(constraint_rows_type), intent(out) :: rows
-      integer :: dof
+      integer :: dof, introduced, most
 
       rows%components = components
       rows%dofs = size(held)
-      allocate (rows%on_tail(components*points))
-      associate (most => count(held) + components*points)
-         call rows%reserve(most, 2*count(held) + (2 + components)*components*points)
-         allocate (rows%constraint(most))
-      end associate
+      introduced = components*size(points%slave)
+      most = count(held) + introduced
+      allocate (rows%on_tail(introduced), rows%constraint(most), rows%choice(most))
+      call rows%reserve(most, 2*count(held) + components*(introduced + &
+         size(points%difference%value)))
       do dof = 1, size(held)
          if (.not. held(dof)) cycle
-         call rows%add([dof, size(held) + components*points + dof], [1.0_dp, -1.0_dp])
+         call rows%add([dof, size(held) + introduced + dof], [1.0_dp, -1.0_dp])
          rows%constraint(rows%count) = dof
+         rows%choice(rows%count) = dof
       end do
    end subroutine begin_rows
 
-   !> Adds the row of one component of a contact point: master + direction*relative - slave = 0.
+   !> Adds the row of one component of a contact point: direction*relative - (slave - master) = 0.
+   !> The slave's own node is to be written by the others, or the master's; on faces that do not
+   !> match always the slave's.
    pure subroutine relate(points, k, component, slave_leads, direction, rows)
       type(all_contact_points_type), intent(in) :: points
       integer, intent(in) :: k, component
       logical, intent(in) :: slave_leads(:)
       real(dp), intent(in) :: direction(:)
       type(constraint_rows_type), intent(inout) :: rows
-      integer :: dof(2), i
-      real(dp) :: sign
+      integer, allocatable :: nodes(:)
+      real(dp), allocatable :: share(:)
+      integer :: i
 
-      dof = rows%components*([points%slave(k), points%master(k)] - 1) + component
-      sign = merge(1.0_dp, -1.0_dp, slave_leads(k))
-      if (slave_leads(k)) dof = dof([2, 1])
-      call rows%add([dof, (rows%dofs + rows%components*(k - 1) + i, i=1, size(direction))], &
-         [sign, -sign, direction])
+      nodes = points%nodes_of(k)
+      share = points%difference%coefficients_of(k)
+      if (slave_leads(k) .and. size(nodes) == 2) then
+         nodes = nodes([2, 1])
+         share = share([2, 1])
+      end if
+      call rows%add([rows%components*(nodes - 1) + component, &
+         (rows%dofs + rows%components*(k - 1) + i, i=1, size(direction))], [-share, direction])
       rows%constraint(rows%count) = rows%dofs + k
+      rows%choice(rows%count) = rows%components*(nodes(1) - 1) + component
    end subroutine relate
 
    !> Contact points that are part of a cycle.
@@ -138,7 +147,7 @@ contains
    pure function stiffness_alone(own, matrix, nodes, components) result(stiffness)
       real(dp), intent(in) :: own                         !! diagonal entry on the tail
       type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) of the bodies
-      integer, intent(in) :: nodes(2)                     !! slave and master
+      integer, intent(in) :: nodes(:)                     !! those that it takes its values of
       integer, intent(in) :: components                   !! degrees of freedom of a node
       real(dp) :: stiffness                               !! in the unit of the matrix
 

@@ -10,6 +10,9 @@ module contact_reduction
    use all_contact_points, only: all_contact_points_type
    implicit none
    private
+
+   !> Part of the bodies' stiffness at its nodes below which a contact point's is rounding.
+   real(dp), parameter :: strainless = 1.0e-10_dp
    public :: contact_system_of
 
 contains
@@ -40,18 +43,18 @@ contains
       type(all_contact_points_type), intent(in) :: points
       real(dp), intent(in) :: rigid(:, :)
       type(contact_system_type), intent(inout) :: contact
-      real(dp), allocatable :: forces(:, :), relative(:, :)
-      integer :: k, master_dof, slave_dof
+      real(dp), allocatable :: forces(:, :)
+      real(dp) :: relative(2, size(points%slave))
+      integer :: i, k
 
       allocate (contact%rigid(size(contact%schur, 1), size(rigid, 2)), source=0.0_dp)
-      do k = 1, size(points%slave)
-         slave_dof = 2*points%slave(k)
-         master_dof = 2*points%master(k)
-         relative = rigid(slave_dof - 1:slave_dof, :) - rigid(master_dof - 1:master_dof, :)
-         contact%rigid(contact%normal(k), :) = matmul(points%normal(:, k), relative)
-         if (contact%tangent(k) > 0) then
-            contact%rigid(contact%tangent(k), :) = matmul(points%tangent(:, k), relative)
-         end if
+      do i = 1, size(rigid, 2)
+         relative = points%relative(rigid(:, i))
+         do k = 1, size(points%slave)
+            contact%rigid(contact%normal(k), i) = dot_product(points%normal(:, k), relative(:, k))
+            if (contact%tangent(k) > 0) contact%rigid(contact%tangent(k), i) = &
+               dot_product(points%tangent(:, k), relative(:, k))
+         end do
       end do
       contact%motion = column_space(contact%rigid)
       if (size(contact%motion, 2) == 0) return
@@ -68,7 +71,7 @@ contains
       type(field_problem_type), intent(in) :: mechanical
       type(all_contact_points_type), intent(in) :: points
       type(contact_system_type), intent(inout) :: contact
-      integer :: k, nodes(2)
+      integer :: k
 
       associate (map => mechanical%map, cyclic => in_cycle(mechanical%map, size(points%slave)))
          contact%link = map%tail_index(map%link_force)
@@ -76,10 +79,16 @@ contains
          contact%alone = [(contact%schur(contact%normal(k), contact%normal(k)), &
             k=1, size(points%slave))]
          do k = 1, size(points%slave)
-            if (.not. cyclic(k)) cycle
-            nodes = [points%slave(k), points%master(k)]
-            contact%compliance(k) = cycle_compliance/node_stiffness(mechanical%matrix, nodes, 2)
-            contact%alone(k) = stiffness_alone(contact%alone(k), mechanical%matrix, nodes, 2)
+            associate (nodes => points%nodes_of(k))
+               if (.not. cyclic(k)) then
+                  ! Two contact points that carry a body on their own move it without any strain.
+                  if (contact%alone(k) <= strainless*node_stiffness(mechanical%matrix, nodes, 2)) &
+                     contact%alone(k) = node_stiffness(mechanical%matrix, nodes, 2)
+                  cycle
+               end if
+               contact%compliance(k) = cycle_compliance/node_stiffness(mechanical%matrix, nodes, 2)
+               contact%alone(k) = stiffness_alone(contact%alone(k), mechanical%matrix, nodes, 2)
+            end associate
          end do
       end associate
    end subroutine set_cycles

@@ -3,7 +3,7 @@
 module reduced_bodies
    use contact_constraints, only: constrain_displacements, constrain_temperatures, in_cycle, &
       stiffness_alone
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_reduction, only: contact_system_of
    use contact_system, only: contact_system_type
    use element_kinds, only: element_node_count
@@ -283,7 +283,7 @@ contains
          conductance(k) = self%thermal%solver%schur(self%jump_index(k), self%jump_index(k))
          if (.not. cyclic(k)) cycle
          conductance(k) = stiffness_alone(conductance(k), self%thermal%matrix, &
-            [self%points%slave(k), self%points%master(k)], 1)
+            self%points%nodes_of(k), 1)
       end do
    end function conductors
 

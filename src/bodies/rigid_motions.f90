@@ -19,10 +19,10 @@ module rigid_motions
    real(dp), parameter :: nothing = 1.0e-6_dp        !! component of a motion that counts as none
    real(dp), parameter :: unit(2, 2) = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
 
-   !> What a contact point holds: two nodes have one displacement along a direction.
+   !> What a contact point holds: along a direction, a sum of displacements of nodes is zero.
    type :: contact_tie_type
-      integer :: slave = 0                      !! node index
-      integer :: master = 0                     !! node index
+      integer, allocatable :: nodes(:)          !! (n) node indexes
+      real(dp), allocatable :: share(:)         !! (n) their coefficients, the master's negative
       real(dp) :: direction(2) = 0.0_dp         !! unit vector
    end type contact_tie_type
 
@@ -118,7 +118,7 @@ contains
       type(contact_tie_type), intent(in) :: ties(:)
       real(dp) :: rows(count(held) + size(ties) + 2*count(bodies_on_axis(mesh)), 3*mesh%body_count)
       logical :: on_axis(mesh%body_count)
-      integer :: body, c, i, n, node
+      integer :: body, c, i, k, n, node
 
       rows = 0.0_dp
       on_axis = bodies_on_axis(mesh)
@@ -138,8 +138,10 @@ contains
       end do
       do i = 1, size(ties)
          n = n + 1
-         rows(n, :) = displacement_row(mesh, bodies, ties(i)%slave, ties(i)%direction) - &
-            displacement_row(mesh, bodies, ties(i)%master, ties(i)%direction)
+         do k = 1, size(ties(i)%nodes)
+            rows(n, :) = rows(n, :) + ties(i)%share(k)*displacement_row(mesh, bodies, &
+               ties(i)%nodes(k), ties(i)%direction)
+         end do
       end do
    end function conditions
 

@@ -84,13 +84,25 @@ contains
       do k = 1, size(contact_state)
          if (contact_state(k) == contact_open) cycle
          n = n + 1
-         ties(n) = contact_tie_type(points%slave(k), points%master(k), points%normal(:, k))
+         ties(n) = tie_of(points, k, points%normal(:, k))
          if (contact_state(k) /= contact_stick) cycle
          n = n + 1
-         ties(n) = contact_tie_type(points%slave(k), points%master(k), points%tangent(:, k))
+         ties(n) = tie_of(points, k, points%tangent(:, k))
       end do
       call find_free_motions(model%mesh, held, ties(:n), motions)
    end subroutine free_motions
+
+   !> What a contact point holds along a direction.
+   pure function tie_of(points, k, direction) result(tie)
+      type(all_contact_points_type), intent(in) :: points
+      integer, intent(in) :: k
+      real(dp), intent(in) :: direction(2)
+      type(contact_tie_type) :: tie
+
+      tie%nodes = points%nodes_of(k)
+      tie%share = points%difference%coefficients_of(k)
+      tie%direction = direction
+   end function tie_of
 
    !> Bodies whose temperature nothing can ever determine: contact points count as conducting where
    !> one side of their law is given. One message a body.

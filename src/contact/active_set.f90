@@ -200,13 +200,13 @@ contains
       end do
    end function positions
 
-   !> Stiffness of the softest contact point, alone; contact points that close a cycle have none of
-   !> their own.
+   !> Stiffness of the softest contact point, alone; contact points that close a cycle, and those
+   !> that move a rigid body, have none of their own.
    pure real(dp) function stiffness_of_points(system)
       type(contact_system_type), intent(in) :: system
       integer :: i
 
-      associate (own => [(system%schur(i, i), i=1, size(system%schur, 1))])
+      associate (own => [(system%schur(i, i), i=1, size(system%schur, 1)), system%alone])
          stiffness_of_points = minval(own, mask=own > nothing*maxval(own))
       end associate
    end function stiffness_of_points

@@ -2,7 +2,7 @@
 !> axisymmetric model, where a three-node side gives its corner the integral of N1 2 pi r, and at
 !> the tip of sides with quarter points.
 module contact_tractions
-   use contact_pairs, only: contact_points_type, on_axis
+   use contact_points, only: contact_points_type, on_axis
    use kinds, only: dp
    implicit none
    private

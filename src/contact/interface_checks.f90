@@ -2,6 +2,7 @@
 module interface_checks
    use chain_geometry, only: chain_tangents
    use contact_definitions, only: contact_definition_type
+   use contact_points, only: contact_points_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
@@ -9,7 +10,8 @@ module interface_checks
    use text, only: to_text
    implicit none
    private
-   public :: check_lines, check_sides, check_weights, check_opposite, blame_corner
+   public :: check_shared, check_lines, check_sides, check_weights, check_opposite
+   public :: check_corner, check_covered, blame_corner
 
    !> Cosine between outward normals from which on faces look the same way: curved faces that part
    !> far from the contact may stand at right angles there.
@@ -23,12 +25,25 @@ module interface_checks
    real(dp), parameter :: sharp_turn = 0.5_dp
 
    character(*), parameter :: way_out = '; mesh both surfaces with the same divisions, so that '// &
-      'their nodes face each other'
+      'their nodes face each other, or take PAIRING=SURFACES'
 
 contains
 
-   !> The two lines are of one kind and have equally many nodes; nodes of both are no more than
-   !> common ends.
+   !> The two lines have no nodes in common but ends.
+   subroutine check_shared(mesh, definition, slave, master, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: slave           !! line of the slave
+      type(surface_chain_type), intent(in) :: master !! line of the master, along the slave's
+      type(error_type), allocatable, intent(out) :: error     !! the node
+      character(:), allocatable :: message
+
+      message = shared_node(mesh, slave, master)
+      if (len(message) > 0) call set_error(error, status_deck, &
+         'contact pair '//definition%name//': '//message)
+   end subroutine check_shared
+
+   !> The two lines are of one kind and have equally many nodes.
    subroutine check_lines(mesh, definition, slave, master, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
@@ -42,20 +57,21 @@ contains
          if (slave%side_nodes /= master%side_nodes) then
             message = 'surface '//slave_name//' has sides of '//to_text(slave%side_nodes)// &
                ' nodes, surface '//master_name//' of '//to_text(master%side_nodes)// &
-               '; mesh both with elements with midside nodes, or both without'
+               '; mesh both with elements with midside nodes, or both without, '// &
+               'or take PAIRING=SURFACES'
          else if (slave%closed .neqv. master%closed) then
             message = 'one of the surfaces '//slave_name//' and '//master_name// &
-               ' is a closed ring, the other one an open line; let both be rings or both open'
+               ' is a closed ring, the other one an open line; let both be rings or both '// &
+               'open, or take PAIRING=SURFACES'
          else if (size(slave%nodes) /= size(master%nodes)) then
             message = to_text(size(slave%nodes))//' slave nodes but '// &
                to_text(size(master%nodes))//' master nodes; '//without_partner(mesh, slave%nodes, &
                master%nodes)//way_out
          else
-            message = shared_node(mesh, slave, master)
+            return
          end if
       end associate
-      if (len(message) > 0) call set_error(error, status_deck, &
-         'contact pair '//definition%name//': '//message)
+      call set_error(error, status_deck, 'contact pair '//definition%name//': '//message)
    end subroutine check_lines
 
    !> Names the first node of the longer line that has no partner: to the node of the other line
@@ -100,22 +116,24 @@ contains
       type(surface_chain_type), intent(in) :: slave, master
       character(:), allocatable :: message
       logical, allocatable :: of_slave(:)
-      integer :: inner, k, n
+      integer :: inner, k
 
       message = ''
-      n = size(slave%nodes)
       inner = 0
       allocate (of_slave(size(mesh%node_number)), source=.false.)
       of_slave(slave%nodes) = .true.
-      do k = 1, n
-         if (of_slave(master%nodes(k))) then
-            if (.not. slave%closed .and. (k == 1 .or. k == n) .and. &
-               slave%nodes(k) == master%nodes(k)) cycle
-            message = 'node '//to_text(mesh%node_number(master%nodes(k)))//' belongs to both '// &
-               'surfaces; only common ends, as at the tip of a crack, may: end them there'
-            return
-         end if
-         inner = inner + 1
+      do k = 1, size(master%nodes)
+         associate (node => master%nodes(k))
+            if (.not. of_slave(node)) then
+               inner = inner + 1
+            else if (slave%closed .or. master%closed .or. .not. ((k == 1 .and. &
+               node == slave%nodes(1)) .or. (k == size(master%nodes) .and. &
+               node == slave%nodes(size(slave%nodes))))) then
+               message = 'node '//to_text(mesh%node_number(node))//' belongs to both '// &
+                  'surfaces; only common ends, as at the tip of a crack, may: end them there'
+               return
+            end if
+         end associate
       end do
       if (inner == 0) message = 'both surfaces consist of the same nodes'
    end function shared_node
@@ -229,23 +247,67 @@ contains
          '; its midside nodes are too far from the middle')
    end subroutine check_weights
 
-   !> Refuses a contact point whose tangential offset exceeds half of what is allowed it.
-   subroutine check_opposite(mesh, name, slave, master, tangent, twice_allowed, error)
+   !> Refuses a contact point whose tangential offset exceeds half of its element's edge or of its
+   !> gap.
+   subroutine check_opposite(mesh, points, error)
       type(mesh_type), intent(in) :: mesh
-      character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
-      integer, intent(in) :: slave(:), master(:)          !! (m) nodes
-      real(dp), intent(in) :: tangent(:, :)               !! (2, m) unit tangents, 0 where none
-      real(dp), intent(in) :: twice_allowed(:)            !! (m) element edge or gap [length]
+      type(contact_points_type), intent(in) :: points     !! node pairs of one interface
       type(error_type), allocatable, intent(out) :: error !! the first such contact point
-      real(dp) :: offset(size(slave))
+      real(dp) :: offset(size(points%slave_node))
       integer :: k
 
-      offset = abs(sum(tangent*(mesh%coordinates(:, master) - mesh%coordinates(:, slave)), dim=1))
-      k = findloc(offset > 0.5_dp*twice_allowed .or. norm2(tangent, dim=1) < 0.5_dp, .true., dim=1)
-      if (k == 0) return
-      call set_error(error, status_deck, 'contact pair '//name//': slave node '// &
-         to_text(mesh%node_number(slave(k)))//' and master node '// &
-         to_text(mesh%node_number(master(k)))//' are not opposite each other'//way_out)
+      associate (slave => points%slave_node, master => points%master_node)
+         offset = abs(sum(points%tangent*(mesh%coordinates(:, master) - &
+            mesh%coordinates(:, slave)), dim=1))
+         k = findloc(offset > 0.5_dp*max(points%edge, abs(points%initial_gap)) .or. &
+            norm2(points%tangent, dim=1) < 0.5_dp, .true., dim=1)
+         if (k == 0) return
+         call set_error(error, status_deck, 'contact pair '//points%name//': slave node '// &
+            to_text(mesh%node_number(slave(k)))//' and master node '// &
+            to_text(mesh%node_number(master(k)))//' are not opposite each other'//way_out)
+      end associate
    end subroutine check_opposite
+
+   !> Refuses a slave face that goes round a corner: its normals there would point nowhere.
+   subroutine check_corner(mesh, definition, slave, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: slave           !! line of the slave
+      type(error_type), allocatable, intent(out) :: error     !! the corner
+      integer :: node
+
+      node = sharp_corner(mesh, slave)
+      if (node == 0) return
+      associate (surface => mesh%surfaces(definition%slave))
+         call set_error(error, status_deck, 'contact pair '//definition%name// &
+            ': the slave surface '//surface%name//' goes round a corner at node '// &
+            to_text(mesh%node_number(node))//': leave out the faces behind it that are not in '// &
+            'contact, or make a surface of each side', surface%card)
+      end associate
+   end subroutine check_corner
+
+   !> Refuses faces of which none lies opposite the other surface.
+   subroutine check_covered(mesh, definition, slave, master, turned, points, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: slave, master   !! their lines
+      logical, intent(in) :: turned(2) !! whether slave and master run against their chains
+      integer, intent(in) :: points                           !! contact points found
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: tangents(2, size(slave%nodes)), outward(2)
+      integer :: k
+
+      if (points > 0) return
+      call set_error(error, status_deck, 'contact pair '//definition%name// &
+         ': no face of the master lies opposite the slave, along the normals of the slave')
+      tangents = chain_tangents(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
+      k = (size(slave%nodes) + 1)/2
+      outward = [tangents(2, k), -tangents(1, k)]
+      if (turned(1)) outward = -outward
+      associate (x => mesh%coordinates)
+         call blame_side(mesh, definition, dot_product(outward, &
+            sum(x(:, master%nodes), dim=2)/size(master%nodes) - x(:, slave%nodes(k))), error)
+      end associate
+   end subroutine check_covered
 
 end module interface_checks

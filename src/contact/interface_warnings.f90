@@ -1,13 +1,14 @@
 !> Contact points that can be solved, but perhaps not as meant: nodes beside each other, bodies
 !> inside each other.
 module interface_warnings
-   use contact_pairs, only: contact_points_type
+   use contact_definitions, only: pairing_nodes
+   use contact_points, only: contact_points_type
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
    use text, only: to_text
    implicit none
    private
-   public :: offset_warning, overlap_warning
+   public :: faces_match, offset_warning, overlap_warning
 
    !> Part of the node spacing from which on an offset is warned of. It misplaces the force of the
    !> contact point, as lumping does: where the pressure varies by half of its mean from node to
@@ -19,13 +20,24 @@ module interface_warnings
 
 contains
 
-   !> Names the contact point whose nodes lie farthest beside each other, as a part of the node
-   !> spacing. Offsets up to half the gap are those of curved faces that part far from the contact.
-   pure function offset_warning(mesh, points) result(warning)
+   !> Whether all nodes lie opposite each other, so that node pairs are accurate.
+   pure logical function faces_match(mesh, points)
       type(mesh_type), intent(in) :: mesh
-      type(contact_points_type), intent(in) :: points    !! contact points of one interface
-      character(:), allocatable :: warning               !! empty where all lie opposite
-      real(dp) :: offset(size(points%edge)), part(size(points%edge)), apart(2)
+      type(contact_points_type), intent(in) :: points    !! node pairs of one interface
+      real(dp) :: offset(size(points%edge)), part(size(points%edge))
+
+      call find_offsets(mesh, points, offset, part)
+      faces_match = all(part <= small_offset .and. norm2(points%tangent, dim=1) > 0.5_dp)
+   end function faces_match
+
+   !> How far the nodes lie beside each other. Offsets up to half the gap, as of curved faces that
+   !> part far from the contact, count as none in the node spacing.
+   pure subroutine find_offsets(mesh, points, offset, part)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(out) :: offset(:)                 ! (m) [length]
+      real(dp), intent(out) :: part(:)                   ! (m) of the node spacing
+      real(dp) :: apart(2)
       integer :: k
 
       do k = 1, size(offset)
@@ -35,14 +47,27 @@ contains
          part(k) = offset(k)/(points%edge(k)/(points%side_nodes - 1))
          if (offset(k) <= 0.5_dp*abs(dot_product(points%normal(:, k), apart))) part(k) = 0.0_dp
       end do
+   end subroutine find_offsets
+
+   !> Names the node pair whose nodes lie farthest beside each other, as a part of the node spacing.
+   pure function offset_warning(mesh, points) result(warning)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points    !! contact points of one interface
+      character(:), allocatable :: warning               !! empty where all lie opposite
+      real(dp) :: offset(size(points%edge)), part(size(points%edge))
+      integer :: k
+
       warning = ''
+      if (points%pairing /= pairing_nodes) return
+      call find_offsets(mesh, points, offset, part)
       if (count(part > small_offset) == 0) return
       k = findloc(part >= (1.0_dp - rounding)*maxval(part), .true., dim=1)
       warning = 'contact pair '//points%name//': '//nodes_of(mesh, points, k)//' lie '// &
          to_text(offset(k))//' beside each other, '//percent(part(k))//' of the node spacing '// &
          '(contact points with more than '//percent(small_offset)//': '// &
          to_text(count(part > small_offset))//'); their contact forces are not in one line, '// &
-         'and a moment of force times offset is lost; put the nodes opposite each other'
+         'and a moment of force times offset is lost; put the nodes opposite each other '// &
+         'or take PAIRING=SURFACES'
    end function offset_warning
 
    !> Names the contact point whose faces overlap most, where that is more than the rounding of

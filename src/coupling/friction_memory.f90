@@ -4,7 +4,7 @@ module friction_memory
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use kinds, only: dp
-   use all_contact_points, only: tangential_position
+   use all_contact_points, only: tangential_positions
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    implicit none
@@ -22,18 +22,18 @@ contains
       type(contact_workspace_type), intent(in) :: solved      !! factors of the solution
       type(solution_state_type), intent(in) :: previous       !! state at the start
       type(solution_state_type), intent(inout) :: next        !! state at the end, with its fields
-      real(dp) :: before
+      real(dp), dimension(size(next%contact%gap)) :: before, now
       integer :: k
 
-      associate (points => bodies%points, contact => next%contact)
-         do k = 1, size(points%slave)
+      before = tangential_positions(bodies%points, previous%displacement)
+      now = tangential_positions(bodies%points, next%displacement)
+      associate (contact => next%contact)
+         do k = 1, size(now)
             if (bodies%contact%tangent(k) == 0) then
-               before = tangential_position(points, k, previous%displacement)
-               contact%tangential(k) = tangential_position(points, k, next%displacement)
-               contact%reference(k) = before + &
+               contact%tangential(k) = now(k)
+               contact%reference(k) = before(k) + &
                   closing_fraction(bodies%contact, solved, k, previous%contact%gap(k), &
-                  contact%force(k))* &
-                  (contact%tangential(k) - before)
+                  contact%force(k))*(now(k) - before(k))
             end if
             if (contact%contact_state(k) == contact_open .or. next%idle(k)) then
                contact%slip_origin(k) = contact%tangential(k)

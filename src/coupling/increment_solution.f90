@@ -125,14 +125,12 @@ contains
       type(solution_state_type), intent(in) :: previous
       type(solution_state_type), intent(inout) :: next
 
+      real(dp), dimension(size(next%jump)) :: jump, before
+
       call loads%set_temperatures(next%temperature)
-      associate (slave_node => bodies%points%slave, master_node => bodies%points%master, &
-         t => next%temperature)
-         where (abs(t(slave_node) - previous%temperature(slave_node)) + &
-            abs(t(master_node) - previous%temperature(master_node)) > 0.0_dp)
-            next%jump = t(slave_node) - t(master_node)
-         end where
-      end associate
+      jump = bodies%points%jumps(next%temperature)
+      before = bodies%points%jumps(previous%temperature)
+      where (abs(jump - before) > 0.0_dp) next%jump = jump
    end subroutine give_temperatures
 
    !> Jumps and temperatures of an increment whose mechanics they do not depend on, for want of it
@@ -217,7 +215,7 @@ contains
             scheme_load(data%scheme, previous%heat_load, next%heat_load)
          workspace%heat = bodies%thermal%load_of(forces, given)
          call bodies%thermal%condense_load(workspace%heat)
-         data%held_jump = given(bodies%points%slave) - given(bodies%points%master)
+         data%held_jump = bodies%points%jumps(given)
          where (bodies%jump_index > 0) data%held_jump = 0.0_dp
          allocate (zero(bodies%thermal%map%tail), source=0.0_dp)
          next%temperature = bodies%thermal%recover(workspace%heat, zero)

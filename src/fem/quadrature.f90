@@ -4,7 +4,7 @@ module quadrature
    use kinds, only: dp
    implicit none
    private
-   public :: gauss_point_3, gauss_weight_3, gauss_coordinate_2
+   public :: gauss_point_3, gauss_weight_3, gauss_coordinate_2, gauss_point_10, gauss_weight_10
    public :: point_count, most_points, integration_rule, load_point_count, load_rule
    public :: recovery_count, recovery_points, recovery_weights
 
@@ -13,6 +13,13 @@ module quadrature
    real(dp), parameter :: gauss_weight_3(3) = &
       [5.0_dp/9.0_dp, 8.0_dp/9.0_dp, 5.0_dp/9.0_dp]                    !! their weights
    real(dp), parameter :: gauss_coordinate_2 = 0.577350269189625765_dp !! root of P2
+
+   real(dp), parameter :: upper_point_10(5) = [0.148874338981631211_dp, 0.433395394129247191_dp, &
+      0.679409568299024406_dp, 0.865063366688984511_dp, 0.973906528517171720_dp] !! roots of P10
+   real(dp), parameter :: upper_weight_10(5) = [0.295524224714752870_dp, 0.269266719309996355_dp, &
+      0.219086362515982044_dp, 0.149451349150580593_dp, 0.0666713443086881376_dp]
+   real(dp), parameter :: gauss_point_10(10) = [-upper_point_10, upper_point_10]
+   real(dp), parameter :: gauss_weight_10(10) = [upper_weight_10, upper_weight_10]
 
    !> Points of integration_rule by the kind of the element.
    integer, parameter :: point_count(kind_count) = [9, 4, 4, 3, 3]

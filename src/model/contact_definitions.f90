@@ -5,6 +5,11 @@ module contact_definitions
    implicit none
    private
    public :: interaction_type, contact_definition_type
+   public :: pairing_by_faces, pairing_nodes, pairing_surfaces
+
+   integer, parameter :: pairing_by_faces = 0    !! nodes where the faces match, else surfaces
+   integer, parameter :: pairing_nodes = 1       !! pairs of opposite nodes
+   integer, parameter :: pairing_surfaces = 2    !! mortar points
 
    !> One *SURFACE INTERACTION.
    type :: interaction_type
@@ -20,6 +25,7 @@ module contact_definitions
       integer :: master = 0                   !! index of the master surface, the paper's body eta
       integer :: card = 0                     !! card image of the *CONTACT PAIR
       integer :: interaction = 0              !! index into model%interactions
+      integer :: pairing = pairing_by_faces   !! PAIRING=
       logical :: has_clearance = .false.      !! whether *CLEARANCE stands in place of the geometry
       real(dp) :: clearance = 0.0_dp     !! its gap of all contact points, negative overlap [length]
    end type contact_definition_type

@@ -1,7 +1,7 @@
 !> The print file `NAME.lst`: what was read, what is modelled and why, every increment, the zone
 !> diagrams, the verdicts.
 module listing
-   use contact_pairs, only: contact_points_type, never_approached
+   use contact_points, only: contact_points_type, never_approached
    use due_output, only: table_is_due
    use errors, only: error_type
    use file_calls, only: append_to_file, empty_file, lock_file, unlock_file

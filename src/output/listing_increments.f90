@@ -1,7 +1,7 @@
 !> The block of an accepted increment in the listing.
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
    use contact_states, only: contact_open, contact_stick
    use increment_quantities, only: history_value

@@ -1,6 +1,7 @@
 !> The listing's summary of the model: what will be modelled and why, sizes, interfaces.
 module listing_model
-   use contact_pairs, only: contact_points_type
+   use contact_definitions, only: pairing_nodes
+   use contact_points, only: contact_points_type
    use kinds, only: dp
    use listing_text, only: print_title, print_wrapped
    use model, only: model_type
@@ -60,7 +61,8 @@ contains
       has_heat = any(solves_heat(model%steps%analysis))
       do i = 1, size(interfaces)
          write (unit, '(/, 3x, 2a)') 'CONTACT PAIR ', interfaces(i)%name
-         call print_count(unit, 'node pairs', size(interfaces(i)%slave_node))
+         call print_count(unit, trim(merge('node pairs            ', 'contact points, mortar', &
+            interfaces(i)%pairing == pairing_nodes)), size(interfaces(i)%slave_node))
          call print_entry(unit, 'length', to_text(maxval(interfaces(i)%arc_length)))
          call print_entry(unit, 'initial gaps', &
             from_to([minval(interfaces(i)%initial_gap), maxval(interfaces(i)%initial_gap)]))

@@ -1,6 +1,6 @@
 !> Tables of the listing: *CONTACT PRINT, the iteration history, the *VERIFY verdicts.
 module listing_tables
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, geometry_values
    use increment_quantities, only: pass_value
    use kinds, only: dp

@@ -3,7 +3,7 @@
 !> The geometry is static, so its offsets are zero at every step.
 module result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
    use errors, only: error_type
    use field_quantities, only: element_values, point_values

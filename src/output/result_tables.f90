@@ -1,7 +1,7 @@
 !> Groups `/history`, `/convergence`, `/contact/<name>` and `/errors` of the result file.
 module result_tables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, geometry_values
    use errors, only: error_type
    use growing_datasets, only: growing_dataset, growing_dataset_type

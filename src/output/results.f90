@@ -6,7 +6,7 @@
 !> end, and in between whenever that costs less than a tenth of the time, or an increment was long.
 !> The first publishing replaces the files of an earlier run.
 module results
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
    use growing_datasets, only: bytes_in, flush_sets

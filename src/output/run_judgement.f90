@@ -1,7 +1,7 @@
 !> What only a whole run shows of a deck that may not be meant so: contact that never closes, no
 !> load that acts, large strains.
 module run_judgement
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_states, only: contact_open
    use kinds, only: dp
    use mesh, only: extent_of

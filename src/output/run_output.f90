@@ -2,7 +2,7 @@
 !> line.
 module run_output
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use errors, only: error_type
    use kinds, only: dp
    use messages, only: print_line

@@ -1,7 +1,7 @@
 !> Judges the *VERIFY cards of a deck on the increments as they come.
 module verification
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use due_output, only: is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type

@@ -1,7 +1,7 @@
 !> Finds in a record what a *VERIFY card asks for.
 module verify_values
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, geometry_values
    use field_quantities, only: point_values
    use increment_quantities, only: history_value

@@ -1,7 +1,7 @@
 !> The line-printer zone diagram: one row an increment, one column a contact point, I (gap), II
 !> (slip), III (stick).
 module zone_diagram
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_states, only: contact_open, contact_stick
    use kinds, only: dp
    use records, only: increment_record_type

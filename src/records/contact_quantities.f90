@@ -1,7 +1,7 @@
 !> Reported quantities of an interface and of its contact points.
 module contact_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use kinds, only: dp
    use quantity_types, only: needs_heat, of_interface, of_contact_points, quantity_type
    use records, only: contact_record_type, interface_errors_type

@@ -1,6 +1,6 @@
 !> What is said of the interfaces of a deck once they are made.
 module interface_reports
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric

@@ -1,6 +1,6 @@
 !> Positions of *VERIFY cards that only the contact points of the refined mesh can tell.
 module verify_positions
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp

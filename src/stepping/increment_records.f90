@@ -4,7 +4,7 @@ module increment_records
    use balances, only: contact_violation, force_residual, imbalance
    use conductance_laws, only: conductance
    use contact_operator, only: kept_contact, thermal_forces
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery

@@ -33,8 +33,7 @@ contains
          state%omega_start = state%omega
          allocate (state%displacement(2*n), state%heat_load(n), source=0.0_dp)
          state%temperature = model%initial_temperature
-         state%jump = model%initial_temperature(bodies%points%slave) - &
-            model%initial_temperature(bodies%points%master)
+         state%jump = bodies%points%jumps(model%initial_temperature)
       end associate
    end function make_initial_state
 

@@ -2,7 +2,7 @@
 !> that all rows meet.
 module trade_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use contact_pairs, only: contact_points_type
+   use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
    use contact_states, only: contact_open
    use errors, only: error_type, set_error, status_internal

@@ -1,10 +1,10 @@
 !> *CONTACT PAIR and *CLEARANCE -> contact between surfaces.
 module deck_builder_contact
-   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text, &
-      take_parameter
+   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, &
+      parameter_text, take_parameter
    use card_values, only: check_extra, field_place, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use contact_definitions, only: contact_definition_type
+   use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces
    use deck_builder_interactions, only: find_interaction
    use deck_context, only: deck_context_type, report_unknown
    use deck_report, only: deck_report_type
@@ -97,7 +97,7 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(contact_definition_type), intent(out) :: contact
-      character(:), allocatable :: name
+      character(:), allocatable :: name, pairing
       type(string_type), allocatable :: names(:)
       integer :: i
 
@@ -112,6 +112,9 @@ contains
          call report_unknown('surface interaction', name, names, &
             parameter_place(card, 'INTERACTION'), report)
       end if
+      call choose(card, 'PAIRING', 'NODES/SURFACES', report, pairing)
+      if (allocated(pairing)) contact%pairing = merge(pairing_nodes, pairing_surfaces, &
+         pairing == 'NODES')
       contact%name = parameter_text(card, 'NAME')
       if (card%last_data < card%first_data) return
       associate (data => cards%data(card%first_data))

@@ -77,7 +77,7 @@ module keywords
       known_keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
       'PRESSURE-OVERCLOSURE='), &
       known_keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
-      'INTERACTION=/NAME=/~TYPE=/~SMALL SLIDING/!ADJUST=/!TIED'), &
+      'INTERACTION=/NAME=/PAIRING=/~TYPE=/~SMALL SLIDING/!ADJUST=/!TIED'), &
       known_keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
       known_keyword_type('TRANSFORM', refused, in_model, 0, many, '')]
 

@@ -16,6 +16,9 @@ module sum_lists
       procedure :: add
       procedure :: renumbered
       procedure :: add_totals
+      procedure :: add_shares
+      procedure :: values_of
+      procedure :: coefficients_of
    end type sum_list_type
 
 contains
@@ -91,5 +94,37 @@ contains
          end do
       end do
    end subroutine add_totals
+
+   !> Adds to every value its share of each sum, coefficient*y: the transpose of add_totals.
+   pure subroutine add_shares(self, y, shares)
+      class(sum_list_type), intent(in) :: self
+      real(dp), intent(in) :: y(:)              !! (count)
+      real(dp), intent(inout) :: shares(:)      !! (values)
+      integer :: i, k
+
+      do i = 1, self%count
+         do k = self%start(i), self%start(i + 1) - 1
+            shares(self%value(k)) = shares(self%value(k)) + self%coefficient(k)*y(i)
+         end do
+      end do
+   end subroutine add_shares
+
+   !> Values of one sum.
+   pure function values_of(self, i) result(values)
+      class(sum_list_type), intent(in) :: self
+      integer, intent(in) :: i                  !! the sum
+      integer, allocatable :: values(:)
+
+      values = self%value(self%start(i):self%start(i + 1) - 1)
+   end function values_of
+
+   !> Coefficients of one sum.
+   pure function coefficients_of(self, i) result(coefficients)
+      class(sum_list_type), intent(in) :: self
+      integer, intent(in) :: i                  !! the sum
+      real(dp), allocatable :: coefficients(:)
+
+      coefficients = self%coefficient(self%start(i):self%start(i + 1) - 1)
+   end function coefficients_of
 
 end module sum_lists

@@ -1,0 +1,59 @@
+!> The contact points of one interface: geometry, normals and tributary areas, taken once from the
+!> undeformed mesh. A contact point is two opposite nodes (contact_pairs) or a corner of the slave
+!> face with its hat function (mortar_points).
+module contact_points
+   use contact_definitions, only: pairing_nodes
+   use kinds, only: dp
+   use sum_lists, only: sum_list_type
+   implicit none
+   private
+   public :: contact_points_type, never_approached, no_radius, on_axis
+
+   real(dp), parameter :: no_radius = 1.0e-9_dp  !! part of the largest radius that counts as 0
+   real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
+
+   !> The contact points of one interface, ordered along the slave from the end with the smaller x
+   !> (then y); on a closed face from the corner with the smallest x (then y), with the slave on the
+   !> left.
+   type :: contact_points_type
+      character(:), allocatable :: name        !! name of the *CONTACT PAIR
+      integer :: pairing = pairing_nodes       !! pairing_nodes or pairing_surfaces
+      integer, allocatable :: slave_node(:)    !! (m) node indexes
+      integer, allocatable :: master_node(:)   !! (m) the one opposite, or the nearest one
+      !> (m, nodes) slave's value of a field less master's
+      type(sum_list_type) :: difference
+      real(dp), allocatable :: position(:, :)  !! (2, m) undeformed slave [length]
+      real(dp), allocatable :: arc_length(:)   !! (m) s from the first contact point [length]
+      !> (m) tributary length times thickness, axisymmetric times 2 pi r; 0 where three-node sides
+      !> give the axis or the tip of quarter points none [length^2]
+      real(dp), allocatable :: weight(:)
+      real(dp), allocatable :: normal(:, :)    !! (2, m) common unit normal, outward from the slave
+      real(dp), allocatable :: tangent(:, :)   !! (2, m) unit tangent towards growing s
+      real(dp), allocatable :: initial_gap(:)  !! (m) h [length]
+      real(dp), allocatable :: edge(:)         !! (m) longest side of the slave there [length]
+      integer :: side_nodes = 2                !! contact points of a side, 2 or 3
+      logical :: about_axis = .false.          !! whether the model is axisymmetric
+   end type contact_points_type
+
+contains
+
+   !> Whether a contact point neither closed nor came nearer than it was.
+   elemental function never_approached(initial_gap, smallest_gap) result(never)
+      real(dp), intent(in) :: initial_gap    !! h [length]
+      real(dp), intent(in) :: smallest_gap   !! smallest gap of all increments [length]
+      logical :: never                       !! to be reported
+
+      never = smallest_gap > 0.0_dp .and. smallest_gap >= initial_gap*(1.0_dp - unmoved)
+   end function never_approached
+
+   !> Whether a contact point lies on the axis of an axisymmetric model.
+   elemental logical function on_axis(points, k)
+      type(contact_points_type), intent(in) :: points !! contact points of one interface
+      integer, intent(in) :: k                       !! one of them
+
+      on_axis = .false.
+      if (points%about_axis) on_axis = abs(points%position(1, k)) <= &
+         no_radius*maxval(abs(points%position(1, :)))
+   end function on_axis
+
+end module contact_points

@@ -1,0 +1,127 @@
+!> The contact points of an interface: node pairs where its faces match, mortar points where they do
+!> not, or what the deck asks for.
+module interface_points
+   use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces
+   use contact_pairs, only: set_node_pairs
+   use contact_points, only: contact_points_type
+   use element_kinds, only: axisymmetric
+   use errors, only: error_type
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use mortar_points, only: set_mortar_points
+   use interface_checks, only: blame_corner, check_corner, check_covered, check_lines, &
+      check_opposite, check_shared
+   use interface_warnings, only: faces_match
+   use surface_chains, only: chain_faces, precedes, surface_chain_type
+   implicit none
+   private
+   public :: make_contact_points
+
+contains
+
+   !> The contact points of one *CONTACT PAIR. Without PAIRING= they are node pairs where the two
+   !> lines have equally many nodes that lie opposite each other.
+   !> Errors: surfaces that do not form one line each or that do not fit; PAIRING=NODES on faces
+   !> whose nodes are not opposite; faces of which none lies opposite the other surface.
+   subroutine make_contact_points(mesh, definition, thickness, points, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
+      real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
+      type(contact_points_type), intent(out) :: points
+      type(error_type), allocatable, intent(out) :: error
+      type(surface_chain_type) :: slave, master
+      logical :: turned(2)
+
+      associate (slave_surface => mesh%surfaces(definition%slave), &
+         master_surface => mesh%surfaces(definition%master))
+         call chain_faces(mesh, slave_surface, slave, error)
+         if (allocated(error)) return
+         call chain_faces(mesh, master_surface, master, error)
+         if (allocated(error)) return
+         call align(mesh, slave, master, turned(1), turned(2))
+         points%name = definition%name
+         points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
+      end associate
+      call check_shared(mesh, definition, slave, master, error)
+      if (allocated(error)) return
+      call find_points(mesh, definition, slave, master, turned, thickness, points, error)
+      if (allocated(error)) return
+      if (definition%has_clearance) points%initial_gap = definition%clearance
+   end subroutine make_contact_points
+   !> The contact points of two lines that run the same way.
+   subroutine find_points(mesh, definition, slave, master, turned, thickness, points, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      type(surface_chain_type), intent(in) :: slave, master
+      logical, intent(in) :: turned(2)
+      real(dp), intent(in) :: thickness
+      type(contact_points_type), intent(inout) :: points
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_points_type) :: found
+
+      if (definition%pairing /= pairing_surfaces) then
+         found = points
+         call check_lines(mesh, definition, slave, master, error)
+         if (.not. allocated(error)) then
+            call set_node_pairs(mesh, definition, slave, master, turned, thickness, found, error)
+            if (allocated(error)) return
+            if (definition%pairing == pairing_nodes) then
+               call check_opposite(mesh, found, error)
+            else if (faces_match(mesh, found)) then
+               points = found
+               return
+            end if
+         end if
+         if (definition%pairing == pairing_nodes) then
+            if (allocated(error)) then
+               call blame_corner(mesh, definition, slave, master, error)
+            else
+               points = found
+            end if
+            return
+         end if
+         if (allocated(error)) deallocate (error)
+      end if
+      call check_corner(mesh, definition, slave, error)
+      if (allocated(error)) return
+      call set_mortar_points(mesh, slave, master, turned, thickness, points)
+      call check_covered(mesh, definition, slave, master, turned, size(points%slave_node), error)
+   end subroutine find_points
+
+   !> Turns both lines to run from the slave's first contact point on: an open one if its ends so
+   !> lie nearer to the slave's, a closed face of the master always, for it runs against the slave.
+   subroutine align(mesh, slave, master, turned_slave, turned_master)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(inout) :: slave, master
+      logical, intent(out) :: turned_slave, turned_master
+      real(dp) :: distance(size(master%nodes))
+      integer :: n, start
+
+      turned_slave = .false.
+      associate (x => mesh%coordinates)
+         if (.not. slave%closed) then
+            n = size(slave%nodes)
+            associate (first => x(:, slave%nodes(1)), last => x(:, slave%nodes(n)))
+               turned_slave = precedes(last, first, norm2(last - first))
+            end associate
+            if (turned_slave) slave%nodes = slave%nodes(n:1:-1)
+         end if
+         n = size(master%nodes)
+         distance = norm2(x(:, master%nodes) - spread(x(:, slave%nodes(1)), 2, n), dim=1)
+         if (master%closed) then
+            start = 1 + (master%side_nodes - 1)*(minloc(distance(::master%side_nodes - 1), dim=1) &
+               - 1)
+            master%nodes = cshift(master%nodes, start - 1)
+            master%nodes(2:) = master%nodes(n:2:-1)
+            turned_master = .true.
+         else
+            ! Squares of these distances, less what they have in common: bodies may lie far apart.
+            turned_master = dot_product(x(:, slave%nodes(size(slave%nodes))) - &
+               x(:, slave%nodes(1)), x(:, master%nodes(n)) - x(:, master%nodes(1))) < 0.0_dp
+            if (turned_master) master%nodes = master%nodes(n:1:-1)
+         end if
+      end associate
+   end subroutine align
+
+
+end module interface_points

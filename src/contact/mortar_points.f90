@@ -1,0 +1,161 @@
+!> Contact points of faces whose nodes need not match: one at each corner of the slave face that the
+!> master lies opposite to. Gap, relative displacement and jump of temperature of a point are the
+!> means of slave less master with its hat function (mortar_segments).
+module mortar_points
+   use chain_geometry, only: arc_lengths, chain_tangents, edge_lengths
+   use contact_definitions, only: pairing_surfaces
+   use contact_points, only: contact_points_type
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use mortar_segments, only: face_line_type, integrate_segments, mortar_integrals_type
+   use sparse_matrix, only: sparse_matrix_type
+   use surface_chains, only: surface_chain_type
+   implicit none
+   private
+   public :: set_mortar_points
+
+   !> Part of a hat function that the master must cover to make its corner a contact point of its
+   !> own. With less, the corner's integrals hardly differ from its neighbour's: they go to it,
+   !> which keeps what the hats sum to.
+   real(dp), parameter :: least_cover = 1.0e-2_dp
+
+contains
+
+   !> The contact points of two lines of nodes; none where no face of the master is opposite.
+   subroutine set_mortar_points(mesh, slave, master, turned, thickness, points)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: slave   !! from the end with the smaller x on
+      type(surface_chain_type), intent(in) :: master
+      logical, intent(in) :: turned(2)                !! whether they run against their chains
+      real(dp), intent(in) :: thickness               !! not used about an axis [length]
+      type(contact_points_type), intent(inout) :: points !! its name and its axis are set
+      type(mortar_integrals_type) :: integrals
+      integer, allocatable :: corner(:), owner(:), kept(:)
+      real(dp) :: outward(2)
+      integer :: c
+
+      outward = merge(-1.0_dp, 1.0_dp, turned)
+      call integrate_segments(line_of(slave, outward(1)), line_of(master, outward(2)), thickness, &
+         points%about_axis, integrals)
+      corner = slave%nodes(1::slave%side_nodes - 1)
+      owner = owners(integrals, slave%closed, [(any(master%nodes == corner(c)), c=1, size(corner))])
+      kept = pack([(c, c=1, size(corner))], owner == [(c, c=1, size(corner))])
+      points%pairing = pairing_surfaces
+      points%side_nodes = 2
+      points%slave_node = corner(kept)
+      points%position = mesh%coordinates(:, points%slave_node)
+      associate (x => mesh%coordinates(:, slave%nodes), n => slave%side_nodes)
+         associate (tangent => chain_tangents(x, n, slave%closed), &
+            s => arc_lengths(x, n, slave%closed), edge => edge_lengths(x, n, slave%closed))
+            points%tangent = tangent(:, (n - 1)*(kept - 1) + 1)
+            points%arc_length = s((n - 1)*(kept - 1) + 1)
+            points%edge = edge((n - 1)*(kept - 1) + 1)
+         end associate
+      end associate
+      if (size(kept) > 0) points%arc_length = points%arc_length - points%arc_length(1)
+      points%normal = outward(1)*reshape([points%tangent(2, :), -points%tangent(1, :)], &
+         shape(points%tangent), order=[2, 1])
+      call set_means(slave, master, integrals, owner, kept, points)
+      points%initial_gap = -sum(points%normal*reshape([ &
+         means(points, mesh%coordinates(1, :)), means(points, mesh%coordinates(2, :))], &
+         shape(points%normal), order=[2, 1]), dim=1)
+      allocate (points%master_node, mold=points%slave_node)
+      do c = 1, size(kept)
+         points%master_node(c) = master%nodes(minloc(norm2(mesh%coordinates(:, master%nodes) - &
+            spread(points%position(:, c), 2, size(master%nodes)), dim=1), dim=1))
+      end do
+
+   contains
+      function line_of(chain, outward) result(line)
+         type(surface_chain_type), intent(in) :: chain
+         real(dp), intent(in) :: outward
+         type(face_line_type) :: line
+
+         line = face_line_type(mesh%coordinates(:, chain%nodes), chain%side_nodes, chain%closed, &
+            outward)
+      end function line_of
+   end subroutine set_mortar_points
+
+   !> The corner whose contact point takes a corner's integrals, its own or the neighbour with the
+   !> larger part covered; 0 where nothing is covered. A corner that both faces end in, the tip of a
+   !> crack, is no contact point.
+   pure function owners(integrals, closed, is_tip) result(owner)
+      type(mortar_integrals_type), intent(in) :: integrals
+      logical, intent(in) :: closed
+      logical, intent(in) :: is_tip(:)                 ! (corners)
+      integer :: owner(size(is_tip))
+      real(dp) :: cover(size(is_tip))
+      integer :: beside(2), c, n
+
+      n = size(is_tip)
+      cover = integrals%weight/integrals%whole
+      where (is_tip) cover = 0.5_dp*least_cover*cover
+      owner = [(c, c=1, n)]
+      where (cover <= 0.0_dp) owner = 0
+      do c = 1, n
+         if (owner(c) /= c .or. cover(c) >= least_cover) cycle
+         beside = modulo([c - 2, c], n) + 1
+         if (.not. closed) beside = min(max([c - 1, c + 1], 1), n)
+         if (cover(beside(1)) >= cover(beside(2))) beside = beside([2, 1])
+         if (owner(beside(2)) == beside(2) .and. beside(2) /= c) owner(c) = beside(2)
+      end do
+   end function owners
+
+   !> Weights, and what each contact point takes of the nodes: the integrals of the corners it owns.
+   pure subroutine set_means(slave, master, integrals, owner, kept, points)
+      type(surface_chain_type), intent(in) :: slave, master
+      type(mortar_integrals_type), intent(in) :: integrals
+      integer, intent(in) :: owner(:), kept(:)
+      type(contact_points_type), intent(inout) :: points
+      integer, allocatable :: nodes(:)
+      real(dp), allocatable :: share(:)
+      integer :: c, k
+
+      allocate (points%weight(size(kept)))
+      call points%difference%reserve(size(kept), size(kept)*2*(slave%side_nodes + &
+         master%side_nodes))
+      do k = 1, size(kept)
+         ! The corner's own node comes first.
+         nodes = points%slave_node(k:k)
+         share = [0.0_dp]
+         do c = 1, size(owner)
+            if (owner(c) /= kept(k)) cycle
+            call add_row(integrals%slave, c, slave%nodes, 1.0_dp, nodes, share)
+            call add_row(integrals%master, c, master%nodes, -1.0_dp, nodes, share)
+         end do
+         points%weight(k) = sum(integrals%weight, mask=owner == kept(k))
+         call points%difference%add(nodes, share/points%weight(k))
+      end do
+   end subroutine set_means
+
+   !> Adds a row of a matrix to a sum of nodal values.
+   pure subroutine add_row(matrix, row, node, sign, nodes, share)
+      type(sparse_matrix_type), intent(in) :: matrix
+      integer, intent(in) :: row, node(:)
+      real(dp), intent(in) :: sign
+      integer, allocatable, intent(inout) :: nodes(:)
+      real(dp), allocatable, intent(inout) :: share(:)
+      integer :: i, k
+
+      do k = matrix%row_start(row), matrix%row_start(row + 1) - 1
+         i = findloc(nodes, node(matrix%column(k)), dim=1)
+         if (i == 0) then
+            nodes = [nodes, node(matrix%column(k))]
+            share = [share, 0.0_dp]
+            i = size(nodes)
+         end if
+         share(i) = share(i) + sign*matrix%value(k)
+      end do
+   end subroutine add_row
+
+   !> Slave's value less master's of a field at the contact points.
+   pure function means(points, field)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: field(:)
+      real(dp) :: means(size(points%slave_node))
+
+      means = 0.0_dp
+      call points%difference%add_totals(field, means)
+   end function means
+
+end module mortar_points
