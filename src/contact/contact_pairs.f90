@@ -8,6 +8,7 @@ module contact_pairs
    use kinds, only: dp
    use mesh, only: mesh_type
    use interface_checks, only: check_sides, check_weights
+   use sum_lists, only: differences
    use surface_chains, only: surface_chain_type
    implicit none
    private
@@ -29,7 +30,7 @@ contains
       real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
       type(contact_points_type), intent(inout) :: points      !! its name and its axis are set
       type(error_type), allocatable, intent(out) :: error
-      integer :: first, k, last
+      integer :: first, last
 
       points%pairing = pairing_nodes
       points%slave_node = slave%nodes
@@ -47,11 +48,7 @@ contains
       call cut_ends(first, last, points)
       call check_weights(mesh, points%name, points%slave_node, points%weight, error)
       if (allocated(error)) return
-      call points%difference%reserve(size(points%slave_node), 2*size(points%slave_node))
-      do k = 1, size(points%slave_node)
-         call points%difference%add([points%slave_node(k), points%master_node(k)], &
-            [1.0_dp, -1.0_dp])
-      end do
+      points%difference = differences(points%slave_node, points%master_node)
    end subroutine set_node_pairs
 
    !> Weights on the line midway between the faces. On three-node sides the integral vanishes for a

@@ -14,7 +14,7 @@
 !> B. I. Wohlmuth, Acta Numerica 20 (2011) 569; A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM
 !> J. Sci. Comput. 34 (2012) B421 (linear multipliers on quadratic sides).
 module mortar_segments
-   use chain_geometry, only: chain_tangents, places, side_total
+   use chain_geometry, only: chain_tangents, side_positions, side_total
    use kinds, only: dp
    use quadrature, only: gauss_point_10, gauss_weight_10
    use shape_functions, only: side_shape, side_slope
@@ -79,7 +79,7 @@ contains
       normal = outward_normals(slave)
       allocate (side(sides), segments(sides))
       do s = 1, sides
-         side(s)%nodes = places(s, slave%side_nodes, size(slave%x, 2))
+         side(s)%nodes = side_positions(s, slave%side_nodes, size(slave%x, 2))
          side(s)%corners = [s, modulo(s, corners) + 1]
          side(s)%x = slave%x(:, side(s)%nodes)
          side(s)%normal = normal(:, side(s)%nodes)
@@ -116,7 +116,7 @@ contains
       integer :: facing(master%side_nodes), g, opposite
 
       opposite = side_opposite(side, 0.5_dp*(ends(1) + ends(2)), master)
-      facing = places(max(opposite, 1), master%side_nodes, size(master%x, 2))
+      facing = side_positions(max(opposite, 1), master%side_nodes, size(master%x, 2))
       eta = 0.0_dp
       of_slave = 0.0_dp
       of_master = 0.0_dp
@@ -223,7 +223,7 @@ contains
       normal = matmul(side%normal, side_shape(size(side%x, 2), xi))
       point = matmul(side%x, side_shape(size(side%x, 2), xi))
       do s = 1, side_total(size(master%x, 2), master%side_nodes, master%closed)
-         associate (x => master%x(:, places(s, master%side_nodes, size(master%x, 2))))
+         associate (x => master%x(:, side_positions(s, master%side_nodes, size(master%x, 2))))
             ends = [cross(normal, x(:, 1) - point), cross(normal, x(:, size(x, 2)) - point)]
             if (ends(1)*ends(2) > 0.0_dp) cycle
             eta = 0.0_dp

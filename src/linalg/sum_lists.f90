@@ -3,7 +3,7 @@ module sum_lists
    use kinds, only: dp
    implicit none
    private
-   public :: sum_list_type
+   public :: sum_list_type, differences
 
    !> The sums.
    type :: sum_list_type
@@ -22,6 +22,18 @@ module sum_lists
    end type sum_list_type
 
 contains
+
+   !> The differences of two values, first less second.
+   pure function differences(first, second) result(list)
+      integer, intent(in) :: first(:), second(:)    !! (n)
+      type(sum_list_type) :: list                   !! (n)
+      integer :: i
+
+      call list%reserve(size(first), 2*size(first))
+      do i = 1, size(first)
+         call list%add([first(i), second(i)], [1.0_dp, -1.0_dp])
+      end do
+   end function differences
 
    !> Makes room, for no more than an estimate; what the list held is dropped.
    pure subroutine reserve(self, sums, terms)
