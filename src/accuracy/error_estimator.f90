@@ -1,6 +1,7 @@
 !> The errors of a run, estimated beside it: of the mesh, of the increments, of the fixed point.
 module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use contact_definitions, only: pairing_surfaces
    use contact_quantities, only: estimated
    use doubled_increments, only: doubled_increments_type
    use errors, only: error_type
@@ -57,6 +58,8 @@ contains
       self%why_not = ''
       call self%refined%prepare(model, simulation%bodies%points, error)
       if (allocated(error)) self%why_not = error%message
+      if (any(simulation%bodies%interfaces%pairing == pairing_surfaces)) self%why_not = &
+         'it relaxes node pairs, and there are faces whose nodes do not match'
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 
