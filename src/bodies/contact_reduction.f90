@@ -66,12 +66,14 @@ contains
       end associate
    end subroutine set_motions
 
-   !> The links of the cycles, and the compliance of their stuck contact points.
+   !> The links of the cycles, the compliance of their stuck contact points, and what each contact
+   !> point has for stiffness alone.
    pure subroutine set_cycles(mechanical, points, contact)
       type(field_problem_type), intent(in) :: mechanical
       type(all_contact_points_type), intent(in) :: points
       type(contact_system_type), intent(inout) :: contact
       integer :: k
+      real(dp) :: own
 
       associate (map => mechanical%map, cyclic => in_cycle(mechanical%map, size(points%slave)))
          contact%link = map%tail_index(map%link_force)
@@ -80,13 +82,13 @@ contains
             k=1, size(points%slave))]
          do k = 1, size(points%slave)
             associate (nodes => points%nodes_of(k))
+               own = node_stiffness(mechanical%matrix, nodes, 2)
                if (.not. cyclic(k)) then
                   ! Two contact points that carry a body on their own move it without any strain.
-                  if (contact%alone(k) <= strainless*node_stiffness(mechanical%matrix, nodes, 2)) &
-                     contact%alone(k) = node_stiffness(mechanical%matrix, nodes, 2)
+                  if (contact%alone(k) <= strainless*own) contact%alone(k) = own
                   cycle
                end if
-               contact%compliance(k) = cycle_compliance/node_stiffness(mechanical%matrix, nodes, 2)
+               contact%compliance(k) = cycle_compliance/own
                contact%alone(k) = stiffness_alone(contact%alone(k), mechanical%matrix, nodes, 2)
             end associate
          end do

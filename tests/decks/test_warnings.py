@@ -16,7 +16,7 @@ def blocks(shift=0.0, gap=0.0, thickness=("1.", "1."), pair="B.BOTTOM, A.TOP", c
     cards += block("B", [x + shift for x in XS], [2.0 + gap, 3.0 + gap, 4.0 + gap], first=101)
     for name, value in zip("AB", thickness, strict=True):
         cards += [*solid(name, 2e5, 0.3), value]
-    cards += ["*SURFACE INTERACTION, NAME=I", "*CONTACT PAIR, INTERACTION=I, NAME=F", pair]
+    cards += ["*SURFACE INTERACTION, NAME=I", "*CONTACT PAIR, INTERACTION=I, NAME=F, PAIRING=NODES", pair]
     slave, master = pair.split(", ")
     if clearance is not None:
         cards += [f"*CLEARANCE, SLAVE={slave}, MASTER={master}, VALUE={clearance!r}"]
@@ -136,7 +136,7 @@ def test_loads_that_no_step_solves_for(tmp_path):
     heat = ["*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "A.BOTTOM, 11",
             "B.TOP, 11, 11, 5."]
     cards = blocks()
-    at = cards.index("*CONTACT PAIR, INTERACTION=I, NAME=F")
+    at = cards.index("*CONTACT PAIR, INTERACTION=I, NAME=F, PAIRING=NODES")
     cards = [*cards[:at], "*GAP LAW, TYPE=POWER", "0., 1., 1.", *cards[at:]]
     no_use = "without effect: no step from here on solves mechanics"
     for load, what in (("*DSLOAD", "B.TOP, P, 1."), ("*CLOAD", "101, 1, 1."),
@@ -168,7 +168,7 @@ def test_loads_on_sides_inside_a_body(tmp_path, keyword, label):
 def test_conductance_that_rounding_leaves_unknown(tmp_path):
     """TOL below what a few units in the last place of the displacements change in omega."""
     cards = blocks()
-    at = cards.index("*CONTACT PAIR, INTERACTION=I, NAME=F")
+    at = cards.index("*CONTACT PAIR, INTERACTION=I, NAME=F, PAIRING=NODES")
     heated = PRESSED.copy()
     heated[1:2] = ["*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.5, 1.", "*BOUNDARY",
                    "A.BOTTOM, 11", "B.TOP, 11, 11, 50."]
