@@ -2,7 +2,7 @@
 !> master lies opposite to. Gap, relative displacement and jump of temperature of a point are the
 !> means of slave less master with its hat function (mortar_segments).
 module mortar_points
-   use chain_geometry, only: arc_lengths, chain_tangents, edge_lengths
+   use chain_geometry, only: arc_lengths, edge_lengths
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
    use kinds, only: dp
@@ -45,16 +45,15 @@ contains
       points%slave_node = corner(kept)
       points%position = mesh%coordinates(:, points%slave_node)
       associate (x => mesh%coordinates(:, slave%nodes), n => slave%side_nodes)
-         associate (tangent => chain_tangents(x, n, slave%closed), &
-            s => arc_lengths(x, n, slave%closed), edge => edge_lengths(x, n, slave%closed))
-            points%tangent = tangent(:, (n - 1)*(kept - 1) + 1)
+         associate (s => arc_lengths(x, n, slave%closed), edge => edge_lengths(x, n, slave%closed))
             points%arc_length = s((n - 1)*(kept - 1) + 1)
             points%edge = edge((n - 1)*(kept - 1) + 1)
          end associate
       end associate
       if (size(kept) > 0) points%arc_length = points%arc_length - points%arc_length(1)
-      points%normal = outward(1)*reshape([points%tangent(2, :), -points%tangent(1, :)], &
-         shape(points%tangent), order=[2, 1])
+      points%normal = integrals%normal(:, kept)
+      points%tangent = outward(1)*reshape([-points%normal(2, :), points%normal(1, :)], &
+         shape(points%normal), order=[2, 1])
       call set_means(slave, master, integrals, owner, kept, points)
       points%initial_gap = -sum(points%normal*reshape([ &
          means(points, mesh%coordinates(1, :)), means(points, mesh%coordinates(2, :))], &

@@ -4,6 +4,9 @@
 !> corner c is 1 there and falls linearly in the side's own coordinate xi to 0 at the next corners,
 !> also on sides with midside nodes. A point xi of the slave lies opposite the point of the master
 !> that its normal meets; normals are interpolated between the averaged ones of the slave's nodes.
+!> The contact conditions of a corner act along the normal midway between those of both faces there.
+!> Along the slave's own normal, part of the normal force would count as friction, and exchanging
+!> slave and master would change it.
 !> With N and M the shape functions of slave and master, dA the area of the face midway between both
 !>
 !>    w_c = integral phi_c dA,  D_ci = integral phi_c N_i dA,  M_cj = integral phi_c M_j dA.
@@ -40,6 +43,8 @@ module mortar_segments
    type :: mortar_integrals_type
       real(dp), allocatable :: weight(:)   !! (corners) w_c [length^2]
       real(dp), allocatable :: whole(:)    !! (corners) w_c if the master reached everywhere
+      !> (2, corners) unit normal midway between those of both faces, outward from the slave
+      real(dp), allocatable :: normal(:, :)
       type(sparse_matrix_type) :: slave    !! (corners, nodes of the slave) D [length^2]
       type(sparse_matrix_type) :: master   !! (corners, nodes of the master) M [length^2]
    end type mortar_integrals_type
@@ -56,6 +61,8 @@ module mortar_segments
    !> What has been summed.
    type :: segment_sums_type
       real(dp), allocatable :: weight(:), whole(:)
+      real(dp), allocatable :: facing(:, :)   !! (2, corners) the master's normal nearest to each
+      real(dp), allocatable :: apart(:)       !! (corners) in its side's coordinate, how near that is
       type(triplet_list_type) :: slave, master
    end type segment_sums_type
 
@@ -67,7 +74,7 @@ contains
       real(dp), intent(in) :: thickness       !! not used about an axis [length]
       logical, intent(in) :: about_axis       !! whether areas are swept round the axis x = 0
       type(mortar_integrals_type), intent(out) :: integrals
-      real(dp) :: normal(2, size(slave%x, 2)), section
+      real(dp) :: master_normal(2, size(master%x, 2)), normal(2, size(slave%x, 2)), section
       integer :: corners, k, s, sides
       integer, allocatable :: segments(:)
       type(segment_sums_type) :: sums
@@ -75,8 +82,10 @@ contains
 
       sides = side_total(size(slave%x, 2), slave%side_nodes, slave%closed)
       corners = sides + merge(0, 1, slave%closed)
-      allocate (sums%weight(corners), sums%whole(corners), source=0.0_dp)
+      allocate (sums%weight(corners), sums%whole(corners), sums%facing(2, corners), source=0.0_dp)
+      allocate (sums%apart(corners), source=huge(1.0_dp))
       normal = outward_normals(slave)
+      master_normal = outward_normals(master)
       allocate (side(sides), segments(sides))
       do s = 1, sides
          side(s)%nodes = side_positions(s, slave%side_nodes, size(slave%x, 2))
@@ -93,27 +102,32 @@ contains
          do k = 1, segments(s)
             associate (ends => side(s)%kinks(k:k + 1))
                if (ends(2) - ends(1) > no_segment) call add_segment(side(s), ends, master, &
-                  section, sums)
+                  master_normal, section, sums)
             end associate
          end do
       end do
       integrals%weight = sums%weight
       integrals%whole = sums%whole
+      integrals%normal = normal(:, ::slave%side_nodes - 1) - sums%facing
+      do k = 1, corners
+         integrals%normal(:, k) = integrals%normal(:, k)/norm2(integrals%normal(:, k))
+      end do
       integrals%slave = sums%slave%compress(corners, size(slave%x, 2))
       integrals%master = sums%master%compress(corners, size(master%x, 2))
    end subroutine integrate_segments
 
    !> Adds the integrals over one segment; without a master opposite, the area of the hats alone.
-   pure subroutine add_segment(side, ends, master, section, sums)
+   pure subroutine add_segment(side, ends, master, master_normal, section, sums)
       type(side_type), intent(in) :: side
       real(dp), intent(in) :: ends(2)         ! in the side's coordinate
       type(face_line_type), intent(in) :: master
+      real(dp), intent(in) :: master_normal(:, :)  ! (2, nodes)
       real(dp), intent(in) :: section         ! thickness, 0 about an axis [length]
       type(segment_sums_type), intent(inout) :: sums
       real(dp) :: area, eta, hat(2), radius, xi
       real(dp) :: psi(size(side%nodes)), psi_master(master%side_nodes)
       real(dp) :: of_slave(2, size(psi)), of_master(2, size(psi_master))
-      integer :: facing(master%side_nodes), g, opposite
+      integer :: c, facing(master%side_nodes), g, opposite
 
       opposite = side_opposite(side, 0.5_dp*(ends(1) + ends(2)), master)
       facing = side_positions(max(opposite, 1), master%side_nodes, size(master%x, 2))
@@ -141,6 +155,15 @@ contains
             reshape(psi_master, [1, size(psi_master)]))
       end do
       if (opposite == 0) return
+      do c = 1, 2
+         associate (corner => side%corners(c), apart => abs(ends(c) - (2*c - 3)))
+            if (apart >= sums%apart(corner)) cycle
+            sums%apart(corner) = apart
+            call project(side, ends(c), master%x(:, facing), eta)
+            sums%facing(:, corner) = matmul(master_normal(:, facing), side_shape( &
+               size(psi_master), eta))
+         end associate
+      end do
       call sums%slave%add_block(side%corners, side%nodes, of_slave)
       call sums%master%add_block(side%corners, facing, of_master)
    end subroutine add_segment
