@@ -33,10 +33,8 @@ contains
    pure function integer_to_text(number) result(string)
       integer, intent(in) :: number          !! the number
       character(:), allocatable :: string    !! its decimal digits
-      character(12) :: buffer
 
-      write (buffer, '(i0)') number
-      string = trim(buffer)
+      string = long_to_text(int(number, long))
    end function integer_to_text
 
    !> A long integer without blanks.
@@ -44,9 +42,19 @@ contains
       integer(long), intent(in) :: number    !! the number
       character(:), allocatable :: string    !! its decimal digits
       character(20) :: buffer
+      integer(long) :: rest
+      integer :: first
 
-      write (buffer, '(i0)') number
-      string = trim(buffer)
+      rest = number
+      first = len(buffer) + 1
+      do
+         first = first - 1
+         buffer(first:first) = achar(iachar('0') + int(abs(mod(rest, 10_long))))
+         rest = rest/10
+         if (rest == 0) exit
+      end do
+      string = buffer(first:)
+      if (number < 0) string = '-'//string
    end function long_to_text
 
    !> A real with six significant digits, plain where that is short, else with an exponent.

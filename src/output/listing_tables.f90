@@ -29,35 +29,40 @@ contains
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
       type(quantity_type), allocatable :: columns(:)
       real(dp), allocatable :: values(:, :)
-      integer :: i, k
+      integer :: i, k, n
 
       columns = pack(quantities, quantities%kind == of_contact_points .and. &
          quantities%width > 0 .and. (quantities%needs /= needs_heat .or. &
          allocated(contact%conductance)))
-      allocate (values(size(points%slave_node), size(columns)))
-      write (unit, '(/, 2a)') '   CONTACT PAIRS OF ', points%name
-      write (unit, '(a)', advance='no') 'pair'
-      do i = 1, size(columns)
-         write (unit, '(a)', advance='no') table_head(columns(i))
+      n = size(columns)
+      allocate (values(size(points%slave_node), n))
+      do i = 1, n
          if (columns(i)%is_geometry) then
             values(:, i) = geometry_values(columns(i)%name, points, node_number)
          else
             values(:, i) = contact_values(columns(i)%name, points, contact)
          end if
       end do
-      write (unit, '()')
+      write (unit, '(/, 2a)') '   CONTACT PAIRS OF ', points%name
+      write (unit, '(*(a))') 'pair', (table_head(columns(i)), i=1, n)
       do k = 1, size(values, 1)
-         write (unit, '(i4)', advance='no') k
-         do i = 1, size(columns)
-            if (columns(i)%name == 'status') then
-               write (unit, '(a5)', advance='no') zone_numeral(nint(values(k, i)))
-            else
-               write (unit, '(a)', advance='no') table_cell(columns(i), values(k, i))
-            end if
-         end do
-         write (unit, '()')
+         write (unit, '(i4, *(a))') k, (pair_cell(columns(i), values(k, i)), i=1, n)
       end do
    end subroutine print_contact_table
+
+   !> A quantity of a contact point in its column: zones by their numerals, all others as numbers.
+   pure function pair_cell(quantity, value) result(string)
+      type(quantity_type), intent(in) :: quantity
+      real(dp), intent(in) :: value
+      character(quantity%width) :: string
+
+      if (quantity%name == 'status') then
+         string = zone_numeral(nint(value))
+         string = adjustr(string)
+      else
+         string = table_cell(quantity, value)
+      end if
+   end function pair_cell
 
    !> Prints the passes of an increment.
    subroutine print_iterations(unit, iterations)

@@ -85,18 +85,14 @@ contains
    subroutine add_iterations(self, iterations)
       class(status_file_type), intent(inout) :: self            !! the `.cvg` file
       type(iteration_record_type), intent(in) :: iterations(:)  !! passes, in their order
-      character(:), allocatable :: cells
       character(line_length) :: line
       integer :: i, k
 
       do k = 1, size(iterations)
-         cells = ''
-         do i = 1, size(self%columns)
-            cells = cells//table_cell(self%columns(i), pass_value(self%columns(i)%name, &
-               iterations(k)))
-         end do
-         associate (first => self%columns(1)%width)
-            line = adjustl(cells(:first))//cells(first + 1:)
+         associate (columns => self%columns, pass => iterations(k))
+            write (line, '(*(a))') &
+               adjustl(table_cell(columns(1), pass_value(columns(1)%name, pass))), &
+               (table_cell(columns(i), pass_value(columns(i)%name, pass)), i=2, size(columns))
          end associate
          call add_line(self, line)
       end do
@@ -142,13 +138,16 @@ contains
       class(status_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(:), allocatable :: text
-      integer :: i
+      integer :: i, first, last
 
-      text = ''
+      allocate (character(self%waiting*(line_length + 1)) :: text)
+      last = 0
       do i = 1, self%waiting
-         text = text//trim(self%lines(i))//new_line('a')
+         first = last + 1
+         last = first + len_trim(self%lines(i))
+         text(first:last) = self%lines(i)(:last - first)//new_line('a')
       end do
-      call append_to_file(self%descriptor, self%path, text, error)
+      call append_to_file(self%descriptor, self%path, text(:last), error)
       self%waiting = 0
    end subroutine write_waiting
 
