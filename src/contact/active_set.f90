@@ -14,7 +14,7 @@ module active_set
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
-   use friction, only: next_contact_state
+   use friction, only: next_contact_state, response_type, rounding_type
    use idle_points, only: find_idle_points
    use kinds, only: dp
    use lemke_path, only: follow_lemke_path
@@ -219,18 +219,20 @@ contains
       type(contact_state_type), intent(in) :: state
       integer, intent(out) :: next(:, :)
       real(dp), intent(out) :: excess(:)
-      real(dp) :: gap_tolerance, force_tolerance
+      type(response_type) :: response
+      type(rounding_type) :: rounding
       integer :: k
 
-      gap_tolerance = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(work%initial_gap)), &
+      rounding%gap = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(work%initial_gap)), &
          maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
-      force_tolerance = force_rounding(system, load, work, state)
+      rounding%force = force_rounding(system, load, work, state)
       next(1, :) = state%contact_state
       next(2, :) = state%direction
       do k = 1, size(state%contact_state)
-         call next_contact_state(next(1, k), next(2, k), state%gap(k), state%force(k), &
-            state%shear_force(k), work%slip(system, state, k), system%friction(k), &
-            system%tangent(k) > 0, gap_tolerance, force_tolerance, excess(k))
+         response = response_type(state%gap(k), state%force(k), state%shear_force(k), &
+            work%slip(system, state, k))
+         call next_contact_state(next(1, k), next(2, k), response, system%friction(k), &
+            system%tangent(k) > 0, rounding, excess(k))
       end do
    end subroutine judge
 

@@ -4,7 +4,21 @@ module friction
    use kinds, only: dp
    implicit none
    private
-   public :: next_contact_state
+   public :: response_type, rounding_type, next_contact_state
+
+   !> What a contact point does under its present condition.
+   type :: response_type
+      real(dp) :: gap = 0.0_dp           !! gamma [length]
+      real(dp) :: force = 0.0_dp         !! normal force, positive in compression [force]
+      real(dp) :: shear_force = 0.0_dp   !! tangential force on the slave [force]
+      real(dp) :: slip = 0.0_dp          !! tangential motion since the increment began [length]
+   end type response_type
+
+   !> What counts as zero.
+   type :: rounding_type
+      real(dp) :: gap = 0.0_dp           !! of gap and slip [length]
+      real(dp) :: force = 0.0_dp         !! of both forces [force]
+   end type rounding_type
 
 contains
 
@@ -12,46 +26,43 @@ contains
    !> contact point slips once its friction force would leave the cone; a slipping contact point
    !> sticks once friction would drive it instead of resisting. A contact point that closes first
    !> shows without friction (slip, direction 0) which way it slides.
-   pure subroutine next_contact_state(contact_state, direction, gap, force, shear_force, slip, &
-      friction, has_tangent, gap_tolerance, force_tolerance, excess)
+   pure subroutine next_contact_state(contact_state, direction, response, friction, has_tangent, &
+      rounding, excess)
       integer, intent(inout) :: contact_state !! contact_open, contact_slip or contact_stick
-      integer, intent(inout) :: direction !! sign of friction on the slave in slip, 0 unknown
-      real(dp), intent(in) :: gap             !! gamma [length]
-      real(dp), intent(in) :: force           !! normal force, positive in compression [force]
-      real(dp), intent(in) :: shear_force     !! tangential force on the slave [force]
-      real(dp), intent(in) :: slip !! tangential motion since the start of this increment [length]
-      real(dp), intent(in) :: friction        !! mu [-]
-      logical, intent(in) :: has_tangent     !! whether the contact point can move along its tangent
-      real(dp), intent(in) :: gap_tolerance   !! rounding of gap and slip [length]
-      real(dp), intent(in) :: force_tolerance !! rounding of the forces [force]
-      real(dp), intent(out) :: excess !! violation of the present condition, 0 for none
+      integer, intent(inout) :: direction   !! sign of friction on the slave in slip, 0 unknown
+      type(response_type), intent(in) :: response
+      real(dp), intent(in) :: friction      !! mu [-]
+      logical, intent(in) :: has_tangent    !! whether the contact point can move along its tangent
+      type(rounding_type), intent(in) :: rounding
+      real(dp), intent(out) :: excess       !! violation of the present condition, 0 for none
 
       excess = 0.0_dp
       select case (contact_state)
       case (contact_open)
-         if (gap >= -gap_tolerance) return
-         excess = -gap/gap_tolerance
+         if (response%gap >= -rounding%gap) return
+         excess = -response%gap/rounding%gap
          contact_state = contact_slip
          direction = 0
       case default
-         if (force < -force_tolerance) then
-            excess = -force/force_tolerance
+         if (response%force < -rounding%force) then
+            excess = -response%force/rounding%force
             contact_state = contact_open
          else if (contact_state == contact_stick .and. has_tangent) then
-            if (abs(shear_force) <= friction*max(force, 0.0_dp) + force_tolerance) return
-            excess = (abs(shear_force) - friction*force)/force_tolerance
+            if (abs(response%shear_force) <= friction*max(response%force, 0.0_dp) + &
+               rounding%force) return
+            excess = (abs(response%shear_force) - friction*response%force)/rounding%force
             contact_state = contact_slip
-            direction = merge(1, -1, shear_force > 0.0_dp)
+            direction = merge(1, -1, response%shear_force > 0.0_dp)
          else if (contact_state == contact_slip .and. direction == 0 .and. friction > 0.0_dp) then
             excess = 1.0_dp
-            if (has_tangent .and. abs(slip) > gap_tolerance) then
-               direction = merge(-1, 1, slip > 0.0_dp)
+            if (has_tangent .and. abs(response%slip) > rounding%gap) then
+               direction = merge(-1, 1, response%slip > 0.0_dp)
             else
                contact_state = contact_stick
             end if
          else if (contact_state == contact_slip .and. friction > 0.0_dp) then
-            if (direction*slip <= gap_tolerance) return
-            excess = direction*slip/gap_tolerance
+            if (direction*response%slip <= rounding%gap) return
+            excess = direction*response%slip/rounding%gap
             contact_state = contact_stick
             direction = 0
          end if

@@ -21,68 +21,91 @@ module zone_edges
    use kinds, only: dp
    implicit none
    private
-   public :: contact_edges, stick_edges, edges_kept
+   public :: contact_profile_type, contact_edges, stick_edges, edges_kept
 
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
    integer, parameter :: fitted_points = 5  !! contact points of two three-node sides
+
+   !> What the contact points of an interface do, along it.
+   type :: contact_profile_type
+      real(dp), allocatable :: s(:)          !! (m) arc length [length]
+      real(dp), allocatable :: weight(:)     !! (m) tributary areas [length^2]
+      integer, allocatable :: contact_state(:) !! (m) contact states
+      real(dp), allocatable :: pressure(:)   !! (m) [stress]
+      real(dp), allocatable :: shear(:)      !! (m) [stress]
+      real(dp), allocatable :: gap(:)        !! (m) [length]
+   end type contact_profile_type
 
 contains
 
    !> Edges between contact and gap, ascending, padded with NaN, and the outer edge of the contact
    !> zone with the largest s. A zone that reaches the last contact point ends there; that end is no
    !> edge.
-   pure subroutine contact_edges(s, contact_state, pressure, gap, edges, outer)
-      real(dp), intent(in) :: s(:)                 !! (m) arc length [length]
-      integer, intent(in) :: contact_state(:)      !! (m) contact states
-      real(dp), intent(in) :: pressure(:)          !! (m) [stress]
-      real(dp), intent(in) :: gap(:)               !! (m) [length]
+   pure subroutine contact_edges(profile, edges, outer)
+      type(contact_profile_type), intent(in) :: profile
       real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
       real(dp), intent(out) :: outer               !! outer edge, NaN without contact [length]
+      type(contact_profile_type) :: back
       real(dp) :: edge
       integer :: found, k, m
 
-      m = size(s)
+      back = turned(profile)
+      m = size(profile%s)
       found = 0
       edges = ieee_value(1.0_dp, ieee_quiet_nan)
       outer = edges(1)
       do k = 1, m - 1
-         if (contact_state(k) /= contact_open .and. contact_state(k + 1) == contact_open) then
-            edge = contact_end(s, contact_state, pressure, gap, k)
-            outer = edge
-         else if (contact_state(k) == contact_open .and. contact_state(k + 1) /= contact_open) then
-            edge = -contact_end(-s(m:1:-1), contact_state(m:1:-1), pressure(m:1:-1), gap(m:1:-1), &
-               m - k)
-         else
-            cycle
-         end if
-         found = found + 1
-         if (found <= edges_kept) edges(found) = edge
+         associate (is_open => profile%contact_state(k) == contact_open, &
+            next_is_open => profile%contact_state(k + 1) == contact_open)
+            if (is_open .eqv. next_is_open) cycle
+            if (next_is_open) then
+               edge = contact_end(profile, k)
+               outer = edge
+            else
+               edge = -contact_end(back, m - k)
+            end if
+         end associate
+         call keep(edge, edges, found)
       end do
       if (m > 0) then
-         if (contact_state(m) /= contact_open) outer = s(m)
+         if (profile%contact_state(m) /= contact_open) outer = profile%s(m)
       end if
    end subroutine contact_edges
 
+   !> The profile from its other end.
+   pure function turned(profile) result(back)
+      type(contact_profile_type), intent(in) :: profile
+      type(contact_profile_type) :: back
+      integer :: m
+
+      m = size(profile%s)
+      back = contact_profile_type(-profile%s(m:1:-1), profile%weight(m:1:-1), &
+         profile%contact_state(m:1:-1), profile%pressure(m:1:-1), profile%shear(m:1:-1), &
+         profile%gap(m:1:-1))
+   end function turned
+
    !> Edge between closed contact point k and open contact point k + 1.
-   pure function contact_end(s, contact_state, pressure, gap, k) result(edge)
-      real(dp), intent(in) :: s(:), pressure(:), gap(:)
-      integer, intent(in) :: contact_state(:), k
+   pure function contact_end(profile, k) result(edge)
+      type(contact_profile_type), intent(in) :: profile
+      integer, intent(in) :: k
       real(dp) :: edge
       real(dp) :: g(3)
 
-      if (k + 4 <= size(s)) then
-         g = max(gap(k + 2:k + 4), 0.0_dp)**(2.0_dp/3.0_dp)
-         if (all(contact_state(k + 2:k + 4) == contact_open) .and. g(1) < g(2) .and. &
-            g(2) < g(3)) then
-            edge = s(k + 2)*g(2)*g(3)/((g(2) - g(1))*(g(3) - g(1))) - &
-               s(k + 3)*g(1)*g(3)/((g(2) - g(1))*(g(3) - g(2))) + &
-               s(k + 4)*g(1)*g(2)/((g(3) - g(1))*(g(3) - g(2)))
-            edge = min(max(edge, s(k)), s(k + 1))
-            return
+      associate (s => profile%s)
+         if (k + 4 <= size(s)) then
+            g = max(profile%gap(k + 2:k + 4), 0.0_dp)**(2.0_dp/3.0_dp)
+            if (all(profile%contact_state(k + 2:k + 4) == contact_open) .and. g(1) < g(2) .and. &
+               g(2) < g(3)) then
+               edge = s(k + 2)*g(2)*g(3)/((g(2) - g(1))*(g(3) - g(1))) - &
+                  s(k + 3)*g(1)*g(3)/((g(2) - g(1))*(g(3) - g(2))) + &
+                  s(k + 4)*g(1)*g(2)/((g(3) - g(1))*(g(3) - g(2)))
+               edge = min(max(edge, s(k)), s(k + 1))
+               return
+            end if
          end if
-      end if
-      edge = end_of_lines(s, contact_state, pressure, gap, k)
+      end associate
+      edge = end_of_lines(profile%s, profile%contact_state, profile%pressure, profile%gap, k)
    end function contact_end
 
    !> The same by straight lines through at most two contact points on each side.
@@ -120,21 +143,15 @@ contains
    end function end_of_lines
 
    !> Edges of the stick zones, ascending, padded with NaN, and the outer edge of the widest zone.
-   pure subroutine stick_edges(s, weight, contact_state, pressure, shear, gap, friction, edges, &
-      outer)
-      real(dp), intent(in) :: s(:)                 !! (m) arc length [length]
-      real(dp), intent(in) :: weight(:)            !! (m) tributary areas [length^2]
-      integer, intent(in) :: contact_state(:)      !! (m) contact states
-      real(dp), intent(in) :: pressure(:)          !! (m) [stress]
-      real(dp), intent(in) :: shear(:)             !! (m) [stress]
-      real(dp), intent(in) :: gap(:)               !! (m) [length]
+   pure subroutine stick_edges(profile, friction, edges, outer)
+      type(contact_profile_type), intent(in) :: profile
       real(dp), intent(in) :: friction             !! mu [-]
       real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
       real(dp), intent(out) :: outer               !! outer edge, NaN without stick [length]
       real(dp) :: edge, widest
       integer :: first, found, last, m
 
-      m = size(s)
+      m = size(profile%s)
       found = 0
       widest = -1.0_dp
       edges = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -142,22 +159,22 @@ contains
       first = 1
       do while (first <= m)
          last = first
-         if (contact_state(first) == contact_stick) then
+         if (profile%contact_state(first) == contact_stick) then
             do while (last < m)
-               if (contact_state(last + 1) /= contact_stick) exit
+               if (profile%contact_state(last + 1) /= contact_stick) exit
                last = last + 1
             end do
-            if (first > 1) call keep(-stick_end(-s(m:1:-1), weight(m:1:-1), contact_state(m:1:-1), &
-               pressure(m:1:-1), shear(m:1:-1), gap(m:1:-1), friction, m + 1 - last, &
+            if (first > 1) call keep(-stick_end(turned(profile), friction, m + 1 - last, &
                m + 1 - first), edges, found)
-            edge = s(m)
+            edge = profile%s(m)
             if (last < m) then
-               edge = stick_end(s, weight, contact_state, pressure, shear, gap, friction, first, &
-                  last)
+               edge = stick_end(profile, friction, first, last)
                call keep(edge, edges, found)
             end if
-            if (s(last) - s(first) >= widest) outer = edge
-            widest = max(widest, s(last) - s(first))
+            associate (width => profile%s(last) - profile%s(first))
+               if (width >= widest) outer = edge
+               widest = max(widest, width)
+            end associate
          end if
          first = last + 1
       end do
@@ -174,30 +191,33 @@ contains
 
    !> Edge beyond the last contact point of the stick zone first..last. Stick ends no later than
    !> contact.
-   pure function stick_end(s, weight, contact_state, pressure, shear, gap, friction, first, last) &
-      result(edge)
-      real(dp), intent(in) :: s(:), weight(:), pressure(:), shear(:), gap(:), friction
-      integer, intent(in) :: contact_state(:), first, last
+   pure function stick_end(profile, friction, first, last) result(edge)
+      type(contact_profile_type), intent(in) :: profile
+      real(dp), intent(in) :: friction
+      integer, intent(in) :: first, last
       real(dp) :: edge
       real(dp) :: excess(fitted_points), limit, mean_s, mean_excess, slope, spread, total
       integer :: n, start
 
-      limit = s(last + 1)
-      if (contact_state(last + 1) == contact_open) limit = contact_end(s, contact_state, pressure, &
-         gap, last)
       start = max(first, last - fitted_points + 1)
       n = last - start + 1
-      edge = 0.5_dp*(s(last) + limit)
-      total = sum(weight(start:last))
-      if (count(weight(start:last) > 0.0_dp) < 2) return
-      excess(:n) = friction*pressure(start:last) - sign(1.0_dp, merge(shear(last + 1), &
-         shear(last), contact_state(last + 1) == contact_slip))*shear(start:last)
-      mean_s = sum(weight(start:last)*s(start:last))/total
-      mean_excess = sum(weight(start:last)*excess(:n))/total
-      spread = sum(weight(start:last)*(s(start:last) - mean_s)**2)
-      slope = sum(weight(start:last)*(s(start:last) - mean_s)*(excess(:n) - mean_excess))
-      edge = limit
-      if (slope < 0.0_dp) edge = min(max(mean_s - mean_excess*spread/slope, s(last)), limit)
+      associate (s => profile%s(start:last), weight => profile%weight(start:last), &
+         next_contact_state => profile%contact_state(last + 1))
+         limit = profile%s(last + 1)
+         if (next_contact_state == contact_open) limit = contact_end(profile, last)
+         edge = 0.5_dp*(s(n) + limit)
+         total = sum(weight)
+         if (count(weight > 0.0_dp) < 2) return
+         excess(:n) = friction*profile%pressure(start:last) - sign(1.0_dp, &
+            merge(profile%shear(last + 1), profile%shear(last), next_contact_state == &
+            contact_slip))* profile%shear(start:last)
+         mean_s = sum(weight*s)/total
+         mean_excess = sum(weight*excess(:n))/total
+         spread = sum(weight*(s - mean_s)**2)
+         slope = sum(weight*(s - mean_s)*(excess(:n) - mean_excess))
+         edge = limit
+         if (slope < 0.0_dp) edge = min(max(mean_s - mean_excess*spread/slope, s(n)), limit)
+      end associate
    end function stick_end
 
 end module zone_edges

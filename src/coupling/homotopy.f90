@@ -63,6 +63,13 @@ module homotopy
       procedure :: retreat
    end type homotopy_type
 
+   !> Newton's correction of a trial, and the way that the path goes on.
+   type :: path_step_type
+      logical :: sound = .false.               !! whether there is one
+      real(dp), allocatable :: change(:)       !! (m + 1) the correction
+      real(dp), allocatable :: tangent(:)      !! (m + 1) of the path, of length 1
+   end type path_step_type
+
 contains
 
    !> Begins a path at openings, where no point rests.
@@ -108,8 +115,7 @@ contains
       !> (m, m) its derivative by omega; not allocated where there is none
       real(dp), allocatable, intent(in) :: derivative(:, :)
       real(dp), intent(out) :: coordinate(:)                !! (m) z [length]
-      real(dp) :: change(size(coordinate) + 1), tangent(size(coordinate) + 1)
-      logical :: sound
+      type(path_step_type) :: step
 
       if (self%unit <= 0.0_dp) self%length = max(self%length, maxval(abs(opening)))
       if (self%step < shortest_step) then
@@ -118,55 +124,54 @@ contains
          coordinate = self%trial
          return
       end if
-      change = 0.0_dp
-      sound = allocated(derivative)
-      if (sound .and. self%unit <= 0.0_dp) call set_unit(self, graph, body, opening, derivative, &
-         sound)
-      if (sound) call find_step(self, graph, body, opening, derivative, change, tangent, sound)
-      if (sound) call judge(self, norm2(change), dot_product(tangent, self%tangent), sound)
-      if (sound .and. (self%trial_t >= 1.0_dp .or. norm2(change) > self%near)) then
-         call move(self, graph, body, self%trial, self%trial_t, change, tangent)
+      step%sound = allocated(derivative)
+      if (step%sound .and. self%unit <= 0.0_dp) call set_unit(self, graph, body, opening, &
+         derivative, step)
+      if (step%sound) call find_step(self, graph, body, opening, derivative, step)
+      if (step%sound) call judge(self, step)
+      if (.not. step%sound) then
+         self%step = 0.5_dp*self%step
+         call advance(self, graph, body)
+      else if (self%trial_t >= 1.0_dp .or. norm2(step%change) > self%near) then
+         call move(self, graph, body, self%trial, self%trial_t, step)
       else
-         if (sound) then
-            call take(self, change, tangent)
-         else
-            self%step = 0.5_dp*self%step
-         end if
+         call take(self, step)
          call advance(self, graph, body)
       end if
       coordinate = self%trial
    end subroutine next
 
    !> Whether a pass is one on the way: its correction is small, and at t = 1 the path goes forward.
-   subroutine judge(self, correction, turn, sound)
+   subroutine judge(self, step)
       class(homotopy_type), intent(inout) :: self
-      real(dp), intent(in) :: correction   !! its length
-      real(dp), intent(in) :: turn         !! cosine of the angle to the tangent at the base
-      logical, intent(out) :: sound
+      type(path_step_type), intent(inout) :: step
 
       self%arrived = merge(self%arrived + 1, 0, self%trial_t >= 1.0_dp)
-      sound = correction <= merge(too_large, 1.0_dp, self%step > self%near)*self%way
-      sound = sound .or. (correction <= at_a_kink*self%near .and. self%arrived < most_arrived)
-      if (self%trial_t < 1.0_dp) return
-      sound = (sound .or. correction <= rounding) .and. turn >= 0.0_dp
+      associate (correction => norm2(step%change))
+         step%sound = correction <= merge(too_large, 1.0_dp, self%step > self%near)*self%way .or. &
+            (correction <= at_a_kink*self%near .and. self%arrived < most_arrived)
+         if (self%trial_t < 1.0_dp) return
+         step%sound = (step%sound .or. correction <= rounding) .and. &
+            dot_product(step%tangent, self%tangent) >= 0.0_dp
+      end associate
    end subroutine judge
 
    !> Takes the trial as the base. A path that turns back at a kink was overshot by as much as a
    !> step. Where it seems to turn again at once, its branches are nearer to each other than the
    !> points to them.
-   subroutine take(self, change, tangent)
+   subroutine take(self, step)
       class(homotopy_type), intent(inout) :: self
-      real(dp), intent(in) :: change(:), tangent(:)
+      type(path_step_type), intent(in) :: step
       logical :: turns
 
-      turns = dot_product(tangent, self%tangent) < 0.0_dp
-      if (norm2(change) <= small*self%way .or. turns) self%step = 2*self%step
+      turns = dot_product(step%tangent, self%tangent) < 0.0_dp
+      if (norm2(step%change) <= small*self%way .or. turns) self%step = 2*self%step
       if (turns .and. self%has_turned) self%near = max(closer*self%near, nearest)
       self%has_turned = turns
       self%base = self%trial
       self%base_t = self%trial_t
-      self%correction = change
-      self%tangent = tangent
+      self%correction = step%change
+      self%tangent = step%tangent
    end subroutine take
 
    !> A shorter advance, where the contact zones of a pass were not found.
@@ -185,16 +190,17 @@ contains
 
    !> The unit of lengths: as far as the points go at the start while t goes to 1, where that is
    !> little.
-   subroutine set_unit(self, graph, body, opening, derivative, sound)
+   subroutine set_unit(self, graph, body, opening, derivative, step)
       class(homotopy_type), intent(inout) :: self
       type(conductance_graph_type), intent(in) :: graph(:)
       real(dp), intent(in) :: body(:), opening(:), derivative(:, :)
-      logical, intent(out) :: sound
-      real(dp) :: change(size(body) + 1), tangent(size(body) + 1)
+      type(path_step_type), intent(out) :: step
+      integer :: n
 
       self%unit = 1.0_dp
-      call find_step(self, graph, body, opening, derivative, change, tangent, sound)
-      if (sound) self%unit = min(max(norm2(tangent(:size(body)))/tangent(size(tangent)), &
+      call find_step(self, graph, body, opening, derivative, step)
+      n = size(body)
+      if (step%sound) self%unit = min(max(norm2(step%tangent(:n))/step%tangent(n + 1), &
          least_unit), 1.0_dp)
    end subroutine set_unit
 
@@ -209,38 +215,38 @@ contains
       longest = longest_step*[max(1.0_dp, abs(graph%opening(self%base))/self%length)/self%unit, &
          1.0_dp]
       self%step = min(self%step, minval(longest/max(abs(self%tangent), no_part)))
-      call move(self, graph, body, self%base, self%base_t, &
-         self%correction + self%step*self%tangent, self%tangent)
+      call move(self, graph, body, self%base, self%base_t, path_step_type(.true., &
+         self%correction + self%step*self%tangent, self%tangent))
    end subroutine advance
 
    !> The trial: a change from coordinates and t, back along the tangent to t = 1 where it would
    !> lead beyond. There is no path below t = 0.
-   subroutine move(self, graph, body, from, from_t, change, tangent)
+   subroutine move(self, graph, body, from, from_t, step)
       class(homotopy_type), intent(inout) :: self
       type(conductance_graph_type), intent(in) :: graph(:)
-      real(dp), intent(in) :: body(:), from(:), from_t, change(:), tangent(:)
-      real(dp) :: way(size(change))
+      real(dp), intent(in) :: body(:), from(:), from_t
+      type(path_step_type), intent(in) :: step
+      real(dp) :: way(size(body) + 1)
       integer :: n
 
       n = size(body)
-      way = change
+      way = step%change
       if (from_t < 1.0_dp .and. from_t + way(n + 1) >= 1.0_dp) way = way - &
-         (from_t + way(n + 1) - 1.0_dp)/max(tangent(n + 1), least_unit)*tangent
+         (from_t + way(n + 1) - 1.0_dp)/max(step%tangent(n + 1), least_unit)*step%tangent
       self%way = norm2(way)
       self%trial = moved_along(graph, from, self%unit*way(:n), body, self%length)
       self%trial_t = min(max(from_t + way(n + 1), 0.0_dp), 1.0_dp)
-      if (from_t + change(n + 1) >= 1.0_dp) self%trial_t = 1.0_dp
+      if (from_t + step%change(n + 1) >= 1.0_dp) self%trial_t = 1.0_dp
    end subroutine move
 
    !> Newton's correction of the trial, at t = 1 with t held, elsewhere normal to the path, whose
    !> tangent points the way that it goes on.
-   subroutine find_step(self, graph, body, opening, derivative, change, tangent, sound)
+   subroutine find_step(self, graph, body, opening, derivative, step)
       class(homotopy_type), intent(in) :: self
       type(conductance_graph_type), intent(in) :: graph(:)
       real(dp), intent(in) :: body(:), opening(:), derivative(:, :)
-      real(dp), intent(out) :: change(:), tangent(:)
-      logical, intent(out) :: sound
-      real(dp) :: matrix(size(change), size(change)), x(size(change), 2), rate
+      type(path_step_type), intent(out) :: step
+      real(dp) :: matrix(size(opening) + 1, size(opening) + 1), x(size(opening) + 1, 2), rate
       type(lu_type) :: lu
       logical :: singular
       integer :: k, n
@@ -259,13 +265,14 @@ contains
          self%trial_t*opening)
       x(n + 1, 2) = 1.0_dp
       call lu%factor(matrix, singular)
-      sound = .not. singular
-      if (.not. sound) return
+      step%sound = .not. singular
+      if (singular) return
       call lu%solve(x)
-      tangent = x(:, 2)/norm2(x(:, 2))
-      if (lu%negative_determinant()) tangent = -tangent
-      change = x(:, 1)
-      if (self%trial_t < 1.0_dp) change = change - dot_product(change, tangent)*tangent
+      step%tangent = x(:, 2)/norm2(x(:, 2))
+      if (lu%negative_determinant()) step%tangent = -step%tangent
+      step%change = x(:, 1)
+      if (self%trial_t < 1.0_dp) step%change = step%change - &
+         dot_product(step%change, step%tangent)*step%tangent
    end subroutine find_step
 
    !> Change of the coordinate for the length along the graph.

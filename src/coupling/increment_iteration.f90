@@ -143,7 +143,6 @@ contains
       type(contact_state_type) :: good
       integer :: turns(size(data%graph)), away, before, i
       real(dp) :: wanted
-      logical :: possible
 
       before = size(workspace%record%iterations)
       turns = 0
@@ -166,10 +165,8 @@ contains
                g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
                pairs_changed=count(next%contact%contact_state /= good%contact_state))
             if (allocated(error)) then
-               call retreat(accelerator, pass%omega, possible)
-               if (.not. possible) exit
-               deallocate (error)
-               next%contact = good
+               call retreat(accelerator, good, pass%omega, next%contact, error)
+               if (allocated(error)) exit
                cycle
             end if
             pass%opening = openings(bodies, data%graph, next%contact)
@@ -185,9 +182,7 @@ contains
                (good%contact_state == contact_open)) turns = turns + 1
             if (controls%method /= method_newton .and. any(turns > most_turns .and. &
                data%graph%width > 0.0_dp)) exit
-            call find_derivative(bodies, data, next, accelerator, workspace)
-            call accelerator%next(pass, next%omega)
-            pass%omega = next%omega
+            call take_step(bodies, data, next, accelerator, workspace)
          end do
          call close_passes(record, passes, i, wanted, error)
          if (allocated(error)) return
@@ -196,18 +191,24 @@ contains
       call settle(next%resting, next%contact)
    end subroutine use_method
 
-   !> The next omega* where the contact zones of a pass were not found, which only Newton's method
-   !> has.
-   subroutine retreat(accelerator, omega, possible)
+   !> The next omega* from the contact state before a pass whose contact zones were not found, which
+   !> only Newton's method has.
+   subroutine retreat(accelerator, before, omega, contact, error)
       class(accelerator_type), intent(inout) :: accelerator
+      type(contact_state_type), intent(in) :: before
       real(dp), intent(inout) :: omega(:)
-      logical, intent(out) :: possible
+      type(contact_state_type), intent(inout) :: contact
+      type(error_type), allocatable, intent(inout) :: error   !! goes where there is one
+      logical :: possible
 
       possible = .false.
       select type (accelerator)
       type is (newton_type)
          call accelerator%retreat(omega, possible)
       end select
+      if (.not. possible) return
+      deallocate (error)
+      contact = before
    end subroutine retreat
 
    !> Keeps the passes, and says so where the last one is not good enough.
@@ -229,12 +230,12 @@ contains
          to_text(wanted))
    end subroutine close_passes
 
-   !> The derivative of a pass, where the accelerator asks for it.
-   subroutine find_derivative(bodies, data, next, accelerator, workspace)
+   !> The next omega*, from the derivative of the pass where the accelerator asks for it.
+   subroutine take_step(bodies, data, next, accelerator, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
-      type(solution_state_type), intent(in) :: next
-      class(accelerator_type), intent(in) :: accelerator
+      type(solution_state_type), intent(inout) :: next
+      class(accelerator_type), intent(inout) :: accelerator
       type(increment_workspace_type), intent(inout) :: workspace
 
       associate (pass => workspace%pass)
@@ -242,10 +243,11 @@ contains
          select type (accelerator)
          type is (newton_type)
             if (accelerator%asks_derivative(pass)) call opening_derivative(bodies, data, &
-               workspace, &
-               next%jump, next%contact, pass%derivative, pass%body)
+               workspace, next%jump, next%contact, pass%derivative, pass%body)
          end select
+         call accelerator%next(pass, next%omega)
+         pass%omega = next%omega
       end associate
-   end subroutine find_derivative
+   end subroutine take_step
 
 end module increment_iteration

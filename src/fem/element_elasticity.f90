@@ -13,7 +13,7 @@ module element_elasticity
    use side_integrals, only: area_factor
    implicit none
    private
-   public :: element_stiffness, element_thermal_load, stress_at
+   public :: element_stiffness, element_thermal_load, strain_at
 
 contains
 
@@ -69,20 +69,16 @@ contains
       end do
    end function element_thermal_load
 
-   !> Stress at a point of an element, eq. (1.5): sigma = E eps - beta T.
-   pure function stress_at(kind, plane, coordinates, point, e, beta, displacement, temperature) &
-      result(stress)
+   !> Strain at a point of an element.
+   pure function strain_at(kind, plane, coordinates, point, displacement) result(strain)
       integer, intent(in) :: kind                  !! kind of the element
       integer, intent(in) :: plane                 !! plane_strain, ...
       real(dp), intent(in) :: coordinates(:, :)    !! (2, nodes of the kind) [length]
       real(dp), intent(in) :: point(2)             !! xi, eta
-      real(dp), intent(in) :: e(4, 4)              !! at the point [stress]
-      real(dp), intent(in) :: beta(4)              !! at the point [stress/temperature]
       real(dp), intent(in) :: displacement(:, :)   !! (2, nodes of the kind) [length]
-      real(dp), intent(in) :: temperature(:)       !! (nodes) over the natural state [temperature]
-      real(dp) :: stress(4)                        !! xx, yy, zz, xy [stress]
+      real(dp) :: strain(4)                        !! xx, yy, zz, xy
       real(dp) :: gradients(2, element_node_count(kind)), psi(element_node_count(kind))
-      real(dp) :: jacobian, slope(2, 2), strain(4)
+      real(dp) :: jacobian, slope(2, 2)
 
       call element_gradients(kind, coordinates, point, gradients, jacobian)
       psi = element_shape(kind, point)
@@ -92,8 +88,7 @@ contains
          dot_product(psi, coordinates(1, :))
       if (has_mean_dilatation(kind, plane)) strain(:3) = strain(:3) + &
          (dilatation_of(kind, plane, coordinates, displacement) - sum(strain(:3)))/3
-      stress = matmul(e, strain) - beta*dot_product(psi, temperature)
-   end function stress_at
+   end function strain_at
 
    !> Mean dilatation of an element under displacements of its nodes.
    pure function dilatation_of(kind, plane, coordinates, displacement) result(dilatation)

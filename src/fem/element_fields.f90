@@ -1,7 +1,7 @@
 !> Stress and heat flux at points of an element of a mesh.
 module element_fields
    use element_conduction, only: heat_flux_at
-   use element_elasticity, only: stress_at
+   use element_elasticity, only: strain_at
    use element_kinds, only: element_node_count
    use kinds, only: dp
    use materials, only: material_type, section_type
@@ -77,8 +77,9 @@ contains
                e = elasticity_in(plane, materials(section%material), axes(:, :, g))
                beta = thermal_modulus_in(plane, materials(section%material), axes(:, :, g))
             end if
-            stress(:, g) = stress_at(kind, plane, coordinates, xi_eta(:, g), e, beta, &
-               displacement(:, nodes), temperature(nodes))
+            stress(:, g) = matmul(e, strain_at(kind, plane, coordinates, xi_eta(:, g), &
+               displacement(:, nodes))) - &
+               beta*dot_product(element_shape(kind, xi_eta(:, g)), temperature(nodes))
          end do
       end associate
    end function element_stress

@@ -8,7 +8,8 @@ module field_recovery
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
    use orientations, only: orientation_type
-   use point_fields, only: most => most_field_points, point_fields_type
+   use point_fields, only: most => most_field_points, point_fields_type, point_rule, &
+      point_rule_type
    use quadrature, only: recovery_count, recovery_points, recovery_weights
    use shape_functions, only: node_position
    implicit none
@@ -75,18 +76,16 @@ contains
       type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       type(point_fields_type), intent(out) :: fields
-      real(dp) :: points(2, most, kind_count), weights(most, kind_count)
+      type(point_rule_type) :: rules(kind_count)
       integer :: i, k
 
-      points = 0.0_dp
       do i = 1, kind_count
          k = kinds(i)
-         points(:, :recovery_count(k), k) = recovery_points(k)
+         ! Equal weights are right for the four-node element, whose mean dilatation is that over
+         ! these points.
+         rules(k) = point_rule(k, recovery_points(k), spread(1.0_dp, 1, recovery_count(k)))
       end do
-      ! Right for the four-node element, whose mean dilatation is that over these points.
-      weights = 1.0_dp
-      call fields%prepare(mesh, sections, materials, orientations, points, weights, &
-         recovery_count)
+      call fields%prepare(mesh, sections, materials, orientations, rules)
    end subroutine prepare_samples
 
    !> Stress at all recovery points along x and y, eq. (1.5).

@@ -15,7 +15,7 @@ module point_fields
    use side_integrals, only: area_factor
    implicit none
    private
-   public :: point_fields_type, point_rule_type, point_material_type
+   public :: point_fields_type, point_rule_type, point_rule, point_material_type
    public :: most_field_points
 
    integer, parameter :: most_field_points = 10  !! of an element, made even
@@ -59,25 +59,20 @@ module point_fields
 contains
 
    !> Forms what stays.
-   pure subroutine prepare(self, mesh, sections, materials, orientations, points, weights, counts)
+   pure subroutine prepare(self, mesh, sections, materials, orientations, rules)
       class(point_fields_type), intent(inout) :: self
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
       type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
-      real(dp), intent(in) :: points(:, :, :)               !! (2, most, kinds) xi, eta
-      real(dp), intent(in) :: weights(:, :)                 !! (most, kinds)
-      integer, intent(in) :: counts(:)                      !! (kinds) points of each
-      integer :: e, kind, n
+      type(point_rule_type), intent(in) :: rules(:)         !! (kinds) points of each kind
+      integer :: e, n
 
-      do kind = 1, kind_count
-         self%rules(kind) = make_rule(kind, points(:, :counts(kind), kind), &
-            weights(:counts(kind), kind))
-      end do
+      self%rules = rules
       n = size(mesh%element_kind)
       allocate (self%first(n + 1), source=1)
       do e = 1, n
-         self%first(e + 1) = self%first(e) + counts(mesh%element_kind(e))
+         self%first(e + 1) = self%first(e) + rules(mesh%element_kind(e))%count
       end do
       allocate (self%inverse(4, self%first(n + 1)), self%volume(self%first(n + 1)), source=0.0_dp)
       do e = 1, n
@@ -91,9 +86,11 @@ contains
       call place_materials(self, mesh, sections, materials, orientations)
    end subroutine prepare
 
-   pure function make_rule(kind, points, weights) result(rule)
+   !> Points of a kind of element, with its shape functions there.
+   pure function point_rule(kind, points, weights) result(rule)
       integer, intent(in) :: kind
-      real(dp), intent(in) :: points(:, :), weights(:)
+      real(dp), intent(in) :: points(:, :)   !! (2, points) xi, eta
+      real(dp), intent(in) :: weights(:)     !! (points)
       type(point_rule_type) :: rule
       real(dp) :: slope(2, element_node_count(kind)), jacobian
       integer :: g
@@ -108,7 +105,7 @@ contains
          rule%slope_xi(g, :rule%nodes) = slope(1, :)
          rule%slope_eta(g, :rule%nodes) = slope(2, :)
       end do
-   end function make_rule
+   end function point_rule
 
    pure subroutine map_points(rule, coordinates, thickness, is_axisymmetric, inverse, volume)
       type(point_rule_type), intent(in) :: rule

@@ -9,11 +9,11 @@ module recovered_error
    use element_kinds, only: kind_count, quad4, quad8, quad8_reduced, triangle3, triangle6
    use kinds, only: dp
    use mesh, only: nodes_per_element
-   use point_fields, only: most => most_field_points, point_rule_type
+   use point_fields, only: most => most_field_points, point_rule, point_rule_type
    use quadrature, only: integration_rule, load_point_count, load_rule, point_count
    implicit none
    private
-   public :: element_error_type, measure_stress, measure_heat_flux, error_points, error_record_type
+   public :: element_error_type, measure_stress, measure_heat_flux, error_rules, error_record_type
 
    !> Estimated discretisation error of stress or of heat flux (Zienkiewicz & Zhu).
    type :: error_record_type
@@ -34,27 +34,24 @@ module recovered_error
 contains
 
    !> The points at which errors are integrated.
-   pure subroutine error_points(points, weights, counts)
-      real(dp), intent(out) :: points(2, most, kind_count)   !! xi, eta
-      real(dp), intent(out) :: weights(most, kind_count)     !! sum 4 (square) or 1/2 (triangle)
-      integer, intent(out) :: counts(kind_count)             !! points of a kind
+   pure function error_rules() result(rules)
+      type(point_rule_type) :: rules(kind_count)   !! by kind; weights sum to 4 (square) or 1/2
       integer, parameter :: kinds(kind_count) = [quad8, quad8_reduced, quad4, triangle6, triangle3]
+      real(dp) :: points(2, most), weights(most)
       integer :: i, k, n
 
-      points = 0.0_dp
-      weights = 0.0_dp
       do i = 1, kind_count
          k = kinds(i)
          if (k == quad4 .or. k == triangle3) then
             n = point_count(k)
-            call integration_rule(k, points(:, :n, k), weights(:n, k))
+            call integration_rule(k, points(:, :n), weights(:n))
          else
             n = load_point_count(k)
-            call load_rule(k, points(:, :n, k), weights(:n, k))
+            call load_rule(k, points(:, :n), weights(:n))
          end if
-         counts(k) = n
+         rules(k) = point_rule(k, points(:, :n), weights(:n))
       end do
-   end subroutine error_points
+   end function error_rules
 
    !> The integrals of stress over two points of an element.
    pure subroutine measure_stress(rule, g, smooth, values, compliance, volume, measured)

@@ -21,6 +21,14 @@ module hdf5_attributes
       module procedure write_text_attribute
    end interface write_attribute
 
+   !> A value in memory, and its types.
+   type :: stored_value_type
+      integer(hid_t) :: memory_type = -1
+      integer(hid_t) :: file_type = -1
+      type(c_ptr) :: address
+      integer :: extent = 0                    !! numbers in it; 0 for a scalar
+   end type stored_value_type
+
 contains
 
    !> Error: status_internal, when the attribute cannot be written.
@@ -33,8 +41,8 @@ contains
       integer, target :: copy
 
       copy = value
-      call write_any(file, path, name, h5t_native_integer, stored_type(as_integer), c_loc(copy), &
-         error=error)
+      call write_any(file, path, name, stored_value_type(h5t_native_integer, &
+         stored_type(as_integer), c_loc(copy)), error)
    end subroutine write_integer_attribute
 
    !> Error: status_internal, when the attribute cannot be written.
@@ -45,8 +53,8 @@ contains
       integer, contiguous, target, intent(in) :: values(:) !! its values
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
-      call write_any(file, path, name, h5t_native_integer, stored_type(as_integer), &
-         c_loc(values), size(values), error)
+      call write_any(file, path, name, stored_value_type(h5t_native_integer, &
+         stored_type(as_integer), c_loc(values), size(values)), error)
    end subroutine write_integers_attribute
 
    !> Error: status_internal, when the attribute cannot be written.
@@ -59,8 +67,8 @@ contains
       integer(long), target :: copy
 
       copy = value
-      call write_any(file, path, name, h5kind_to_type(long, h5_integer_kind), &
-         stored_type(as_long), c_loc(copy), error=error)
+      call write_any(file, path, name, stored_value_type(h5kind_to_type(long, h5_integer_kind), &
+         stored_type(as_long), c_loc(copy)), error)
    end subroutine write_long_attribute
 
    !> Error: status_internal, when the attribute cannot be written.
@@ -73,8 +81,8 @@ contains
       real(dp), target :: copy
 
       copy = value
-      call write_any(file, path, name, h5t_native_double, stored_type(as_real), c_loc(copy), &
-         error=error)
+      call write_any(file, path, name, stored_value_type(h5t_native_double, &
+         stored_type(as_real), c_loc(copy)), error)
    end subroutine write_real_attribute
 
    !> Error: status_internal, when the attribute cannot be written.
@@ -92,7 +100,7 @@ contains
       copy = value//c_null_char
       start = c_loc(copy)
       call utf8_string_type(type, status(1))
-      call write_any(file, path, name, type, type, c_loc(start), error=error)
+      call write_any(file, path, name, stored_value_type(type, type, c_loc(start)), error)
       call h5tclose_f(type, status(2))
       if (.not. allocated(error)) call check_status(status, 'cannot write text', error)
    end subroutine write_text_attribute
@@ -112,19 +120,16 @@ contains
       copy = value
       call h5tcopy_f(h5t_native_character, type, status(1))
       call h5tset_size_f(type, len(value, kind=size_t), status(2))
-      call write_any(file, path, name, type, type, c_loc(copy), error=error)
+      call write_any(file, path, name, stored_value_type(type, type, c_loc(copy)), error)
       call h5tclose_f(type, status(3))
       if (.not. allocated(error)) call check_status(status, 'cannot write text', error)
    end subroutine write_fixed_text
 
-   subroutine write_any(file, path, name, memory_type, file_type, address, extent, error)
+   subroutine write_any(file, path, name, value, error)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: path
       character(*), intent(in) :: name
-      integer(hid_t), intent(in) :: memory_type
-      integer(hid_t), intent(in) :: file_type
-      type(c_ptr), intent(in) :: address
-      integer, optional, intent(in) :: extent
+      type(stored_value_type), intent(in) :: value
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: object, attribute, space
       integer :: status(8)
@@ -137,15 +142,15 @@ contains
       if (exists) then
          call h5aopen_f(object, name, attribute, status(2))
       else
-         if (present(extent)) then
-            call h5screate_simple_f(1, [int(extent, hsize_t)], space, status(2))
+         if (value%extent > 0) then
+            call h5screate_simple_f(1, [int(value%extent, hsize_t)], space, status(2))
          else
             call h5screate_f(h5s_scalar_f, space, status(2))
          end if
-         call h5acreate_f(object, name, file_type, space, attribute, status(3))
+         call h5acreate_f(object, name, value%file_type, space, attribute, status(3))
          call h5sclose_f(space, status(4))
       end if
-      call h5awrite_f(attribute, memory_type, address, status(5))
+      call h5awrite_f(attribute, value%memory_type, value%address, status(5))
       call h5aclose_f(attribute, status(6))
       call h5oclose_f(object, status(8))
       call check_status(status, 'cannot write attribute '//path//'@'//name, error)

@@ -2,7 +2,6 @@
 !> geometry and materials give is formed once a run.
 module discretisation_errors
    use element_fields, only: element_positions
-   use element_kinds, only: kind_count
    use field_recovery, only: average_samples, heat_flux_samples, make_points, point_map_type, &
       prepare_samples, stress_samples
    use kinds, only: dp
@@ -11,7 +10,7 @@ module discretisation_errors
    use patch_recovery, only: patch_recovery_type
    use point_fields, only: most => most_field_points, point_fields_type
    use quadrature, only: recovery_points
-   use recovered_error, only: element_error_type, error_points, error_record_type, &
+   use recovered_error, only: element_error_type, error_rules, error_record_type, &
       measure_heat_flux, measure_stress
    implicit none
    private
@@ -39,16 +38,14 @@ contains
    subroutine prepare(self, model)
       class(recovery_type), intent(out) :: self
       type(model_type), intent(in) :: model
-      real(dp) :: points(2, most, kind_count), weights(most, kind_count)
       real(dp), allocatable :: position(:, :)
-      integer :: counts(kind_count), e
+      integer :: e
 
       self%points = make_points(model%mesh)
       call prepare_samples(model%mesh, model%sections, model%materials, model%orientations, &
          self%samples)
-      call error_points(points, weights, counts)
       call self%quadrature%prepare(model%mesh, model%sections, model%materials, &
-         model%orientations, points, weights, counts)
+         model%orientations, error_rules())
       allocate (position(2, self%samples%first(size(self%samples%first)) - 1))
       do e = 1, size(model%mesh%element_kind)
          position(:, self%samples%first(e):self%samples%first(e + 1) - 1) = &

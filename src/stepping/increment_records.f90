@@ -21,7 +21,7 @@ module increment_records
    use solution_state, only: carrying_conductance, solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use text, only: append, to_text
-   use zone_edges, only: contact_edges, stick_edges
+   use zone_edges, only: contact_edges, contact_profile_type, stick_edges
    implicit none
    private
    public :: complete_record, measure_contact
@@ -164,15 +164,16 @@ contains
       real(dp), intent(in) :: force(:)                     !! (m) 0 at the others [force]
       real(dp), intent(in) :: shear_force(:)               !! (m) on the slave [force]
       type(contact_record_type), intent(inout) :: record   !! has states and gaps
+      type(contact_profile_type) :: profile
 
       record%pressure = pressures(points, force, closed)
       record%shear = shears(points, shear_force, closed, friction, record%pressure)
       record%normal_force = sum(force)
       record%shear_force = sum(shear_force)
-      call contact_edges(points%arc_length, record%contact_state, record%pressure, record%gap, &
-         record%edges_contact, record%edge_contact)
-      call stick_edges(points%arc_length, points%weight, record%contact_state, record%pressure, &
-         record%shear, record%gap, friction, record%edges_stick, record%edge_stick)
+      profile = contact_profile_type(points%arc_length, points%weight, record%contact_state, &
+         record%pressure, record%shear, record%gap)
+      call contact_edges(profile, record%edges_contact, record%edge_contact)
+      call stick_edges(profile, friction, record%edges_stick, record%edge_stick)
    end subroutine measure_contact
 
    !> Displacement below which none is a scale to measure by. Where bodies are at their initial

@@ -9,23 +9,34 @@ module deck_builder_prints
    use mesh, only: mesh_type, set_type
    use print_requests, only: append_request, print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
-   use text, only: nearest_known, string_type, to_upper
+   use text, only: append, nearest_known, string_type, to_upper
    implicit none
    private
    public :: build_print, read_frequency
 
-   character(5), parameter :: node_keys(5) = [character(5) :: 'U', 'NT', 'TS', 'RF', 'RFL']
-   integer, parameter :: node_quantities(5) = [print_displacement, print_temperature, &
-      print_temperature, print_force, print_heat]   !! of node_keys
-   character(5), parameter :: element_keys(3) = [character(5) :: 'S', 'HFL', 'COORD']
-   integer, parameter :: element_quantities(3) = [print_stress, print_heat_flux, &
-      print_position]   !! of element_keys
+   integer, parameter :: not_computed = 0   !! meaning of keys that only CalculiX has
 
-   ! Keys of CalculiX for what this program does not compute.
-   character(5), parameter :: foreign_node_keys(15) = [character(5) :: 'PN', 'PS', 'PT', 'PSF', &
-      'PTF', 'TSF', 'TTF', 'TT', 'V', 'VF', 'MF', 'MACH', 'CP', 'DEPF', 'TURB']
-   character(5), parameter :: foreign_element_keys(14) = [character(5) :: 'SVF', 'E', 'ME', &
-      'PEEQ', 'CEEQ', 'ENER', 'SDV', 'HFLF', 'ELSE', 'ELKE', 'EVOL', 'EMAS', 'EBHE', 'CENT']
+   !> A key of a card.
+   type :: print_key_type
+      character(5) :: name = ''
+      integer :: quantity = not_computed    !! print_displacement, ...
+   end type print_key_type
+
+   type(print_key_type), parameter :: node_keys(*) = [ &
+      print_key_type('U', print_displacement), print_key_type('NT', print_temperature), &
+      print_key_type('TS', print_temperature), print_key_type('RF', print_force), &
+      print_key_type('RFL', print_heat), print_key_type('PN'), print_key_type('PS'), &
+      print_key_type('PT'), print_key_type('PSF'), print_key_type('PTF'), print_key_type('TSF'), &
+      print_key_type('TTF'), print_key_type('TT'), print_key_type('V'), print_key_type('VF'), &
+      print_key_type('MF'), print_key_type('MACH'), print_key_type('CP'), &
+      print_key_type('DEPF'), print_key_type('TURB')]
+   type(print_key_type), parameter :: element_keys(*) = [ &
+      print_key_type('S', print_stress), print_key_type('HFL', print_heat_flux), &
+      print_key_type('COORD', print_position), print_key_type('SVF'), print_key_type('E'), &
+      print_key_type('ME'), print_key_type('PEEQ'), print_key_type('CEEQ'), &
+      print_key_type('ENER'), print_key_type('SDV'), print_key_type('HFLF'), &
+      print_key_type('ELSE'), print_key_type('ELKE'), print_key_type('EVOL'), &
+      print_key_type('EMAS'), print_key_type('EBHE'), print_key_type('CENT')]
 
 contains
 
@@ -118,42 +129,40 @@ contains
       do i = 1, size(data%fields)
          if (.not. has_field(data, i)) cycle
          if (card%name == 'NODE PRINT') then
-            call take_quantity(card, data, i, node_keys, node_quantities, foreign_node_keys, &
-               report, quantities)
+            call take_quantity(card, data, i, node_keys, report, quantities)
          else
-            call take_quantity(card, data, i, element_keys, element_quantities, &
-               foreign_element_keys, report, quantities)
+            call take_quantity(card, data, i, element_keys, report, quantities)
          end if
       end do
    end subroutine take_quantities
 
    !> One key: what is not computed is passed over with a warning, what nobody knows is an error.
-   subroutine take_quantity(card, data, position, keys, meanings, foreign_keys, report, quantities)
+   subroutine take_quantity(card, data, position, keys, report, quantities)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position
-      character(*), intent(in) :: keys(:), foreign_keys(:)
-      integer, intent(in) :: meanings(:)
+      type(print_key_type), intent(in) :: keys(:)
       type(deck_report_type), intent(inout) :: report
       integer, allocatable, intent(inout) :: quantities(:)
-      type(string_type) :: known(size(keys))
+      type(string_type), allocatable :: known(:)
       character(:), allocatable :: key
       integer :: i
 
       key = to_upper(field_text(data, position))
+      allocate(known(0))
       do i = 1, size(keys)
-         known(i)%value = trim(keys(i))
-         if (keys(i) /= key) cycle
-         if (.not. any(quantities == meanings(i))) quantities = [quantities, meanings(i)]
+         if (keys(i)%quantity /= not_computed) call append(known, trim(keys(i)%name))
+         if (keys(i)%name /= key) cycle
+         if (keys(i)%quantity == not_computed) then
+            call report%warning(field_place(data, position), key//' of *'//card%name// &
+               ' is not computed: it is not printed')
+         else if (.not. any(quantities == keys(i)%quantity)) then
+            quantities = [quantities, keys(i)%quantity]
+         end if
          return
       end do
-      if (any(foreign_keys == key)) then
-         call report%warning(field_place(data, position), key//' of *'//card%name// &
-            ' is not computed: it is not printed')
-      else
-         call report%error(field_place(data, position), 'unknown quantity '//key//' of *'// &
-            card%name//nearest_known(key, known))
-      end if
+      call report%error(field_place(data, position), 'unknown quantity '//key//' of *'// &
+         card%name//nearest_known(key, known))
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.

@@ -14,11 +14,13 @@ module deck_builder_sets
    private
    public :: build_sets
 
-   !> Sets while they grow.
+   !> Sets of nodes or of elements while they grow.
    type :: draft_type
-      integer :: sets = 0                          !! number of sets
+      character(:), allocatable :: noun         !! node or element
+      type(number_index_type) :: numbers        !! numbers of these -> indexes
+      integer :: sets = 0                       !! number of sets
       type(set_type), allocatable :: items(:)   !! (capacity) members with a capacity of their own
-      integer, allocatable :: counts(:)            !! (capacity) members so far
+      integer, allocatable :: counts(:)         !! (capacity) members so far
    end type draft_type
 
 contains
@@ -34,15 +36,15 @@ contains
       type(set_type), allocatable, intent(out) :: sets(:)
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
-      type(number_index_type) :: numbers
       integer :: k, first(2), kind, i
 
       parameter = merge('NSET ', 'ELSET', noun == 'node')
       parameter = trim(parameter)
       definer = to_upper(noun)
       allocate(draft%items(size(cards%keywords)), draft%counts(size(cards%keywords)))
-      numbers = context%node_index
-      if (noun == 'element') numbers = context%member_index
+      draft%noun = noun
+      draft%numbers = context%node_index
+      if (noun == 'element') draft%numbers = context%member_index
       first = [0, size(mesh%element_number)]
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
@@ -53,7 +55,7 @@ contains
                   first(kind) + card%last_data - card%first_data + 1)
                first(kind) = first(kind) + card%last_data - card%first_data + 1
             else if (card%name == parameter) then
-               call build_set(noun, cards, card, context, numbers, mesh, report, draft)
+               call build_set(cards, card, context, mesh, report, draft)
             end if
          end associate
       end do
@@ -115,12 +117,10 @@ contains
    end subroutine add_members
 
    !> Takes one *NSET or *ELSET card.
-   subroutine build_set(noun, cards, card, context, numbers, mesh, report, draft)
-      character(*), intent(in) :: noun
+   subroutine build_set(cards, card, context, mesh, report, draft)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
-      type(number_index_type), intent(in) :: numbers
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
       type(draft_type), intent(inout) :: draft
@@ -133,19 +133,19 @@ contains
       if (len(name) == 0) return
       known = draft%sets
       call open_set(card, card%name, report, draft, set)
-      if (noun == 'node') then
+      if (draft%noun == 'node') then
          call find_nodes(card, context, mesh, report, nodes)
          call add_members(draft, set, nodes)
       end if
       do j = card%first_data, card%last_data
          if (has_parameter(card, 'GENERATE')) then
-            call generate(noun, cards%data(j), numbers, report, draft, set)
+            call generate(cards%data(j), report, draft, set)
             cycle
          end if
          do i = 1, size(cards%data(j)%fields)
             valid = .true.
-            call read_target(cards%data(j), i, noun, numbers, draft%items(:known), report, item, &
-               other, valid)
+            call read_target(cards%data(j), i, draft%noun, draft%numbers, draft%items(:known), &
+               report, item, other, valid)
             if (item > 0) call add_members(draft, set, [item])
             if (other > 0) call add_members(draft, set, &
                (draft%items(other)%members(:draft%counts(other))))
@@ -154,10 +154,8 @@ contains
    end subroutine build_set
 
    !> Numbers from first to last; those between that do not exist are passed over with a warning.
-   subroutine generate(noun, data, numbers, report, draft, set)
-      character(*), intent(in) :: noun
+   subroutine generate(data, report, draft, set)
       type(data_card_type), intent(in) :: data
-      type(number_index_type), intent(in) :: numbers
       type(deck_report_type), intent(inout) :: report
       type(draft_type), intent(inout) :: draft
       integer, intent(in) :: set
@@ -170,26 +168,26 @@ contains
       call need_field(data, 2, 'last number', report, last, valid)
       call take_field(data, 3, 'increment', report, step, valid)
       call check_extra(data, 3, 'first number, last number, increment', report)
-      if (.not. valid .or. numbers%is_empty()) return
+      if (.not. valid .or. draft%numbers%is_empty()) return
       if (step < 1 .or. last < first) then
          call report%error(field_place(data, 1), 'the numbers must ascend from first to last')
          return
       end if
-      missing = (last - first)/step - (min(last, numbers%largest()) - first)/step
-      do steps = 0, (min(last, numbers%largest()) - first)/step
+      missing = (last - first)/step - (min(last, draft%numbers%largest()) - first)/step
+      do steps = 0, (min(last, draft%numbers%largest()) - first)/step
          number = first + steps*step
-         if (numbers%find(number) > 0) then
-            call add_members(draft, set, [numbers%find(number)])
+         if (draft%numbers%find(number) > 0) then
+            call add_members(draft, set, [draft%numbers%find(number)])
          else
             missing = missing + 1
          end if
       end do
       if (missing > (last - first)/step) then
-         call report%missing(field_place(data, 1), 'there is no '//noun//' from '// &
-            to_text(first)//' to '//to_text(last), noun)
-      else if (missing > 0 .and. .not. report%has_lost(noun)) then
+         call report%missing(field_place(data, 1), 'there is no '//draft%noun//' from '// &
+            to_text(first)//' to '//to_text(last), draft%noun)
+      else if (missing > 0 .and. .not. report%has_lost(draft%noun)) then
          call report%warning(field_place(data, 1), 'numbers passed over, for there is no such '// &
-            noun//': '//to_text(missing))
+            draft%noun//': '//to_text(missing))
       end if
    end subroutine generate
 

@@ -14,6 +14,7 @@ module deck_builder_steps
    use deck_structure, only: card_count
    use keywords, only: refusal
    use kinds, only: dp
+   use mesh, only: mesh_type
    use model, only: model_type
    use steps, only: analysis_coupled, analysis_heat, analysis_static, solves_heat, &
       step_type
@@ -24,6 +25,21 @@ module deck_builder_steps
 
    real(dp), parameter :: increment_rounding = 1.0e-6_dp   !! a shorter rest is none, relative
 
+   !> What every step takes over that does not say otherwise.
+   type :: lasting_controls_type
+      type(fixed_point_type) :: fixed_point
+      type(start_type) :: start
+      type(thermal_scheme_type) :: scheme = implicit_scheme
+   end type lasting_controls_type
+
+   !> Cards of a step so far.
+   type :: card_counts_type
+      integer :: analyses = 0
+      integer :: files = 0             !! *NODE FILE, *EL FILE, *CONTACT FILE
+      integer :: node_prints = 0
+      integer :: element_prints = 0
+   end type card_counts_type
+
 contains
 
    !> Takes all steps, in their order.
@@ -32,79 +48,97 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives requests and notes
       type(model_type), intent(inout) :: model             !! receives the steps
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      type(fixed_point_type) :: fixed_point
-      type(start_type) :: start
-      type(thermal_scheme_type) :: scheme
+      type(lasting_controls_type) :: controls
+      type(card_counts_type) :: counts
       type(step_type) :: before
-      integer :: k, n, analyses, files, node_prints, element_prints
+      integer :: k, n
 
       context%analyses_sound = .not. report%has_lost()
+      context%boundaries_sound = context%analyses_sound
       n = card_count(cards, 'STEP')
       allocate(model%steps(n), context%step_place(n))
       n = 0
-      scheme = implicit_scheme
-      analyses = 0
-      files = 0
-      node_prints = 0
-      element_prints = 0
-      context%boundaries_sound = .not. report%has_lost()
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             select case (card%name)
             case ('STEP')
                n = n + 1
-               analyses = 0
-               files = 0
-               node_prints = 0
-               element_prints = 0
+               counts = card_counts_type()
                context%step_place(n) = card%place
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
-               model%steps(n)%fixed_point = fixed_point
-               model%steps(n)%start = start
-               model%steps(n)%scheme = scheme
+               call set_controls(controls, model%steps(n))
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT')
-               analyses = analyses + 1
-               if (analyses > 1) call report%error(card%place, 'a second analysis in one step')
+               counts%analyses = counts%analyses + 1
+               if (counts%analyses > 1) call report%error(card%place, &
+                  'a second analysis in one step')
                if (n > 0) call build_analysis(cards, card, context, report, model%steps(n))
             case ('END STEP')
-               if (analyses > 0) cycle
+               if (counts%analyses > 0) cycle
                context%analyses_sound = .false.
                call report%missing(card%place, &
                   'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
             case ('FIXED POINT')
-               call build_fixed_point(card, report, fixed_point)
-               if (n > 0) model%steps(n)%fixed_point = fixed_point
+               call build_fixed_point(card, report, controls%fixed_point)
+               if (n > 0) call set_controls(controls, model%steps(n))
             case ('START')
-               call build_start(cards, card, model, report, start)
-               if (n > 0) model%steps(n)%start = start
+               call build_start(cards, card, model, report, controls%start)
+               if (n > 0) call set_controls(controls, model%steps(n))
             case ('THERMAL SCHEME')
-               call build_thermal_scheme(cards, card, report, scheme)
-               if (n > 0) model%steps(n)%scheme = scheme
+               call build_thermal_scheme(cards, card, report, controls%scheme)
+               if (n > 0) call set_controls(controls, model%steps(n))
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'FILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)
-            case ('NODE FILE', 'EL FILE', 'CONTACT FILE', 'NODE OUTPUT', 'ELEMENT OUTPUT', &
-               'CONTACT OUTPUT')
-               if (n > 0) call build_file_output(card, files, context, report, model%steps(n))
-            case ('NODE PRINT')
-               node_prints = node_prints + 1
-               if (n > 0) call build_print(cards, card, node_prints == 1, context, model%mesh, &
-                  report, model%steps(n)%node_prints)
-            case ('EL PRINT')
-               element_prints = element_prints + 1
-               if (n > 0) call build_print(cards, card, element_prints == 1, context, model%mesh, &
-                  report, model%steps(n)%element_prints)
-            case ('CONTACT PRINT')
-               if (n > 0) call read_frequency(card, report, model%steps(n)%contact_print_frequency)
             case default
-               if (card%meant /= 'STATIC') cycle
-               ! An analysis that is refused is reported already.
-               analyses = analyses + 1
-               context%analyses_sound = .false.
+               if (card%meant == 'STATIC') then
+                  ! An analysis that is refused is reported already.
+                  counts%analyses = counts%analyses + 1
+                  context%analyses_sound = .false.
+               else if (n > 0) then
+                  call build_output(cards, card, context, model%mesh, counts, report, &
+                     model%steps(n))
+               end if
             end select
          end associate
       end do
    end subroutine build_steps
+
+   pure subroutine set_controls(controls, step)
+      type(lasting_controls_type), intent(in) :: controls
+      type(step_type), intent(inout) :: step
+
+      step%fixed_point = controls%fixed_point
+      step%start = controls%start
+      step%scheme = controls%scheme
+   end subroutine set_controls
+
+   !> Takes a card of a step that asks for output; others are none of its business.
+   subroutine build_output(cards, card, context, mesh, counts, report, step)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(card_counts_type), intent(inout) :: counts
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: step
+
+      select case (card%name)
+      case ('NODE FILE', 'EL FILE', 'CONTACT FILE', 'NODE OUTPUT', 'ELEMENT OUTPUT', &
+         'CONTACT OUTPUT')
+         call build_file_output(card, counts%files, context, report, step)
+      case ('NODE PRINT')
+         counts%node_prints = counts%node_prints + 1
+         call build_print(cards, card, counts%node_prints == 1, context, mesh, report, &
+            step%node_prints)
+      case ('EL PRINT')
+         counts%element_prints = counts%element_prints + 1
+         call build_print(cards, card, counts%element_prints == 1, context, mesh, report, &
+            step%element_prints)
+      case ('CONTACT PRINT')
+         call read_frequency(card, report, step%contact_print_frequency)
+      case default   ! of the model, or not known
+      end select
+   end subroutine build_output
 
    !> Takes *STEP; output goes on as in the step before.
    subroutine begin_step(card, before, context, report, step)

@@ -62,7 +62,7 @@ contains
       type(place_list_type), intent(inout) :: places   ! receives where each face is named
       character(:), allocatable :: kind
       type(place_type), allocatable :: named(:)
-      integer, allocatable :: keys(:), order(:)
+      integer, allocatable :: elements(:), keys(:), order(:)
       integer :: element, set, face, j, i
       logical :: valid
 
@@ -89,13 +89,11 @@ contains
          call read_face(cards%data(j), report, face, valid)
          call check_extra(cards%data(j), 2, 'element or set, face', report)
          if (.not. valid) cycle
-         call check_face(cards, j, mesh, element, set, face, report, valid)
+         elements = [element]
+         if (set > 0) elements = mesh%element_sets(set)%members
+         call check_face(cards%data(j), mesh, elements, face, report, valid)
          if (.not. valid) cycle
-         if (set > 0) then
-            keys = [keys, 4*mesh%element_sets(set)%members + face - 1]
-         else
-            keys = [keys, 4*element + face - 1]
-         end if
+         keys = [keys, 4*elements + face - 1]
          named = [named, spread(field_place(cards%data(j), 1), 1, size(keys) - size(named))]
       end do
       ! Of equal keys the first comes first.
@@ -153,20 +151,17 @@ contains
    end subroutine add_line_faces
 
    !> Every element of a data card has the face.
-   subroutine check_face(cards, data, mesh, element, set, face, report, valid)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: data, element, set, face
+   subroutine check_face(data, mesh, elements, face, report, valid)
+      type(data_card_type), intent(in) :: data
       type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: elements(:), face
       type(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: valid
-      integer, allocatable :: elements(:)
       integer :: i
 
-      elements = [element]
-      if (set > 0) elements = mesh%element_sets(set)%members
       do i = 1, size(elements)
          if (face <= element_corner_count(mesh%element_kind(elements(i)))) cycle
-         call report%error(field_place(cards%data(data), 2), 'element '// &
+         call report%error(field_place(data, 2), 'element '// &
             to_text(mesh%element_number(elements(i)))//' is a triangle and has no face S'// &
             to_text(face))
          valid = .false.
