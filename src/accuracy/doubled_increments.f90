@@ -7,6 +7,7 @@ module doubled_increments
    use films, only: left_films
    use increment_data, only: increment_workspace_type
    use increment_solution, only: recover_fields, solve_points
+   use increments, only: accept_increment
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
@@ -101,7 +102,7 @@ contains
       if (has_memory(step%scheme) .or. .not. solves_mechanics(step%analysis)) then
          call recover_fields(bodies, loads, step, workspace, self%state, next)
       end if
-      self%state = next
+      call accept_increment(next, model, self%state)
       self%time = record%time
       self%waiting = 0
    end subroutine follow

@@ -80,9 +80,12 @@ contains
       integer :: m
 
       m = size(profile%s)
-      back = contact_profile_type(-profile%s(m:1:-1), profile%weight(m:1:-1), &
-         profile%contact_state(m:1:-1), profile%pressure(m:1:-1), profile%shear(m:1:-1), &
-         profile%gap(m:1:-1))
+      back%s = -profile%s(m:1:-1)
+      back%weight = profile%weight(m:1:-1)
+      back%contact_state = profile%contact_state(m:1:-1)
+      back%pressure = profile%pressure(m:1:-1)
+      back%shear = profile%shear(m:1:-1)
+      back%gap = profile%gap(m:1:-1)
    end function turned
 
    !> Edge between closed contact point k and open contact point k + 1.

@@ -5,7 +5,8 @@ module text
    implicit none
    private
    public :: string_type
-   public :: others, to_text, to_upper, without_blanks, read_integer, read_real, append
+   public :: others, to_text, to_upper, without_blanks, is_same_name, read_integer, read_real
+   public :: append
    public :: is_whole, integer_fault, real_fault, largest_magnitude
    public :: nearest_name, nearest_known, edit_distance, is_slip
 
@@ -90,6 +91,32 @@ contains
          end if
       end do
    end function to_upper
+
+   !> Whether two names are the same but for blanks, tabs and the case of letters.
+   pure logical function is_same_name(one, other)
+      character(*), intent(in) :: one, other   !! the names
+      integer :: i, k
+
+      is_same_name = .false.
+      i = next_mark(one, 1)
+      k = next_mark(other, 1)
+      do while (i <= len(one) .and. k <= len(other))
+         if (to_upper(one(i:i)) /= to_upper(other(k:k))) return
+         i = next_mark(one, i + 1)
+         k = next_mark(other, k + 1)
+      end do
+      is_same_name = i > len(one) .and. k > len(other)
+   end function is_same_name
+
+   !> The first character from a place on that is neither blank nor tab; beyond the end for none.
+   pure integer function next_mark(string, first)
+      character(*), intent(in) :: string
+      integer, intent(in) :: first
+
+      do next_mark = first, len(string)
+         if (string(next_mark:next_mark) /= ' ' .and. string(next_mark:next_mark) /= achar(9)) exit
+      end do
+   end function next_mark
 
    !> A string without any of its blanks and tabs.
    pure function without_blanks(string) result(squeezed)

@@ -42,9 +42,7 @@ contains
       !> (values of each, points) in one row; empty where the step has none, and for a name that is
       !> not known.
       real(dp), allocatable :: values(:)
-      integer :: all_points(size(point_node)), i
 
-      all_points = [(i, i=1, size(point_node))]
       allocate (values(0))
       select case (name)
       case ('U1')
@@ -56,23 +54,23 @@ contains
       case ('NT', 'temperature')
          if (allocated(fields%temperature)) values = fields%temperature(point_node)
       case ('S11')
-         values = rows(fields%stress, [1], all_points)
+         values = rows(fields%stress, [1])
       case ('S22')
-         values = rows(fields%stress, [2], all_points)
+         values = rows(fields%stress, [2])
       case ('S33')
-         values = rows(fields%stress, [3], all_points)
+         values = rows(fields%stress, [3])
       case ('S12')
-         values = rows(fields%stress, [4], all_points)
+         values = rows(fields%stress, [4])
       case ('stress')
-         values = rows(fields%stress, [1, 2, 3, 4], all_points)
+         values = rows(fields%stress, [1, 2, 3, 4])
       case ('MISES', 'von_mises')
          if (allocated(fields%stress)) values = von_mises(fields%stress)
       case ('HFL1')
-         values = rows(fields%heat_flux, [1], all_points)
+         values = rows(fields%heat_flux, [1])
       case ('HFL2')
-         values = rows(fields%heat_flux, [2], all_points)
+         values = rows(fields%heat_flux, [2])
       case ('heat_flux')
-         values = rows(fields%heat_flux, [1, 2, 0], all_points)
+         values = rows(fields%heat_flux, [1, 2, 0])
       case ('RF1')
          values = rows(fields%reaction, [1], point_node)
       case ('RF2')
@@ -99,21 +97,32 @@ contains
       end select
    end function element_values
 
-   !> Rows of a field one beside the other, row 0 being zeros.
+   !> Rows of a field one beside the other, row 0 being zeros; of some indexes, or of all.
    pure function rows(field, components, indexes) result(values)
       real(dp), allocatable, intent(in) :: field(:, :)
       integer, intent(in) :: components(:)
-      integer, intent(in) :: indexes(:)
+      integer, optional, intent(in) :: indexes(:)
       real(dp), allocatable :: values(:)
-      integer :: i
+      integer :: i, n
 
       if (.not. allocated(field)) then
          allocate (values(0))
          return
       end if
-      allocate (values(size(components)*size(indexes)), source=0.0_dp)
-      do i = 1, size(components)
-         if (components(i) > 0) values(i::size(components)) = field(components(i), indexes)
+      n = size(components)
+      if (present(indexes)) then
+         allocate (values(n*size(indexes)))
+      else
+         allocate (values(n*size(field, 2)))
+      end if
+      do i = 1, n
+         if (components(i) == 0) then
+            values(i::n) = 0.0_dp
+         else if (present(indexes)) then
+            values(i::n) = field(components(i), indexes)
+         else
+            values(i::n) = field(components(i), :)
+         end if
       end do
    end function rows
 

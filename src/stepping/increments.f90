@@ -27,7 +27,7 @@ module increments
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
-   public :: simulation_type
+   public :: simulation_type, accept_increment
 
    real(dp), parameter :: doubtful = 1.0e-9_dp   !! pivot over its diagonal entry; 1e-6 is left
 
@@ -172,25 +172,26 @@ contains
          return
       end do
       call warn_of_pivot(self, record)
-      call accept_increment(self, model, clock, next, record)
+      call accept_increment(next, model, self%state, record)
+      call self%control%accept(model, clock)
    end subroutine advance
 
-   !> Makes the end of an increment the state of the run, the only place where that changes.
-   pure subroutine accept_increment(self, model, clock, next, record)
-      class(simulation_type), intent(inout) :: self
+   !> Makes the end of an increment the state of a run, the only place where that changes. A
+   !> companion run, of which nothing is reported, has no record.
+   pure subroutine accept_increment(next, model, state, record)
+      type(solution_state_type), intent(in) :: next         !! state at the end of the increment
       type(model_type), intent(in) :: model
-      type(step_clock_type), intent(in) :: clock
-      type(solution_state_type), intent(in) :: next
-      type(increment_record_type), intent(in) :: record
+      type(solution_state_type), intent(inout) :: state     !! state of the run
+      type(increment_record_type), optional, intent(in) :: record
 
-      self%state = next
-      self%state%stress_error = record%stress_error
-      if (allocated(self%state%stress)) deallocate (self%state%stress)
-      if (allocated(record%fields%stress)) self%state%stress = record%fields%stress
-      if (allocated(record%fields%reaction)) self%state%reaction = record%fields%reaction
-      if (solves_heat(model%steps(record%step)%analysis)) self%state%is_out_of_balance = &
+      state = next
+      if (.not. present(record)) return
+      state%stress_error = record%stress_error
+      if (allocated(state%stress)) deallocate (state%stress)
+      if (allocated(record%fields%stress)) state%stress = record%fields%stress
+      if (allocated(record%fields%reaction)) state%reaction = record%fields%reaction
+      if (solves_heat(model%steps(record%step)%analysis)) state%is_out_of_balance = &
          record%heat_imbalance_pointwise > sound_imbalance
-      call self%control%accept(model, clock)
    end subroutine accept_increment
 
    !> Says of a failed increment that one that goes further ends in thermal runaway.

@@ -1,7 +1,7 @@
 !> Keywords of CalculiX and Abaqus that are no keywords of this program: which are passed over, and
 !> which are refused and why. Decks that were written elsewhere use them.
 module foreign_keywords
-   use text, only: is_slip, to_upper, without_blanks
+   use text, only: is_same_name, is_slip
    implicit none
    private
    public :: foreign_keyword_type, find_foreign, misspelt_foreign
@@ -130,12 +130,10 @@ contains
    pure function find_foreign(name) result(found)
       character(*), intent(in) :: name      !! without the star
       type(foreign_keyword_type) :: found   !! what the table says of it
-      character(:), allocatable :: wanted
       integer :: i
 
-      wanted = to_upper(without_blanks(name))
       do i = 1, size(all_foreign)
-         if (without_blanks(all_foreign(i)%name) /= wanted) cycle
+         if (.not. is_same_name(all_foreign(i)%name, name)) cycle
          found = all_foreign(i)
          return
       end do

@@ -1,7 +1,7 @@
 !> Keywords and parameters that mean something the dialect says otherwise: words of other programs
 !> and of the field -> what to write here. Spelling alone would suggest *HEADING for *SRADIATE.
 module keyword_meanings
-   use text, only: to_upper, without_blanks
+   use text, only: is_same_name, to_upper, without_blanks
    implicit none
    private
    public :: keyword_advice, is_meaning, parameter_advice
@@ -170,13 +170,11 @@ contains
       character(*), intent(in) :: keyword      !! as in the table of keywords
       character(*), intent(in) :: name         !! the parameter as written
       character(:), allocatable :: advice      !! such as "contact is exact; leave it out"
-      character(:), allocatable :: wanted
       integer :: i
 
       advice = ''
-      wanted = to_upper(without_blanks(name))
       do i = 1, size(of_parameters)
-         if (without_blanks(of_parameters(i)%parameter) /= wanted) cycle
+         if (.not. is_same_name(of_parameters(i)%parameter, name)) cycle
          if (all(of_parameters(i)%keyword /= [character(20) :: keyword, ''])) cycle
          advice = trim(of_parameters(i)%advice)
          return

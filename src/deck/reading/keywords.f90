@@ -1,7 +1,7 @@
 !> The keywords of the dialect: which are understood, which are refused and why, where each may
 !> stand, and which parameters it takes.
 module keywords
-   use text, only: append, string_type, to_upper, without_blanks
+   use text, only: append, is_same_name, string_type
    implicit none
    private
    public :: known_keyword_type, known_keywords, find_keyword, keyword_names
@@ -175,15 +175,9 @@ contains
    pure function find_keyword(name) result(known)
       character(*), intent(in) :: name   !! without the star
       integer :: known                   !! index into known_keywords
-      character(:), allocatable :: wanted
-      integer :: i
 
-      wanted = to_upper(without_blanks(name))
-      known = 0
-      do i = 1, size(known_keywords)
-         if (without_blanks(known_keywords(i)%name) /= wanted) cycle
-         known = i
-         return
+      do known = size(known_keywords), 1, -1
+         if (is_same_name(known_keywords(known)%name, name)) return
       end do
    end function find_keyword
 
@@ -220,14 +214,12 @@ contains
       character(*), intent(in) :: name          !! name as written
       type(known_parameter_type) :: parameter   !! what the table says of it
       type(string_type), allocatable :: entries(:)
-      character(:), allocatable :: wanted
       integer :: i
 
-      wanted = to_upper(without_blanks(name))
       entries = parameter_entries(known)
       do i = 1, size(entries)
          parameter = parsed_entry(entries(i)%value)
-         if (without_blanks(parameter%name) == wanted) return
+         if (is_same_name(parameter%name, name)) return
       end do
       parameter%name = ''
    end function find_parameter
