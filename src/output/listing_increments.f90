@@ -66,8 +66,8 @@ contains
       edges = ''
       sums = ''
       do i = 1, size(quantities)
+         if (quantities(i)%kind /= of_interface .or. quantities(i)%label == '') cycle
          quantity = quantities(i)
-         if (quantity%kind /= of_interface .or. quantity%label == '') cycle
          if (quantity%needs == needs_heat .and. .not. allocated(contact%heat_flux)) cycle
          value = contact_values(quantity%name, points, contact)
          if (quantity%resolution > 0.0_dp) then
@@ -94,8 +94,8 @@ contains
 
       line = ''
       do i = 1, size(quantities)
+         if (quantities(i)%kind /= of_history .or. quantities(i)%needs /= needs) cycle
          quantity = quantities(i)
-         if (quantity%kind /= of_history .or. quantity%needs /= needs) cycle
          if (quantity%label /= '') line = line//told(quantity, history_value(quantity%name, record))
       end do
    end function history_line

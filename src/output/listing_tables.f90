@@ -13,7 +13,6 @@ module listing_tables
    use solution_report, only: iteration_record_type
    use text, only: to_text
    use verification, only: outcome_type
-   use zone_diagram, only: zone_numeral
    implicit none
    private
    public :: print_contact_table, print_iterations, print_verdicts
@@ -46,23 +45,9 @@ contains
       write (unit, '(/, 2a)') '   CONTACT PAIRS OF ', points%name
       write (unit, '(*(a))') 'pair', (table_head(columns(i)), i=1, n)
       do k = 1, size(values, 1)
-         write (unit, '(i4, *(a))') k, (pair_cell(columns(i), values(k, i)), i=1, n)
+         write (unit, '(i4, *(a))') k, (table_cell(columns(i), values(k, i)), i=1, n)
       end do
    end subroutine print_contact_table
-
-   !> A quantity of a contact point in its column: zones by their numerals, all others as numbers.
-   pure function pair_cell(quantity, value) result(string)
-      type(quantity_type), intent(in) :: quantity
-      real(dp), intent(in) :: value
-      character(quantity%width) :: string
-
-      if (quantity%name == 'status') then
-         string = zone_numeral(nint(value))
-         string = adjustr(string)
-      else
-         string = table_cell(quantity, value)
-      end if
-   end function pair_cell
 
    !> Prints the passes of an increment.
    subroutine print_iterations(unit, iterations)

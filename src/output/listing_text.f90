@@ -4,6 +4,7 @@ module listing_text
    use kinds, only: dp
    use quantity_types, only: quantity_type
    use text, only: string_type, to_text
+   use zone_diagram, only: zone_numeral
    implicit none
    private
    public :: page_width, print_title, print_wrapped, print_list, print_deck
@@ -58,13 +59,17 @@ contains
       digit = achar(iachar('0') + number)
    end function digit
 
-   !> A quantity in its column of a table: integers to the right, plain numbers with six decimals.
+   !> A quantity in its column of a table: zones by their numerals, integers to the right, plain
+   !> numbers with six decimals.
    pure function table_cell(quantity, value) result(string)
       type(quantity_type), intent(in) :: quantity   !! which one; has a column
       real(dp), intent(in) :: value                 !! its value
       character(quantity%width) :: string
 
-      if (quantity%is_integer) then
+      if (quantity%name == 'status') then
+         string = zone_numeral(nint(value))
+         string = adjustr(string)
+      else if (quantity%is_integer) then
          string = to_text(nint(value))
          string = adjustr(string)
       else if (quantity%is_plain) then
