@@ -30,6 +30,7 @@ contains
       integer, intent(in) :: decimals    !! digits behind the point where they fit, at most 9
       character(width) :: string         !! such as '  1.350E+00'
       character(40) :: buffer
+      character(10) :: edit
       integer :: digits, places
 
       if (.not. ieee_is_finite(value)) then
@@ -44,7 +45,10 @@ contains
       ! Beside the places there are a blank, a minus, a digit, the point, E and a sign.
       places = min(decimals, width - digits - merge(6, 5, value < 0.0_dp))
       if (abs(value) > 0.0_dp) then
-         write (buffer, '(es40.'//digit(places)//'e'//digit(digits)//')') value
+         edit = '(es40.#e#)'
+         edit(7:7) = digit(places)
+         edit(9:9) = digit(digits)
+         write (buffer, edit) value
       else
          buffer = '0.'//repeat('0', places)//'E+00'
          buffer = adjustr(buffer)
@@ -66,11 +70,9 @@ contains
       real(dp), intent(in) :: value                 !! its value
       character(quantity%width) :: string
 
-      if (quantity%name == 'status') then
-         string = zone_numeral(nint(value))
-         string = adjustr(string)
-      else if (quantity%is_integer) then
+      if (quantity%is_integer) then
          string = to_text(nint(value))
+         if (quantity%name == 'status') string = zone_numeral(nint(value))
          string = adjustr(string)
       else if (quantity%is_plain) then
          write (string, '(f'//to_text(quantity%width)//'.6)') value

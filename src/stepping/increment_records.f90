@@ -200,7 +200,7 @@ contains
       type(solution_state_type), intent(in) :: next
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
-      real(dp) :: least, length, scale
+      real(dp) :: least, length, scale, stiffness
       logical :: along_x
 
       least = least_displacement(model, next%temperature)
@@ -210,11 +210,11 @@ contains
       end if
       internal = bodies%mechanical%matrix%multiply(next%displacement) - &
          thermal_forces(bodies, next%temperature)
+      stiffness = maxval(abs(bodies%mechanical%matrix%value))
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       associate (held => loads%displacement%active)
          scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
-            sum(next%contact%force), noise*maxval(abs(bodies%mechanical%matrix%value))* &
-            length, least*maxval(abs(bodies%mechanical%matrix%value)), tiny(1.0_dp))
+            sum(next%contact%force), noise*stiffness*length, least*stiffness, tiny(1.0_dp))
          along_x = all(model%mesh%element_plane /= axisymmetric)
          record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
             [along_x, .true.], scale)
