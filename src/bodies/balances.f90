@@ -7,7 +7,14 @@ module balances
    use all_contact_points, only: all_contact_points_type
    implicit none
    private
-   public :: heat_residual, scheme_contact_heat, force_residual, imbalance, contact_violation
+   public :: scales_type, heat_residual, scheme_contact_heat, force_residual, imbalance
+   public :: contact_violation
+
+   !> What displacements and forces are measured by.
+   type :: scales_type
+      real(dp) :: length = 1.0_dp   !! largest displacement [length]
+      real(dp) :: force = 1.0_dp    !! largest force [force]
+   end type scales_type
 
 contains
 
@@ -96,15 +103,14 @@ contains
    !> supported on one body, the traction is taken from the other; where on both, the reduced
    !> system's stands.
    pure function contact_violation(displacement, unbalanced, supported, points, state, &
-      friction_acts, length_scale, force_scale) result(violation)
+      friction_acts, scales) result(violation)
       real(dp), intent(in) :: displacement(:)        !! (2 nodes) [length]
       real(dp), intent(in) :: unbalanced(:) !! (2 nodes) K u - f without the contact forces [force]
       logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
       type(all_contact_points_type), intent(in) :: points
       type(contact_state_type), intent(in) :: state  !! the state that is checked
       logical, intent(in) :: friction_acts(:) !! (m) whether the tangent is an unknown with friction
-      real(dp), intent(in) :: length_scale           !! largest displacement [length]
-      real(dp), intent(in) :: force_scale            !! largest force [force]
+      type(scales_type), intent(in) :: scales
       real(dp) :: violation                          !! relative
       real(dp) :: force(2), gap, normal_force, shear_force, slip, cone
       real(dp) :: left(size(unbalanced)), relative(2, size(points%slave))
@@ -126,11 +132,11 @@ contains
             end if
          end do
          gap = (points%initial_gap(k) - dot_product(relative(:, k), points%normal(:, k)))/ &
-            length_scale
+            scales%length
          slip = (dot_product(relative(:, k), points%tangent(:, k)) - state%reference(k))/ &
-            length_scale
-         normal_force = -dot_product(force, points%normal(:, k))/force_scale
-         shear_force = dot_product(force, points%tangent(:, k))/force_scale
+            scales%length
+         normal_force = -dot_product(force, points%normal(:, k))/scales%force
+         shear_force = dot_product(force, points%tangent(:, k))/scales%force
          cone = points%friction(k)*normal_force
          if (state%contact_state(k) == contact_open) then
             violation = max(violation, -gap, abs(normal_force), abs(shear_force))

@@ -18,6 +18,7 @@ module patch_fits
    type :: fit_type
       private
       logical, public :: complete = .false.   !! whether the sites determine all terms
+      logical, public :: ample = .false.      !! whether there are more sites than that takes
       real(dp) :: origin(2) = 0.0_dp          !! [length]
       real(dp) :: scaling(2, 2) = 0.0_dp      !! to coordinates of about unit size [1/length]
       integer :: terms = 0                    !! linear_terms, quadratic_terms or cubic_terms

@@ -67,7 +67,8 @@ contains
       do p = 1, size(rows)
          has_fit(p) = .false.
          if (layout%start(p + 1) > layout%start(p)) then
-            call fit_round_corner(mesh, points, layout, p, 0, patch, fit, has_fit(p))
+            call fit_round_corner(mesh, points, layout, p, 0, patch, fit)
+            has_fit(p) = fit%ample
          end if
       end do
       do p = 1, size(rows)
@@ -243,7 +244,7 @@ contains
    end function midsides_at
 
    !> Fits the elements round a corner, with their neighbours where they are too few.
-   pure subroutine fit_round_corner(mesh, points, layout, corner, layers, patch, fit, fits)
+   pure subroutine fit_round_corner(mesh, points, layout, corner, layers, patch, fit)
       type(mesh_type), intent(in) :: mesh
       type(point_map_type), intent(in) :: points
       type(layout_type), intent(in) :: layout
@@ -251,7 +252,6 @@ contains
       integer, intent(in) :: layers                 !! times that the patch may be widened
       integer, allocatable, intent(out) :: patch(:)
       type(fit_type), intent(out) :: fit
-      logical, intent(out), optional :: fits        !! whether all terms are determined
       real(dp), allocatable :: sites(:, :)
       type(fit_type) :: cubic
       integer :: before, fewest, layer, terms
@@ -277,7 +277,7 @@ contains
          cubic = make_fit(sites, corners_of(mesh, patch), cubic_terms)
          if (cubic%complete) fit = cubic
       end if
-      if (present(fits)) fits = fit%complete .and. size(sites, 2) >= fewest
+      fit%ample = fit%complete .and. size(sites, 2) >= fewest
    end subroutine fit_round_corner
 
    elemental logical function is_linear(kind)

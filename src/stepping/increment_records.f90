@@ -1,7 +1,7 @@
 !> The record of a solved increment, made from its state, which it leaves as it is.
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use balances, only: contact_violation, force_residual, imbalance
+   use balances, only: contact_violation, force_residual, imbalance, scales_type
    use conductance_laws, only: conductance
    use contact_operator, only: kept_contact, thermal_forces
    use contact_points, only: contact_points_type
@@ -200,27 +200,29 @@ contains
       type(solution_state_type), intent(in) :: next
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
-      real(dp) :: least, length, scale, stiffness
+      type(scales_type) :: scales
+      real(dp) :: least, stiffness
       logical :: along_x
 
       least = least_displacement(model, next%temperature)
-      length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp))
+      scales%length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp))
       if (size(bodies%points%initial_gap) > 0) then
-         length = max(length, noise*maxval(abs(bodies%points%initial_gap)))
+         scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
       end if
       internal = bodies%mechanical%matrix%multiply(next%displacement) - &
          thermal_forces(bodies, next%temperature)
       stiffness = maxval(abs(bodies%mechanical%matrix%value))
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       associate (held => loads%displacement%active)
-         scale = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
-            sum(next%contact%force), noise*stiffness*length, least*stiffness, tiny(1.0_dp))
+         scales%force = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
+            sum(next%contact%force), noise*stiffness*scales%length, &
+            least*stiffness, tiny(1.0_dp))
          along_x = all(model%mesh%element_plane /= axisymmetric)
          record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
-            [along_x, .true.], scale)
+            [along_x, .true.], scales%force)
          record%contact_violation = contact_violation(next%displacement, &
             internal - next%force_load, held, bodies%points, next%contact, &
-            bodies%contact%tangent > 0, length, scale)
+            bodies%contact%tangent > 0, scales)
          record%fields%reaction = reshape(merge(residual, 0.0_dp, held), &
             [2, size(next%temperature)])
       end associate
