@@ -209,6 +209,16 @@ run_lint() {
    return "$status"
 }
 
+# Runs tests of a preset, with one more at a time than there are processors, since some wait. Result
+# files replace each other at every increment, for which a disk lets the program wait: temporary
+# files are in memory where there is enough of it.
+run_ctest() {
+   local memory=/dev/shm free=0
+   [[ ! -w $memory ]] || free=$(df --output=avail --block-size=1M "$memory" | tail -n 1)
+   ((free < 2000)) || local -x TMPDIR=$memory
+   ctest --preset "$1" --parallel "$(($(nproc) + 1))" "${@:2}"
+}
+
 # Every test on the program as users have it comes last, so that its summary closes the output; before
 # that the sources, and the unit tests and the cylinder with run-time checks. Python packages, most of
 # whose time is that of the network, are installed during the first build.
@@ -225,11 +235,11 @@ run_test() {
    wait "${installed[1]}"
    run_lint || status=1
    say "tests with run-time checks"
-   ctest --preset debug --parallel 2 --label-regex 'unit|memory' || status=1
+   run_ctest debug --label-regex 'unit|memory' || status=1
    build_preset release
    ((status == 0)) || say "something above has failed"
    say "all tests"
-   ctest --preset release --parallel 2 || status=1
+   run_ctest release || status=1
    return "$status"
 }
 
@@ -242,7 +252,7 @@ run_coverage() {
    build_preset coverage
    find "$build/coverage" -name '*.gcda' -delete
    say "all tests, with lines counted"
-   ctest --preset coverage --parallel 2 --exclude-regex memory || say "some tests have failed"
+   run_ctest coverage --exclude-regex memory || say "some tests have failed"
    # More than 2^32 executions of a line are nothing odd here.
    "$venv/bin/gcovr" --gcov-suspicious-hits-threshold 0 --root "$root" --filter "$root/src/" \
       --txt-summary --txt "$build/coverage/lines.txt" "$build/coverage"

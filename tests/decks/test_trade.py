@@ -10,6 +10,7 @@ import re
 import signal
 import subprocess
 import time
+from decimal import ROUND_HALF_UP, Context
 
 import h5py
 import numpy as np
@@ -117,7 +118,7 @@ KNOWN = {name: lambda name=name: rod(name) for name in ("r1", "r2", "r3-middle")
 KNOWN |= {"hertz": hertz, "press_fit": press_fit, "cylinder": cylinder}
 
 
-def check_recommendations(deck, name, known, model_error, folder, limit="0.5"):
+def check_recommendations(deck, name, known, model_error, folder, limit):
     """Assert that every row recommended has a true error within the wish, but for what its
     recommendation names; model_error is by how far the known answer is not that of the deck."""
     rows, _ = trade(deck, folder, "--quiet", "--limit", limit)
@@ -142,8 +143,11 @@ def test_recommended_rows_have_the_accuracy_wished_for(case, tmp_path):
     folder.mkdir()
     for path in source.parent.iterdir():
         if path.suffix in (".inp", ".inc", ".step", ".mesh"):
-            (folder / path.name).write_text(path.read_text())
-    limit = "0.5" if case == "cylinder" else "0.2"   # what the rows due below take
+            text = path.read_text()
+            if case == "cylinder":   # few of its increments, which meet no times of its checks
+                text = text.split("*VERIFY")[0].replace("\n20., 900.", "\n180., 900.")
+            (folder / path.name).write_text(text)
+    limit = "0.25" if case == "cylinder" else "0.1"   # what the rows due below take
     checked = check_recommendations(folder / source.name, name, known, model_error, tmp_path,
                                     limit)
     # Force, heat and peak pressure are known well enough on all of these; on the cylinder, meshes
@@ -161,7 +165,7 @@ def test_recommended_rows_of_hot_tubes(tmp_path):
     cards, known = tubes("CPE8", 16, CLOSED)
     deck = write(tmp_path / "tubes.inp", ["*OPTIONS, WIDTH=300"], cards)
     sums = {key: known[key] for key in ("normal_force", "heat_rate") if key in known}
-    checked = check_recommendations(deck, "FACE", sums, 1e-3, tmp_path)
+    checked = check_recommendations(deck, "FACE", sums, 1e-3, tmp_path, "0.25")
     assert {("recommended_1", key) for key in sums} <= checked
 
 
@@ -216,8 +220,9 @@ def test_the_reference_row_has_the_uncertainty_that_all_errors_contain(r2):
 def test_optimal_rows_are_beaten_by_none(r2):
     """With the two digits that count: errors below 1e-6 are alike."""
     rows = [row for row in r2[0][:-1] if row["status"] == "0"]
-    points = [(float(f"{float(row['cpu_seconds']):.1e}"),
-               float(f"{max(float(row['error_worst']), 1e-6):.1e}")) for row in rows]
+    digits = Context(prec=2, rounding=ROUND_HALF_UP)
+    points = [(digits.create_decimal(row["cpu_seconds"]),
+               digits.create_decimal(max(row["error_worst"], "1e-6", key=float))) for row in rows]
     for row, (cost, error) in zip(rows, points, strict=True):
         beaten = any(c <= cost and e <= error and (c, e) != (cost, error) for c, e in points)
         assert row["pareto"] == str(int(not beaten)), row

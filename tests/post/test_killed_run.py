@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from program import increments_in, run, start, write_deck
 
-KILLS = 24
+KILLS = 12
 MOST_TRIES = 400
 POLL_SECONDS = 0.0005
 REFINEMENT = "*REFINE, LEVELS=1"

@@ -58,7 +58,20 @@ def draw(tmp_path, capsys):
 
 
 @pytest.fixture
-def kept(draw, monkeypatch):
+def unrendered(monkeypatch):
+    """Write a text in place of every picture: rendering takes most of the time."""
+    monkeypatch.setattr(Figure, "savefig",
+                        lambda self, path, **options: path.write_text("not rendered"))
+
+
+@pytest.fixture
+def tabulate(unrendered, draw):
+    """Return draw for tests of names and tables: figures are made, but not rendered."""
+    return draw
+
+
+@pytest.fixture
+def kept(unrendered, draw, monkeypatch):
     """Return a function that calls plot and gives the figures drawn, laid out as on paper."""
 
     def call(*arguments):
@@ -66,9 +79,8 @@ def kept(draw, monkeypatch):
 
         def keep(figure, *rest):
             figures.append(figure)
-            written = write(figure, *rest)
             figure.draw_without_rendering()  # places in dots of the figure, not of the file
-            return written
+            return write(figure, *rest)
 
         with monkeypatch.context() as patch:
             patch.setattr(style, "write", keep)
@@ -151,13 +163,13 @@ def test_profiles_at_chosen_loads_hold_the_values_of_the_file(draw, result, tmp_
     np.testing.assert_array_equal(numbers(drawn["mu_p"]), FRICTION * pressure)
 
 
-def test_profiles_are_of_the_last_load_unless_said(draw, result, tmp_path):
-    assert draw("profiles", result) == three("case.profiles")
+def test_profiles_are_of_the_last_load_unless_said(tabulate, result, tmp_path):
+    assert tabulate("profiles", result) == three("case.profiles")
     assert set(table(tmp_path, "case.profiles.csv")["load"]) == {"900.0"}
 
 
-def test_load_can_be_given_more_than_once_and_increments_by_number(draw, result, tmp_path):
-    draw("profiles", "--load", 60, "--load", 120, "--increment", 3, result)
+def test_load_can_be_given_more_than_once_and_increments_by_number(tabulate, result, tmp_path):
+    tabulate("profiles", "--load", 60, "--load", 120, "--increment", 3, result)
     drawn = table(tmp_path, "case.profiles-60-120-180.csv")
     assert set(drawn["load"]) == {"60.0", "120.0", "180.0"}
     assert set(drawn["increment"]) == {"1", "2", "3"}
@@ -176,10 +188,10 @@ def test_zone_curves_are_the_sharpened_edges_on_the_axis_of_the_picture(draw, re
         np.testing.assert_array_equal(numbers(pairs["status"]), contact["status"][()].ravel())
 
 
-def test_zone_curves_along_s_are_those_of_the_file_and_keep_nan(draw, tmp_path):
+def test_zone_curves_along_s_are_those_of_the_file_and_keep_nan(tabulate, tmp_path):
     path = tmp_path / "case.vtkhdf"
     write_result(path, loads=(2.0, 300.0, 600.0))
-    draw("zones", path, "--along", "s")
+    tabulate("zones", path, "--along", "s")
     drawn = table(tmp_path, "case.zones-along-s.csv")
     with h5py.File(path) as file:
         stick = file["contact/CYLINDER/edge_stick"][()]
@@ -280,8 +292,8 @@ def test_the_window_of_the_contact_follows_the_deformed_faces(result):
     np.testing.assert_allclose(moved - there, [[3.0, -7.0], [3.0, -7.0]], rtol=1e-12)
 
 
-def test_fields_of_chosen_quantities_only(draw, result, tmp_path):
-    assert draw("fields", result, "--quantity", "xy") == three("case.fields-xy")
+def test_fields_of_chosen_quantities_only(tabulate, result, tmp_path):
+    assert tabulate("fields", result, "--quantity", "xy") == three("case.fields-xy")
     columns = table(tmp_path, "case.fields-xy.csv")
     assert "xy" in columns and "temperature" not in columns
     assert parser().parse_args(spread(["fields", "--quantity", "xx", "yy", "r"])).results == ["r"]
@@ -387,7 +399,7 @@ def test_decks_without_heat_or_friction_are_drawn(draw, tmp_path, choices):
     assert ("mu_p" in columns) == ("friction" not in choices)
 
 
-def test_a_temperature_without_heat_is_drawn_where_it_tells_something(draw, tmp_path):
+def test_a_temperature_without_heat_is_drawn_where_it_tells_something(tabulate, tmp_path):
     """As it is left by a deck of mechanics, the initial one, or as *TEMPERATURE gives it."""
     path = tmp_path / "case.vtkhdf"
     for varies in (False, True):
@@ -396,33 +408,33 @@ def test_a_temperature_without_heat_is_drawn_where_it_tells_something(draw, tmp_
             assert "heat_flux" not in file["VTKHDF/PointData"]
             if not varies:
                 file["VTKHDF/PointData/temperature"][...] = 20.0
-        draw("fields", path)
+        tabulate("fields", path)
         assert ("temperature" in table(tmp_path, "case.fields.csv")) == varies
-        draw("fields", path, "--quantity", "temperature")
+        tabulate("fields", path, "--quantity", "temperature")
         assert "temperature" in table(tmp_path, "case.fields-temperature.csv")
 
 
-def test_every_contact_has_a_picture_of_its_own(draw, fail, tmp_path):
+def test_every_contact_has_a_picture_of_its_own(tabulate, fail, tmp_path):
     path = tmp_path / "case.vtkhdf"
     write_result(path, loads=(300.0, 600.0), contacts=("LEFT", "RIGHT"))
-    assert draw("profiles", path) == [
+    assert tabulate("profiles", path) == [
         *three("case.profiles-LEFT"),
         *three("case.profiles-RIGHT"),
     ]
-    assert draw("profiles", path, "--contact", "RIGHT") == three("case.profiles-RIGHT")
+    assert tabulate("profiles", path, "--contact", "RIGHT") == three("case.profiles-RIGHT")
     assert "no contact 'RIHGT', nearest: 'RIGHT'" in fail("zones", path, "--contact", "RIHGT")
 
 
-def test_pictures_of_other_options_have_other_names(draw, tmp_path):
+def test_pictures_of_other_options_have_other_names(tabulate, tmp_path):
     path = tmp_path / "case.vtkhdf"
     write_result(path, loads=(300.0, 600.0, 300.0))
-    assert draw("profiles", path, "--range", 0, 2.5) == three("case.profiles-range-0-2.5")
-    assert draw("profiles", path, "--along", "s") == three("case.profiles-along-s")
+    assert tabulate("profiles", path, "--range", 0, 2.5) == three("case.profiles-range-0-2.5")
+    assert tabulate("profiles", path, "--along", "s") == three("case.profiles-along-s")
     for number in (1, 3):
-        assert draw("fields", path, "--increment", number) == three(
+        assert tabulate("fields", path, "--increment", number) == three(
             f"case.fields-300-increment-{number}"
         )
-    assert draw("fields", path, "--increment", 2) == three("case.fields-600")
+    assert tabulate("fields", path, "--increment", 2) == three("case.fields-600")
 
 
 @pytest.mark.parametrize("units", ["cm MPa W C", ""])
@@ -468,15 +480,15 @@ def test_a_digitised_figure_is_laid_over(draw, result, tmp_path):
     ]
 
 
-def test_tables_written_here_can_be_laid_over(draw, result, tmp_path):
-    draw("profiles", result, "--load", 300, 540)
-    draw("zones", result)
+def test_tables_written_here_can_be_laid_over(tabulate, result, tmp_path):
+    tabulate("profiles", result, "--load", 300, 540)
+    tabulate("zones", result)
     written = tmp_path / "out" / "case.profiles-300-540.csv"
     (overlay,) = read_overlays([written], "x", profiles.CURVES, ["s", *profiles.PASSED_OVER])
     pressure = numbers(table(tmp_path, written.name)["pressure"])
     assert [len(overlay.columns["pressure"][rows]) for rows in overlay.curves("x")] == [21, 21]
     np.testing.assert_array_equal(overlay.columns["pressure"], pressure)
-    draw("zones", result, "--with", tmp_path / "out" / "case.zones.csv")
+    tabulate("zones", result, "--with", tmp_path / "out" / "case.zones.csv")
 
 
 @pytest.mark.parametrize(

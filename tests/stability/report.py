@@ -23,7 +23,7 @@ it cannot. The document is written by `python tests/stability/report.py` from ru
 """
 DOCUMENT = Document("stability.md", HERE, ("fixed_point", "contact", "extremes", "invariance",
                                            "time_steps"), PREFACE)
-check, check_rows = DOCUMENT.check, DOCUMENT.check_rows
+check, check_parts, check_rows = DOCUMENT.check, DOCUMENT.check_parts, DOCUMENT.check_rows
 
 if __name__ == "__main__":
     DOCUMENT.write(sys.argv[1:])

@@ -31,18 +31,21 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class Extent:
-    """How much is run: random rods by methods that may give up, jumping ones by NEWTON, refinements
-    of the cylinder, also with a jump, and the most increments."""
+    """How much is run: steep laws by methods that may give up, by their closed law in parts of
+    A/B; random rods by these methods, by NEWTON, and jumping ones by NEWTON; refinements of the
+    cylinder, also with a jump; and the most increments."""
 
+    steep: tuple[float, ...]
     rods: int
+    by_newton: int
     jumping: int
     levels: tuple[int, ...]
     jump_levels: tuple[int, ...]
     increments: int
 
 
-WHOLE = Extent(COUNT, JUMPING, (0, 1, 2), (0, 1), 450)
-TESTED = Extent(40, 300, (0, 1), (0,), 90)
+WHOLE = Extent((1.0, 100.0, 0.01), COUNT, COUNT, JUMPING, (0, 1, 2), (0, 1), 450)
+TESTED = Extent((1.0,), 20, 100, 100, (0, 1), (0,), 90)
 
 
 class Tally:
@@ -114,7 +117,7 @@ def group(folder, cases, method, tally):
             verdict(right and worst <= 1)]
 
 
-def steep_laws(folder, tally):
+def steep_laws(folder, tally, extent):
     """Return the table of ever steeper laws."""
     table = Table("Ever steeper laws", ["closed law at p = 0", "kept", *GROUP],
                   text="R1, R1b and R2 with B = 1e-8, 1e-10, 1e-12 and 1e-14. Where laws jump, "
@@ -122,7 +125,7 @@ def steep_laws(folder, tally):
     for factor, law in ((1.0, "A/B"), (100.0, "100 A/B"), (0.01, "A/(100 B)")):
         for kept in ("A", "A/B"):
             cases = steep_cases(kept, factor)
-            for method in METHODS:
+            for method in METHODS if factor in extent.steep else ("NEWTON",):
                 where = folder / f"steep-{factor:g}-{kept[-1]}-{method}"
                 table.rows.append([law, kept, *group(where, cases, method, tally)])
     return table
@@ -133,9 +136,9 @@ def random_rods(folder, tally, extent):
     table = Table("Random rods", ["laws", *GROUP])
     for jumps, law in ((False, "continuous"), (True, "with a jump")):
         cases = random_cases(jumps, JUMPING if jumps else COUNT)
-        newton = cases
-        if jumps and extent.jumping < JUMPING:
-            newton = cases[:extent.jumping] + [cases[i] for i in HARD]
+        newton = cases[:extent.jumping if jumps else extent.by_newton]
+        if jumps:
+            newton += [cases[i] for i in HARD if i >= extent.jumping]
         gains = [one.gain for case in cases for one in case.solutions()]
         several = sum(len(case.solutions()) > 1 for case in cases)
         table.text += (f"Laws {law}: {several} rods have several solutions, U' is between "
@@ -237,7 +240,7 @@ def summary(tally):
 def tables(folder, extent=WHOLE):
     """Run all cases; return their tables."""
     tally = Tally()
-    found = [known_rods(folder, tally), steep_laws(folder, tally),
+    found = [known_rods(folder, tally), steep_laws(folder, tally, extent),
              random_rods(folder, tally, extent)]
     found += cylinders(folder, tally, extent)
     return [*found, with_a_jump(folder, extent), summary(tally)]

@@ -8,7 +8,7 @@ import numpy as np
 import test_rods as rods
 from blocks import write
 from deck_runs import CYLINDER, HERTZ, copy_deck, run, solve
-from report import Table, check, verdict
+from report import Table, check_rows, verdict
 from test_contact import faces, springs, step
 from test_physics_schemes import ENDS, free, model, sets
 from test_physics_schemes import step as heat_step
@@ -115,9 +115,8 @@ def at_the_end(deck, *names):
         return [file[f"contact/FACE/{name}"][-1] for name in names]
 
 
-def hertz(folder):
+def hertz(folder, finest=320):
     """Return the table of a mesh whose pairs close one after the other, without heat."""
-    finest = 320
     table = Table(
         "Friction: Hertz with friction", [*head("case")[:-3], "verdict"],
         text=f"""Different materials (input/hertz), against {finest} increments. Errors fall in steps: they come from increments in which
@@ -244,5 +243,6 @@ def tables(folder):
 
 
 def test_time_steps(tmp_path):
-    import test_time_steps as theme
-    check(theme, tmp_path)
+    """Hertz's contact against fewer increments than the document tells of."""
+    check_rows([pairs(tmp_path), hertz(tmp_path, 160), cylinder(tmp_path), *schemes(tmp_path),
+                imbalance(tmp_path)])
