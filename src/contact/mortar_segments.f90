@@ -62,7 +62,7 @@ module mortar_segments
    type :: segment_sums_type
       real(dp), allocatable :: weight(:), whole(:)
       real(dp), allocatable :: facing(:, :)   !! (2, corners) the master's normal nearest to each
-      real(dp), allocatable :: apart(:)       !! (corners) in its side's coordinate, how near that is
+      real(dp), allocatable :: apart(:)       !! (corners) how near that is, in a side's coordinate
       type(triplet_list_type) :: slave, master
    end type segment_sums_type
 
