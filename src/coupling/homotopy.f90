@@ -6,7 +6,9 @@
 !> constant openings. At t = 0 there is one solution, at t = 1 they are those of the increment. As H
 !> is bounded where the temperatures are, the path from t = 0 leads to t = 1, past all turning
 !> points, and to a solution with det(I - U') > 0 (Ortega & Rheinboldt 1970, chapters 6 and 7;
-!> Allgower & Georg 1990). It leaves every bound only where the temperatures do.
+!> Allgower & Georg 1990). It leaves every bound only where the temperatures do. Where one advance
+!> passes the kinks of several points at once, the orientation may be lost; the path can then end at
+!> a solution with det(I - U') < 0, of which a warning tells.
 !>
 !> Each pass gives one step: a Newton correction normal to the path and an advance along it, which
 !> is shortened where the correction is not small beside it. Laws and contact states have kinks, at
