@@ -60,6 +60,7 @@ contains
       if (allocated(error)) self%why_not = error%message
       if (any(simulation%bodies%interfaces%pairing == pairing_surfaces)) self%why_not = &
          'it relaxes node pairs, and there are faces whose nodes do not match'
+      if (size(model%ties) > 0) self%why_not = 'it relaxes nodes that are free, and there are ties'
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 

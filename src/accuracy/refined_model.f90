@@ -53,6 +53,7 @@ contains
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points
       type(error_type), allocatable, intent(out) :: error
+      type(contact_points_type), allocatable :: no_ties(:)
       integer :: i
 
       self%coarse = model%mesh
@@ -65,7 +66,9 @@ contains
          call match_surfaces(self%model, i, self%interfaces(i), error)
          if (allocated(error)) return
       end do
-      self%points = joined_points(self%interfaces, self%model)
+      if (allocated(self%model%ties)) deallocate (self%model%ties)
+      allocate (self%model%ties(0), no_ties(0))
+      self%points = joined_points(self%interfaces, no_ties, self%model)
       call match_points(self, points)
       call self%loads%prepare(self%model)
    end subroutine prepare

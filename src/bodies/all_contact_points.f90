@@ -1,4 +1,5 @@
-!> The contact points of all interfaces in one row, as the solution works on them.
+!> The contact points of all interfaces in one row, as the solution works on them, and beside them
+!> the points of all ties.
 module all_contact_points
    use conductance_laws, only: conductance_law_type
    use interface_points, only: make_contact_points
@@ -7,9 +8,10 @@ module all_contact_points
    use kinds, only: dp
    use model, only: model_type
    use sum_lists, only: sum_list_type
+   use tie_points, only: joined_ties, make_tie_points, tie_points_type
    implicit none
    private
-   public :: all_contact_points_type, match_surfaces, joined_points
+   public :: all_contact_points_type, match_surfaces, match_tie, joined_points
    public :: find_held_axes, over_constrained, held_approach, tangential_positions
 
    !> Component of a normal along the only free axis that is rounding: the normal motion of such a
@@ -30,6 +32,7 @@ module all_contact_points
       !> (m) the axis, 1 or 2, along which supports hold both nodes, while they leave one of them
       !> free along the other axis; else 0
       integer, allocatable :: held_axis(:)
+      type(tie_points_type) :: ties                           !! points of the ties, no part of m
    contains
       procedure :: jumps
       procedure :: relative
@@ -47,20 +50,40 @@ contains
       integer, intent(in) :: i                            !! index into model%contacts
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: thickness
 
-      thickness = 1.0_dp
-      associate (faces => model%mesh%surfaces(model%contacts(i)%slave)%faces)
-         if (size(faces, 2) > 0) then
-            thickness = model%sections(model%mesh%element_section(faces(1, 1)))%thickness
-         end if
-      end associate
-      call make_contact_points(model%mesh, model%contacts(i), thickness, points, error)
+      call make_contact_points(model%mesh, model%contacts(i), &
+         thickness_at(model, model%contacts(i)%slave), points, error)
    end subroutine match_surfaces
 
-   !> Puts the contact points of all interfaces in one row.
-   pure function joined_points(interfaces, model) result(row)
+   !> Matches the surfaces of one *TIE.
+   !> Error: as make_tie_points.
+   subroutine match_tie(model, i, points, error)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: i                            !! index into model%ties
+      type(contact_points_type), intent(out) :: points
+      type(error_type), allocatable, intent(out) :: error
+
+      call make_tie_points(model%mesh, model%ties(i), &
+         thickness_at(model, model%ties(i)%faces%slave), points, error)
+   end subroutine match_tie
+
+   !> Thickness of a surface's first element.
+   pure real(dp) function thickness_at(model, surface)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: surface
+
+      thickness_at = 1.0_dp
+      associate (faces => model%mesh%surfaces(surface)%faces)
+         if (size(faces, 2) > 0) then
+            thickness_at = model%sections(model%mesh%element_section(faces(1, 1)))%thickness
+         end if
+      end associate
+   end function thickness_at
+
+   !> Puts the contact points of all interfaces in one row, and those of all ties.
+   pure function joined_points(interfaces, of_ties, model) result(row)
       type(contact_points_type), intent(in) :: interfaces(:) !! in the order of the deck
+      type(contact_points_type), intent(in) :: of_ties(:)    !! (ties) in the order of the deck
       type(model_type), intent(in) :: model
       type(all_contact_points_type) :: row                  !! all their contact points
       integer :: i, first, k, last, m
@@ -91,6 +114,7 @@ contains
                interfaces(i)%difference%coefficients_of(k))
          end do
       end do
+      row%ties = joined_ties(model%mesh, model%ties, of_ties)
    end function joined_points
 
    !> Slave's value less master's of a field, at every contact point.

@@ -102,10 +102,11 @@ contains
    !> the recovered displacements, relative to the largest displacement and force. Where a row is
    !> supported on one body, the traction is taken from the other; where on both, the reduced
    !> system's stands.
-   pure function contact_violation(displacement, unbalanced, supported, points, state, &
+   pure function contact_violation(displacement, residual, supported, points, state, &
       friction_acts, scales) result(violation)
       real(dp), intent(in) :: displacement(:)        !! (2 nodes) [length]
-      real(dp), intent(in) :: unbalanced(:) !! (2 nodes) K u - f without the contact forces [force]
+      !> (2 nodes) as from force_residual, without the forces of ties [force]
+      real(dp), intent(in) :: residual(:)
       logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
       type(all_contact_points_type), intent(in) :: points
       type(contact_state_type), intent(in) :: state  !! the state that is checked
@@ -113,22 +114,21 @@ contains
       type(scales_type), intent(in) :: scales
       real(dp) :: violation                          !! relative
       real(dp) :: force(2), gap, normal_force, shear_force, slip, cone
-      real(dp) :: left(size(unbalanced)), relative(2, size(points%slave))
+      real(dp) :: relative(2, size(points%slave))
       integer :: c, k, slave_dof, master_dof
 
       violation = 0.0_dp
-      ! A node may be in several contact points: what they leave over goes to each of them.
-      left = force_residual(unbalanced, 0.0_dp*unbalanced, points, state)
       relative = points%relative(displacement)
       do k = 1, size(points%slave)
+         ! A node may be in several contact points: what they leave over goes to each of them.
          force = state%shear_force(k)*points%tangent(:, k) - state%force(k)*points%normal(:, k)
          do c = 1, 2
             slave_dof = 2*points%slave(k) - 2 + c
             master_dof = 2*points%master(k) - 2 + c
             if (.not. supported(slave_dof)) then
-               force(c) = force(c) + left(slave_dof)
+               force(c) = force(c) + residual(slave_dof)
             else if (.not. supported(master_dof)) then
-               force(c) = force(c) - left(master_dof)
+               force(c) = force(c) - residual(master_dof)
             end if
          end do
          gap = (points%initial_gap(k) - dot_product(relative(:, k), points%normal(:, k)))/ &

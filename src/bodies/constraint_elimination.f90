@@ -4,7 +4,8 @@
 !> those that rows introduce, such as relative displacements of contact points, then the prescribed
 !> value of each degree of freedom. A support is the row u - g = 0. Row after row writes one degree
 !> of freedom by other values. A constraint with a row to which those before leave no degree of
-!> freedom becomes a link instead (linear_constraints).
+!> freedom becomes a link instead (linear_constraints). A row of degrees of freedom alone is a tie;
+!> with none left it becomes a condition on prescribed values.
 module constraint_elimination
    use kinds, only: dp
    use linear_constraints, only: linear_constraints_type
@@ -19,6 +20,10 @@ module constraint_elimination
    !> Coefficient below which a term is dropped, as part of the row's largest coefficient. Rows of
    !> faces that do not match couple each corner to the next ones, ever more weakly.
    real(dp), parameter :: dropped = 1.0e-17_dp
+
+   !> The same for ties. On faces that do not match, ties that say nearly the same leave more than
+   !> rounding; a body would be stiff along what is left of them.
+   real(dp), parameter :: negligible_in_tie = 1.0e-9_dp
 
    !> Part of a row's largest coefficient that a degree of freedom needs to be written by the row.
    real(dp), parameter :: pivot_of_choice = 0.1_dp, least_pivot = 0.5_dp
@@ -39,13 +44,15 @@ module constraint_elimination
       integer, allocatable :: writer(:)         !! (values) sum that writes a value, or 0
       integer, allocatable :: entry(:)          !! (values) when a value first entered the rows
       logical, allocatable :: linked(:)         !! (rows) those that become links
+      logical, allocatable :: tie(:)            !! (rows) those of degrees of freedom alone
+      integer, allocatable :: written(:)        !! (rows) what a tie writes, 0 for a condition
    end type elimination_type
 
 contains
 
    !> The constraints of these rows. Of the degrees of freedom that are left in a row it writes the
    !> row's choice, else the one that entered the rows last; of the values of one row the last
-   !> enters first.
+   !> enters first. Ties come before rows with introduced values.
    pure subroutine eliminate(rows, used, constraints)
       type(constraint_rows_type), intent(in) :: rows
       logical, intent(in) :: used(:)                !! (dofs) whether elements have them
@@ -59,6 +66,7 @@ contains
       constraints%components = rows%components
       constraints%introduced = unknown(rows%dofs + 1:last)
       call set_matrices(rows, found, unknown, constraints)
+      call set_ties(rows, found, last, constraints)
    end subroutine eliminate
 
    !> Writes a degree of freedom by every row whose constraint does not become a link.
@@ -70,6 +78,9 @@ contains
 
       allocate (found%writer(values), found%entry(values), source=0)
       allocate (found%linked(rows%count), source=.false.)
+      allocate (found%written(rows%count), source=0)
+      found%tie = [(all(rows%value(rows%start(i):rows%start(i + 1) - 1) <= rows%dofs), &
+         i=1, rows%count)]
       call found%sums%reserve(rows%count, size(rows%value))
       n = 0
       do i = 1, rows%count
@@ -87,6 +98,7 @@ contains
             if (last == rows%count) exit
             if (rows%constraint(last + 1) /= rows%constraint(first)) exit
          end do
+         if (found%tie(first)) cycle
          if (found%sums%count - written == last - first + 1) cycle
          found%linked(first:last) = .true.
          where (found%writer > written) found%writer = 0
@@ -106,7 +118,8 @@ contains
       real(dp) :: pivot
 
       call resolve(found, rows, row, value, coefficient)
-      left = value <= rows%dofs .and. abs(coefficient) > negligible*largest(rows, row)
+      left = value <= rows%dofs .and. abs(coefficient) > merge(negligible_in_tie, negligible, &
+         found%tie(row))*largest(rows, row)
       if (.not. any(left)) return
       pivot = maxval(abs(coefficient), mask=left)
       chosen = findloc(left .and. value == rows%choice(row) .and. &
@@ -114,6 +127,7 @@ contains
       if (chosen == 0) chosen = maxloc(found%entry(value), &
          mask=left .and. abs(coefficient) >= least_pivot*pivot, dim=1)
       found%writer(value(chosen)) = found%sums%count + 1
+      if (found%tie(row)) found%written(row) = value(chosen)
       associate (factor => -1.0_dp/coefficient(chosen))
          coefficient(chosen) = 0.0_dp
          call found%sums%add(value, factor*coefficient)
@@ -261,5 +275,39 @@ contains
          allocate (constraints%link_stiffness(links%count), source=1.0_dp)
       end associate
    end subroutine set_matrices
+
+   !> What ties write, and the conditions of those that write nothing. Prescribed values count as
+   !> the degrees of freedom that have them.
+   pure subroutine set_ties(rows, found, last, constraints)
+      type(constraint_rows_type), intent(in) :: rows
+      type(elimination_type), intent(in) :: found
+      integer, intent(in) :: last               ! value before the prescribed ones
+      type(linear_constraints_type), intent(inout) :: constraints
+      integer, allocatable :: value(:)
+      real(dp), allocatable :: coefficient(:)
+      integer :: i
+
+      constraints%tied = pack(found%written, found%written > 0)
+      constraints%condition = pack(rows%constraint(:rows%count), found%tie .and. found%written == 0)
+      call constraints%tied_by%reserve(size(constraints%tied), 8*size(constraints%tied))
+      call constraints%condition_given%reserve(size(constraints%condition), &
+         8*size(constraints%condition))
+      do i = 1, rows%count
+         if (.not. found%tie(i)) cycle
+         if (found%written(i) > 0) then
+            associate (k => found%writer(found%written(i)))
+               value = found%sums%values_of(k)
+               coefficient = found%sums%coefficients_of(k)
+            end associate
+            value = merge(value - last, value, value > last)
+            call constraints%tied_by%add(value, coefficient)
+         else
+            call resolve(found, rows, i, value, coefficient)
+            coefficient = pack(coefficient, value > last)
+            value = pack(value, value > last) - last
+            call constraints%condition_given%add(value, coefficient)
+         end if
+      end do
+   end subroutine set_ties
 
 end module constraint_elimination

@@ -1,4 +1,4 @@
-!> Linear constraints of supports and contact points.
+!> Linear constraints of supports, ties and contact points.
 !>
 !> At a contact point the slave's values are the master's plus its relative values in its own frame:
 !> along normal and tangent; one jump of temperature. Where supports hold both nodes along an axis,
@@ -16,10 +16,11 @@ module contact_constraints
    use linear_constraints, only: linear_constraints_type, node_stiffness
    use all_contact_points, only: over_constrained, all_contact_points_type
    use sparse_matrix, only: sparse_matrix_type
+   use tie_constraints, only: add_ties, most_rows
    implicit none
    private
    public :: constrain_displacements, constrain_temperatures, in_cycle, stiffness_alone, &
-      cycle_compliance
+      cycle_compliance, first_tied
 
    !> Compliance of a stuck contact point of a cycle, as a part of the bodies' at its nodes.
    real(dp), parameter :: cycle_compliance = 1.0e-8_dp
@@ -49,6 +50,7 @@ contains
          return
       end if
       call begin_rows(held, 2, points, rows)
+      call add_ties(points%ties, held, rows)
       do k = 1, size(points%slave)
          rows%on_tail(2*k - 1:2*k) = [.true., points%friction(k) > 0.0_dp]
          axis = points%held_axis(k)
@@ -76,6 +78,7 @@ contains
       integer :: k
 
       call begin_rows(held, 1, points, rows)
+      call add_ties(points%ties, held, rows)
       rows%on_tail = .true.
       do k = 1, size(points%slave)
          if (all(held(points%nodes_of(k)))) cycle
@@ -95,7 +98,7 @@ contains
       rows%components = components
       rows%dofs = size(held)
       introduced = components*size(points%slave)
-      most = count(held) + introduced
+      most = count(held) + most_rows(points%ties, components) + introduced
       allocate (rows%on_tail(introduced), rows%constraint(most), rows%choice(most))
       call rows%reserve(most, 2*count(held) + components*(introduced + &
          size(points%difference%value)))
@@ -131,6 +134,26 @@ contains
       rows%constraint(rows%count) = rows%dofs + k
       rows%choice(rows%count) = rows%components*(nodes(1) - 1) + component
    end subroutine relate
+
+   !> The first contact point whose relative motion ties and supports prescribe; 0 where there is
+   !> none. A link then relates nothing but its own values.
+   pure integer function first_tied(constraints, points)
+      type(linear_constraints_type), intent(in) :: constraints !! of the displacements
+      type(all_contact_points_type), intent(in) :: points      !! all contact points
+      integer :: i, k
+
+      do i = 1, constraints%link_unknowns%count
+         associate (linked => constraints%link_unknowns%values_of(i))
+            if (size(linked) == 0) cycle
+            do k = 1, size(points%slave)
+               first_tied = k
+               if (all(linked == constraints%introduced(2*k - 1) .or. &
+                  linked == constraints%introduced(2*k))) return
+            end do
+         end associate
+      end do
+      first_tied = 0
+   end function first_tied
 
    !> Contact points that are part of a cycle.
    pure function in_cycle(constraints, points) result(cyclic)

@@ -8,6 +8,10 @@
 !> it: rows k G v = -k H g, columns k G^T mu. k is the stiffness of the bodies there, so that k mu
 !> is the force and mu compares with displacements.
 !>
+!> Ties are constraints of degrees of freedom alone, A u = 0; they have no unknowns. Their forces,
+!> A^T lambda, follow from what the bodies leave out of balance at the degrees of freedom that ties
+!> write. A tie that supports leave no degree of freedom is a condition on prescribed values.
+!>
 !> The last unknowns, the tail, are those that contact acts on, and the forces. With the former zero
 !> the bodies are welded; the reduced problem on the tail is eq. (2.4) solved partially.
 !> constraint_elimination makes these matrices from rows of any origin.
@@ -32,10 +36,15 @@ module linear_constraints
       type(sum_list_type) :: link_dofs              !! (links, dofs) what the rows say of u itself
       integer, allocatable :: link_force(:)         !! (links) unknowns mu
       real(dp), allocatable :: link_stiffness(:)    !! (links) k, in the unit of the matrix
+      integer, allocatable :: tied(:) !! (tied) what ties write, in the order in which they do
+      type(sum_list_type) :: tied_by                !! (tied, dofs) what they write it by
+      integer, allocatable :: condition(:)          !! (conditions) constraints that they are
+      type(sum_list_type) :: condition_given        !! (conditions, dofs) sums that must be 0
    contains
       procedure :: expand
       procedure :: supported
       procedure :: restrict
+      procedure :: carry_over
       procedure :: load
       procedure :: stiffen_links
       procedure :: transform
@@ -83,6 +92,25 @@ contains
          end do
       end associate
    end function restrict
+
+   !> Takes the forces of the ties from the forces on the degrees of freedom. Where a tie writes a
+   !> degree of freedom, the tie's force alone keeps it in balance; the other ones that the tie
+   !> joins receive the opposite, and so do supports behind a tie.
+   pure subroutine carry_over(self, forces)
+      class(linear_constraints_type), intent(in) :: self
+      real(dp), intent(inout) :: forces(:)          !! (dofs) K u - f, or what is left of it
+      integer :: k
+      real(dp) :: force
+
+      do k = 1, self%tied_by%count
+         force = forces(self%tied(k))
+         forces(self%tied(k)) = 0.0_dp
+         associate (first => self%tied_by%start(k), last => self%tied_by%start(k + 1) - 1)
+            forces(self%tied_by%value(first:last)) = forces(self%tied_by%value(first:last)) + &
+               force*self%tied_by%coefficient(first:last)
+         end associate
+      end do
+   end subroutine carry_over
 
    !> Right-hand side of the unknowns: of forces on the degrees of freedom, less what prescribed
    !> values take of them (K B g), and of links, which prescribed values may stretch.

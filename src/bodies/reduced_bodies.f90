@@ -1,24 +1,26 @@
 !> The bodies reduced once to their contact unknowns: everything that the fixed-point iteration
 !> needs, on the contact points alone.
 module reduced_bodies
-   use contact_constraints, only: constrain_displacements, constrain_temperatures, in_cycle, &
-      stiffness_alone
+   use contact_constraints, only: constrain_displacements, constrain_temperatures, first_tied, &
+      in_cycle, stiffness_alone
    use contact_points, only: contact_points_type
    use contact_reduction, only: contact_system_of
    use contact_system, only: contact_system_type
    use element_kinds, only: element_node_count
-   use errors, only: error_type
+   use errors, only: error_type, set_error, status_deck
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use unconstrained_motions, only: balanced_load
    use mesh, only: extent_of
    use model, only: model_type
    use all_contact_points, only: find_held_axes, all_contact_points_type, match_surfaces, &
-      joined_points
+      match_tie, joined_points
    use rigid_motions, only: unsupported_motions
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
+   use text, only: to_text
    use thermal_matrix, only: assemble_conduction
+   use tie_constraints, only: joints_of
    use unconstrained_bodies, only: undetermined_beside
    implicit none
    private
@@ -31,6 +33,7 @@ module reduced_bodies
    !> The reduced bodies.
    type :: reduced_bodies_type
       type(contact_points_type), allocatable :: interfaces(:) !! interfaces in the order of the deck
+      type(contact_points_type), allocatable :: ties(:)       !! points of the ties likewise
       type(all_contact_points_type) :: points                 !! all their contact points
       type(field_problem_type) :: thermal                     !! heat, (3.3)
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
@@ -56,8 +59,8 @@ module reduced_bodies
 
 contains
 
-   !> Matches the surfaces, unless the caller has already put the contact points in place.
-   !> Error: as make_contact_points.
+   !> Matches the surfaces, unless the caller has already put their points in place.
+   !> Errors: as make_contact_points and make_tie_points.
    subroutine prepare(self, model, error)
       class(reduced_bodies_type), intent(inout) :: self !! empty
       type(model_type), intent(in) :: model
@@ -71,7 +74,14 @@ contains
             if (allocated(error)) return
          end do
       end if
-      self%points = joined_points(self%interfaces, model)
+      if (.not. allocated(self%ties)) then
+         allocate (self%ties(size(model%ties)))
+         do i = 1, size(model%ties)
+            call match_tie(model, i, self%ties(i), error)
+            if (allocated(error)) return
+         end do
+      end if
+      self%points = joined_points(self%interfaces, self%ties, model)
       self%initial_temperature = model%initial_temperature
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
@@ -90,16 +100,37 @@ contains
 
       if (mechanics) then
          call find_held_axes(self%points, held)
-         call unsupported_motions(model%mesh, held, self%rigid)
+         call unsupported_motions(model%mesh, held, joints_of(self%points%ties), self%rigid)
       end if
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) call constrain_displacements(used, held, points, &
             slave_is_stiffer(model, points, .true.), self%mechanical%map, error)
+         if (mechanics .and. .not. allocated(error)) call check_tied(self, model, error)
          if (allocated(error) .or. .not. heat) return
          call constrain_temperatures(used, held_temperature, points, &
             slave_is_stiffer(model, points, .false.), self%thermal%map)
       end associate
    end subroutine number
+
+   !> Refuses a contact point whose relative motion ties and supports prescribe.
+   subroutine check_tied(self, model, error)
+      type(reduced_bodies_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, k
+
+      if (size(model%ties) == 0) return
+      k = first_tied(self%mechanical%map, self%points)
+      if (k == 0) return
+      i = count(self%points%interface_start <= k)
+      associate (number => model%mesh%node_number)
+         call set_error(error, status_deck, model%contacts(i)%title()//': ties and supports '// &
+            'prescribe how slave node '//to_text(number(self%points%slave(k)))// &
+            ' moves against master node '//to_text(number(self%points%master(k)))// &
+            ', so that their contact force is undetermined; leave the faces out of the *TIE or '// &
+            'of the *CONTACT PAIR', model%contacts(i)%card)
+      end associate
+   end subroutine check_tied
 
    !> Whether the slave's body is far stiffer, or conducts far better, than the master's. A soft
    !> body is to be written by the stiff one: the other way round its stiffness would be left over

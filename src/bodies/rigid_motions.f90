@@ -14,17 +14,18 @@ module rigid_motions
    use text, only: to_text
    implicit none
    private
-   public :: contact_tie_type, free_motion_type, find_free_motions, unsupported_motions
+   public :: joint_type, free_motion_type, find_free_motions, unsupported_motions
 
    real(dp), parameter :: nothing = 1.0e-6_dp        !! component of a motion that counts as none
    real(dp), parameter :: unit(2, 2) = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
 
-   !> What a contact point holds: along a direction, a sum of displacements of nodes is zero.
-   type :: contact_tie_type
+   !> What a contact point or a tie holds: along a direction, a sum of displacements of nodes is
+   !> zero.
+   type :: joint_type
       integer, allocatable :: nodes(:)          !! (n) node indexes
       real(dp), allocatable :: share(:)         !! (n) their coefficients, the master's negative
       real(dp) :: direction(2) = 0.0_dp         !! unit vector
-   end type contact_tie_type
+   end type joint_type
 
    !> A motion that nothing hinders.
    type :: free_motion_type
@@ -43,36 +44,36 @@ module rigid_motions
 contains
 
    !> The free motions of all bodies, ordered by their first body; none where all is held.
-   subroutine find_free_motions(mesh, held, ties, motions)
+   subroutine find_free_motions(mesh, held, joints, motions)
       type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: held(:)                  !! (2 nodes) prescribed displacements
-      type(contact_tie_type), intent(in) :: ties(:)   !! what the contact points hold
+      type(joint_type), intent(in) :: joints(:)   !! what contact points and ties hold
       type(free_motion_type), allocatable, intent(out) :: motions(:)
       type(rigid_bodies_type) :: bodies
       real(dp), allocatable :: basis(:, :)
       integer :: i
 
       bodies = measure(mesh)
-      basis = free_basis(mesh, bodies, held, ties)
+      basis = free_basis(mesh, bodies, held, joints)
       allocate (motions(size(basis, 2)))
       do i = 1, size(motions)
          motions(i) = motion_of(bodies, reshape(basis(:, i), [3, mesh%body_count]))
       end do
    end subroutine find_free_motions
 
-   !> Displacements of the nodes in the motions that the supports alone leave free, each motion of
-   !> one body.
-   pure subroutine unsupported_motions(mesh, held, fields)
+   !> Displacements of the nodes in the motions that supports and ties leave free, each motion of
+   !> one body and of those that are tied to it.
+   pure subroutine unsupported_motions(mesh, held, joints, fields)
       type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: held(:)                       !! (2 nodes) prescribed displacements
+      type(joint_type), intent(in) :: joints(:)            !! what ties hold
       real(dp), allocatable, intent(out) :: fields(:, :)   !! (2 nodes, motions)
-      type(contact_tie_type) :: no_ties(0)
       type(rigid_bodies_type) :: bodies
       real(dp), allocatable :: basis(:, :)
       integer :: c, node
 
       bodies = measure(mesh)
-      basis = free_basis(mesh, bodies, held, no_ties)
+      basis = free_basis(mesh, bodies, held, joints)
       allocate (fields(size(held), size(basis, 2)), source=0.0_dp)
       do node = 1, size(mesh%node_body)
          if (mesh%node_body(node) == 0) cycle
@@ -87,15 +88,15 @@ contains
 
    !> Basis of the free motions in reduced echelon form: each has a leading component of its own, 1,
    !> that the others do not have.
-   pure function free_basis(mesh, bodies, held, ties) result(basis)
+   pure function free_basis(mesh, bodies, held, joints) result(basis)
       type(mesh_type), intent(in) :: mesh
       type(rigid_bodies_type), intent(in) :: bodies
       logical, intent(in) :: held(:)
-      type(contact_tie_type), intent(in) :: ties(:)
+      type(joint_type), intent(in) :: joints(:)
       real(dp), allocatable :: basis(:, :)           !! (3 bodies, motions)
       integer :: column, i, k, pivot
 
-      basis = null_space(conditions(mesh, bodies, held, ties))
+      basis = null_space(conditions(mesh, bodies, held, joints))
       column = 1
       do i = 1, size(basis, 1)
          if (column > size(basis, 2)) exit
@@ -110,13 +111,14 @@ contains
       end do
    end function free_basis
 
-   !> Supports, axes and ties as conditions on the rigid motions, a row each.
-   pure function conditions(mesh, bodies, held, ties) result(rows)
+   !> Supports, axes and joints as conditions on the rigid motions, a row each.
+   pure function conditions(mesh, bodies, held, joints) result(rows)
       type(mesh_type), intent(in) :: mesh
       type(rigid_bodies_type), intent(in) :: bodies
       logical, intent(in) :: held(:)
-      type(contact_tie_type), intent(in) :: ties(:)
-      real(dp) :: rows(count(held) + size(ties) + 2*count(bodies_on_axis(mesh)), 3*mesh%body_count)
+      type(joint_type), intent(in) :: joints(:)
+      real(dp) :: rows(count(held) + size(joints) + 2*count(bodies_on_axis(mesh)), &
+         3*mesh%body_count)
       logical :: on_axis(mesh%body_count)
       integer :: body, c, i, k, n, node
 
@@ -136,11 +138,11 @@ contains
             rows(n, :) = displacement_row(mesh, bodies, node, unit(:, c))
          end do
       end do
-      do i = 1, size(ties)
+      do i = 1, size(joints)
          n = n + 1
-         do k = 1, size(ties(i)%nodes)
-            rows(n, :) = rows(n, :) + ties(i)%share(k)*displacement_row(mesh, bodies, &
-               ties(i)%nodes(k), ties(i)%direction)
+         do k = 1, size(joints(i)%nodes)
+            rows(n, :) = rows(n, :) + joints(i)%share(k)*displacement_row(mesh, bodies, &
+               joints(i)%nodes(k), joints(i)%direction)
          end do
       end do
    end function conditions

@@ -6,9 +6,10 @@ module unconstrained_bodies
    use kinds, only: dp
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type
-   use rigid_motions, only: contact_tie_type, find_free_motions, free_motion_type
+   use rigid_motions, only: find_free_motions, free_motion_type, joint_type
    use steps, only: load_film_coefficient
    use text, only: append, string_type, to_text
+   use tie_constraints, only: joints_of
    implicit none
    private
    public :: unconstrained_in_step, unconstrained_now
@@ -77,32 +78,32 @@ contains
       logical, intent(in) :: held(:)
       integer, intent(in) :: contact_state(:)
       type(free_motion_type), allocatable, intent(out) :: motions(:)
-      type(contact_tie_type) :: ties(2*size(contact_state))
+      type(joint_type) :: joints(2*size(contact_state))
       integer :: k, n
 
       n = 0
       do k = 1, size(contact_state)
          if (contact_state(k) == contact_open) cycle
          n = n + 1
-         ties(n) = tie_of(points, k, points%normal(:, k))
+         joints(n) = joint_of(points, k, points%normal(:, k))
          if (contact_state(k) /= contact_stick) cycle
          n = n + 1
-         ties(n) = tie_of(points, k, points%tangent(:, k))
+         joints(n) = joint_of(points, k, points%tangent(:, k))
       end do
-      call find_free_motions(model%mesh, held, ties(:n), motions)
+      call find_free_motions(model%mesh, held, [joints(:n), joints_of(points%ties)], motions)
    end subroutine free_motions
 
    !> What a contact point holds along a direction.
-   pure function tie_of(points, k, direction) result(tie)
+   pure function joint_of(points, k, direction) result(joint)
       type(all_contact_points_type), intent(in) :: points
       integer, intent(in) :: k
       real(dp), intent(in) :: direction(2)
-      type(contact_tie_type) :: tie
+      type(joint_type) :: joint
 
-      tie%nodes = points%nodes_of(k)
-      tie%share = points%difference%coefficients_of(k)
-      tie%direction = direction
-   end function tie_of
+      joint%nodes = points%nodes_of(k)
+      joint%share = points%difference%coefficients_of(k)
+      joint%direction = direction
+   end function joint_of
 
    !> Bodies whose temperature nothing can ever determine: contact points count as conducting where
    !> one side of their law is given. One message a body.
@@ -168,8 +169,8 @@ contains
       end do
    end function joined
 
-   !> Bodies without a source of heat from which no way over conducting contact points leads to one
-   !> that has.
+   !> Bodies without a source of heat from which no way over conducting contact points and ties
+   !> leads to one that has.
    subroutine find_undetermined(model, points, has_source, conducts, messages)
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points
@@ -178,15 +179,21 @@ contains
       type(string_type), allocatable, intent(out) :: messages(:)
       logical :: reached(size(has_source))
       logical :: spreads
+      integer, allocatable :: slave(:), master(:)
       integer :: body, k
 
       reached = has_source
+      slave = pack(points%slave, conducts)
+      master = pack(points%master, conducts)
+      if (allocated(points%ties%slave)) then
+         slave = [slave, points%ties%slave]
+         master = [master, points%ties%master]
+      end if
       spreads = .true.
       do while (spreads)
          spreads = .false.
-         do k = 1, size(conducts)
-            if (.not. conducts(k)) cycle
-            associate (bodies => model%mesh%node_body([points%slave(k), points%master(k)]))
+         do k = 1, size(slave)
+            associate (bodies => model%mesh%node_body([slave(k), master(k)]))
                if (reached(bodies(1)) .eqv. reached(bodies(2))) cycle
                reached(bodies) = .true.
                spreads = .true.

@@ -46,7 +46,7 @@ contains
       points%side_nodes = slave%side_nodes
       points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       call cut_ends(first, last, points)
-      call check_weights(mesh, points%name, points%slave_node, points%weight, error)
+      call check_weights(mesh, definition%title(), points%slave_node, points%weight, error)
       if (allocated(error)) return
       points%difference = differences(points%slave_node, points%master_node)
    end subroutine set_node_pairs

@@ -40,7 +40,7 @@ contains
 
       message = shared_node(mesh, slave, master)
       if (len(message) > 0) call set_error(error, status_deck, &
-         'contact pair '//definition%name//': '//message)
+         definition%title()//': '//message)
    end subroutine check_shared
 
    !> The two lines are of one kind and have equally many nodes.
@@ -71,7 +71,7 @@ contains
             return
          end if
       end associate
-      call set_error(error, status_deck, 'contact pair '//definition%name//': '//message)
+      call set_error(error, status_deck, definition%title()//': '//message)
    end subroutine check_lines
 
    !> Names the first node of the longer line that has no partner: to the node of the other line
@@ -158,7 +158,7 @@ contains
             cosine = dot_product(slave_tangent(:, k), master_tangent(:, k))
             if (turned(1) .neqv. turned(2)) cosine = -cosine
             if (cosine <= same_way) cycle
-            call set_error(error, status_deck, 'contact pair '//definition%name// &
+            call set_error(error, status_deck, definition%title()// &
                ': at slave node '//to_text(mesh%node_number(slave%nodes(k)))// &
                ' and master node '//to_text(mesh%node_number(master%nodes(k)))// &
                ' both surfaces face the same way')
@@ -233,15 +233,15 @@ contains
 
    !> No node has a negative weight; 0 is that of a corner on the axis or at the tip of quarter
    !> points.
-   subroutine check_weights(mesh, name, slave, weight, error)
+   subroutine check_weights(mesh, title, slave, weight, error)
       type(mesh_type), intent(in) :: mesh
-      character(*), intent(in) :: name                    !! name of the *CONTACT PAIR
+      character(*), intent(in) :: title                   !! what the interface is called
       integer, intent(in) :: slave(:)                     !! (m) slave nodes
       real(dp), intent(in) :: weight(:)                   !! (m) [length^2]
       type(error_type), allocatable, intent(out) :: error !! the node with the smallest weight
 
       if (all(weight >= 0.0_dp)) return
-      call set_error(error, status_deck, 'contact pair '//name// &
+      call set_error(error, status_deck, title// &
          ': no length of the face belongs to slave node '// &
          to_text(mesh%node_number(slave(minloc(weight, dim=1))))// &
          '; its midside nodes are too far from the middle')
@@ -279,7 +279,7 @@ contains
       node = sharp_corner(mesh, slave)
       if (node == 0) return
       associate (surface => mesh%surfaces(definition%slave))
-         call set_error(error, status_deck, 'contact pair '//definition%name// &
+         call set_error(error, status_deck, definition%title()// &
             ': the slave surface '//surface%name//' goes round a corner at node '// &
             to_text(mesh%node_number(node))//': leave out the faces behind it that are not in '// &
             'contact, or make a surface of each side', surface%card)
@@ -298,7 +298,7 @@ contains
       integer :: k
 
       if (points > 0) return
-      call set_error(error, status_deck, 'contact pair '//definition%name// &
+      call set_error(error, status_deck, definition%title()// &
          ': no face of the master lies opposite the slave, along the normals of the slave')
       tangents = chain_tangents(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       k = (size(slave%nodes) + 1)/2

@@ -58,6 +58,7 @@ contains
       contact_heat = bodies%points%weight*data%omega_old*data%jump_old
       residual = heat_residual(conducted, net_heat(previous%heat_load, previous%film, &
          previous%temperature), bodies%points, contact_heat)
+      call bodies%thermal%map%carry_over(residual)
       scale = max(maxval(abs(conducted)), maxval(abs(previous%heat_load)), &
          maxval([0.0_dp, abs(contact_heat)]), noise*maxval(abs(bodies%thermal%matrix%value))* &
          maxval(abs(previous%temperature)), tiny(1.0_dp))

@@ -1,10 +1,10 @@
-!> What the deck says of contact: surface interactions and interfaces.
+!> What the deck says of contact: surface interactions, interfaces and ties.
 module contact_definitions
    use conductance_laws, only: conductance_law_type
    use kinds, only: dp
    implicit none
    private
-   public :: interaction_type, contact_definition_type
+   public :: interaction_type, contact_definition_type, tie_definition_type
    public :: pairing_by_faces, pairing_nodes, pairing_surfaces
 
    integer, parameter :: pairing_by_faces = 0    !! nodes where the faces match, else surfaces
@@ -18,16 +18,36 @@ module contact_definitions
       type(conductance_law_type) :: law       !! conductance law
    end type interaction_type
 
-   !> One *CONTACT PAIR: two surfaces that may meet.
+   !> One *CONTACT PAIR: two surfaces that may meet; or the faces of one *TIE.
    type :: contact_definition_type
       character(:), allocatable :: name       !! name as the deck writes it
       integer :: slave = 0                    !! index of the slave surface, the paper's body xi
       integer :: master = 0                   !! index of the master surface, the paper's body eta
-      integer :: card = 0                     !! card image of the *CONTACT PAIR
+      integer :: card = 0                     !! card image of the *CONTACT PAIR or *TIE
       integer :: interaction = 0              !! index into model%interactions
       integer :: pairing = pairing_by_faces   !! PAIRING=
       logical :: has_clearance = .false.      !! whether *CLEARANCE stands in place of the geometry
       real(dp) :: clearance = 0.0_dp     !! its gap of all contact points, negative overlap [length]
+      logical :: is_tied = .false.            !! whether they are the faces of a *TIE
+   contains
+      procedure :: title
    end type contact_definition_type
+
+   !> One *TIE: two surfaces without relative displacements and jumps of temperature.
+   type :: tie_definition_type
+      type(contact_definition_type) :: faces  !! its surfaces, without an interaction
+      logical :: has_tolerance = .false.      !! whether POSITION TOLERANCE= is given
+      real(dp) :: tolerance = 0.0_dp          !! gap up to which points are tied [length]
+   end type tie_definition_type
+
+contains
+
+   !> What messages call an interface, such as 'contact pair FACE'.
+   pure function title(self) result(words)
+      class(contact_definition_type), intent(in) :: self
+      character(:), allocatable :: words
+
+      words = trim(merge('tie         ', 'contact pair', self%is_tied))//' '//self%name
+   end function title
 
 end module contact_definitions

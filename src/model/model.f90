@@ -1,7 +1,7 @@
 !> The model: all that the deck says, built once by the deck builder and read-only afterwards.
 module model
    use amplitudes, only: amplitude_type
-   use contact_definitions, only: contact_definition_type, interaction_type
+   use contact_definitions, only: contact_definition_type, interaction_type, tie_definition_type
    use controls, only: solver_skyline
    use kinds, only: dp
    use materials, only: material_type, section_type
@@ -46,6 +46,7 @@ module model
       type(amplitude_type), allocatable :: amplitudes(:)         !! load curves
       type(interaction_type), allocatable :: interactions(:)     !! surface interactions
       type(contact_definition_type), allocatable :: contacts(:)  !! interfaces
+      type(tie_definition_type), allocatable :: ties(:)          !! tied faces
       real(dp), allocatable :: initial_temperature(:)            !! (nodes) [temperature]
       type(step_type), allocatable :: steps(:)                   !! steps in their order
       type(verify_type), allocatable :: verifications(:)         !! *VERIFY cards

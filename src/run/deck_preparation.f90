@@ -12,7 +12,7 @@ module deck_preparation
    use loads, only: loads_type
    use messages, only: print_error
    use model, only: model_type
-   use interface_reports, only: make_interfaces
+   use interface_reports, only: make_interfaces, make_ties
    use all_contact_points, only: over_constrained
    use progress, only: progress_type
    use reported_quantities, only: verifiable
@@ -46,12 +46,14 @@ contains
       call build_model(cards, verifiable, model, report, error, variation)
       if (.not. (report%has_errors() .or. allocated(error))) then
          call make_interfaces(model, simulation%bodies%interfaces, report)
+         call make_ties(model, simulation%bodies%ties, model%notes, report)
       end if
       if (.not. (report%has_errors() .or. allocated(error))) then
          call simulation%start(model, error)
          if (.not. allocated(error)) call check_arc_lengths(model, &
             simulation%bodies%interfaces, report)
          call check_supports(cards%last, model, simulation, report)
+         call report_at_card(error, report)
       end if
       model%warnings = report%warnings()
       call progress%clear()
@@ -62,6 +64,17 @@ contains
          call print_error(path, error%message)
       end if
    end subroutine prepare_deck
+
+   !> Reports an error at the card that it names.
+   subroutine report_at_card(error, report)
+      type(error_type), allocatable, intent(inout) :: error
+      type(deck_report_type), intent(inout) :: report
+
+      if (.not. allocated(error)) return
+      if (error%card == 0) return
+      if (.not. report%has_errors()) call report%error(place_type(image=error%card), error%message)
+      deallocate (error)
+   end subroutine report_at_card
 
    !> Reports what supports hold too much, and what they and the contact leave unconstrained or
    !> without a temperature, for the first step that has such.

@@ -7,12 +7,13 @@ module interface_reports
    use errors, only: error_type
    use kinds, only: dp
    use model, only: model_type
-   use all_contact_points, only: match_surfaces
+   use all_contact_points, only: match_surfaces, match_tie
    use interface_warnings, only: offset_warning, overlap_warning
-   use text, only: to_text
+   use text, only: append, string_type, to_text
+   use tie_points, only: distance_warning, tie_words
    implicit none
    private
-   public :: make_interfaces, first_repeated
+   public :: make_interfaces, make_ties, first_repeated
 
    real(dp), parameter :: parallel = 0.99_dp   !! cosine between normals that count as one
 
@@ -64,6 +65,33 @@ contains
          call report%error(place_type(image=card), error%message)
       end subroutine report_once
    end subroutine make_interfaces
+
+   !> Matches the surfaces of every *TIE; reports those that cannot be matched, and notes what each
+   !> of the others holds.
+   subroutine make_ties(model, ties, notes, report)
+      type(model_type), intent(in) :: model
+      type(contact_points_type), allocatable, intent(out) :: ties(:)   !! (ties) their points
+      type(string_type), allocatable, intent(inout) :: notes(:)        !! receives what they hold
+      type(deck_report_type), intent(inout) :: report        !! receives errors and warnings
+      type(error_type), allocatable :: error
+      character(:), allocatable :: warning
+      integer :: i
+
+      allocate (ties(size(model%ties)))
+      do i = 1, size(ties)
+         call match_tie(model, i, ties(i), error)
+         associate (card => place_type(image=model%ties(i)%faces%card))
+            if (allocated(error)) then
+               call report%error(merge(place_type(image=error%card), card, error%card > 0), &
+                  error%message)
+               cycle
+            end if
+            warning = distance_warning(model%mesh, model%ties(i), ties(i))
+            if (len(warning) > 0) call report%warning(card, warning)
+         end associate
+         call append(notes, tie_words(model%mesh, model%ties(i), ties(i)))
+      end do
+   end subroutine make_ties
 
    !> The first contact point that stands among those before it already: the same two nodes, and
    !> normals along one line; 0 where there is none.

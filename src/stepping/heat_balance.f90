@@ -38,6 +38,7 @@ contains
       conducted = bodies%thermal%matrix%multiply(next%temperature)
       heat = net_heat(next%heat_load, next%film, next%temperature)
       residual = heat_residual(conducted, heat, bodies%points, contact_heat)
+      call bodies%thermal%map%carry_over(residual)
       call sum_rates(loads, next%temperature, residual, record)
       associate (held => loads%temperature%active, weight => bodies%points%weight, &
          body => model%mesh%node_body)
@@ -48,6 +49,7 @@ contains
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + heat
          residual = heat_residual(conducted, heat, bodies%points, weight*next%omega*next%jump)
+         call bodies%thermal%map%carry_over(residual)
          record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, [.true.], &
             scale)
          associate (whole => scheme%a(1) + scheme%b(1))
@@ -59,6 +61,7 @@ contains
                next%film, previous%temperature, next%temperature)/whole
          end associate
          residual = heat_residual(conducted, heat, bodies%points, contact_heat)
+         call bodies%thermal%map%carry_over(residual)
          record%heat_imbalance = imbalance(conducted, residual, held, body, [.true.], &
             scale)
       end associate

@@ -213,6 +213,7 @@ contains
          thermal_forces(bodies, next%temperature)
       stiffness = maxval(abs(bodies%mechanical%matrix%value))
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
+      call bodies%mechanical%map%carry_over(residual)
       associate (held => loads%displacement%active)
          scales%force = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*stiffness*scales%length, &
@@ -221,8 +222,7 @@ contains
          record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
             [along_x, .true.], scales%force)
          record%contact_violation = contact_violation(next%displacement, &
-            internal - next%force_load, held, bodies%points, next%contact, &
-            bodies%contact%tangent > 0, scales)
+            residual, held, bodies%points, next%contact, bodies%contact%tangent > 0, scales)
          record%fields%reaction = reshape(merge(residual, 0.0_dp, held), &
             [2, size(next%temperature)])
       end associate

@@ -24,6 +24,7 @@ module increments
    use step_reduction, only: assemble_bodies, measure_factors, measure_steps, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: append, to_text
+   use tie_checks, only: check_prescribed_ties
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
@@ -245,6 +246,7 @@ contains
       real(dp) :: since
 
       call self%loads%move_to(clock, model)
+      call check_prescribed_ties(model, self%bodies, self%loads, self%control%step, error)
       record%increment = self%control%increments + 1
       record%step = self%control%step
       record%increment_in_step = self%control%increments_of_step + 1
@@ -252,6 +254,7 @@ contains
       record%cut_backs = self%control%cut_backs
       record%time = clock%total_time
       record%load = self%loads%axis_value(model, record%time)
+      if (allocated(error)) return
       workspace%record%increment = record%increment
       next = self%state
       next%increment_size = clock%step_time - self%control%step_time

@@ -6,6 +6,7 @@ module step_reduction
    use errors, only: error_type
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
+   use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type
@@ -15,6 +16,7 @@ module step_reduction
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: load_temperature, solves_heat, solves_mechanics, step_type
    use text, only: to_text
+   use tie_checks, only: check_prescribed_ties
    implicit none
    private
    public :: step_reduction_type, assemble_bodies, measure_steps, measure_factors
@@ -80,6 +82,11 @@ contains
       do step = 1, size(model%steps)
          call given%begin_step(model%steps(step), state%displacement, state%temperature)
          call reduction%number(model, model%steps(step), given, trial, error)
+         if (.not. allocated(error)) then
+            call given%move_to(step_clock_type(model%steps(step)%period, model%steps(step)%period, &
+               sum(model%steps(:step)%period), model%steps(step)%ramped), model)
+            call check_prescribed_ties(model, trial, given, step, error)
+         end if
          if (allocated(error)) then
             if (size(model%steps) > 1) error%message = 'step '//to_text(step)//': '//error%message
             return

@@ -19,6 +19,7 @@ module deck_builder
    use deck_builder_sets, only: build_sets
    use deck_builder_steps, only: build_steps
    use deck_builder_surfaces, only: build_surfaces
+   use deck_builder_ties, only: build_ties
    use deck_builder_verify, only: build_verifications, check_heat_quantities
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
@@ -88,6 +89,7 @@ contains
       call build_temperatures(cards, context, model, report)
       call build_interactions(cards, context, model, report)
       call build_contacts(cards, context, model, report)
+      call build_ties(cards, context, model, report)
       call build_steps(cards, context, model, report)
       call build_verifications(cards, context, model, report)
       call build_load_axis(cards%last, context, model, report)

@@ -16,7 +16,7 @@ module deck_builder_contact
    use text, only: string_type, to_upper
    implicit none
    private
-   public :: build_contacts
+   public :: build_contacts, read_surface
 
 contains
 
@@ -130,13 +130,14 @@ contains
       end associate
    end subroutine build_contact
 
+   !> Takes a surface by its name in a field of a data card.
    subroutine read_surface(data, position, what, mesh, report, surface)
       type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position
-      character(*), intent(in) :: what
+      integer, intent(in) :: position                      !! the field
+      character(*), intent(in) :: what                     !! what the field holds
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: surface
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, intent(inout) :: surface                    !! its index, as it was after an error
       character(:), allocatable :: name
       logical :: valid
 

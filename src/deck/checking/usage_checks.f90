@@ -84,7 +84,7 @@ contains
             (has_value(card, 'AMPLITUDE', name) .or. has_value(card, 'FILM AMPLITUDE', name))
       case default
          select case (card%name)
-         case ('CONTACT PAIR')
+         case ('CONTACT PAIR', 'TIE')
             refers = has_field_value(cards, card, 2, name)
          case ('DLOAD', 'DSLOAD', 'DFLUX', 'FILM')
             refers = has_field_value(cards, card, 1, name)

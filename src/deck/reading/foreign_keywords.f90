@@ -74,9 +74,7 @@ module foreign_keywords
       foreign_keyword_type('GAP HEAT GENERATION', refused_always, '', 'friction makes no heat'), &
       foreign_keyword_type('VIEWFACTOR', refused_always, '', 'there is no radiation')]
 
-   type(foreign_keyword_type), parameter :: connections(18) = [ &
-      foreign_keyword_type('TIE', refused_always, '', &
-      'tied faces do not open; let the bodies share nodes'), &
+   type(foreign_keyword_type), parameter :: connections(17) = [ &
       foreign_keyword_type('COUPLING', refused_always, '', held), &
       foreign_keyword_type('KINEMATIC', refused_always, '', held), &
       foreign_keyword_type('KINEMATIC COUPLING', refused_always, '', held), &
@@ -120,7 +118,7 @@ module foreign_keywords
       foreign_keyword_type('INSTANCE', refused_always, '', flat), &
       foreign_keyword_type('END INSTANCE', refused_always, '', flat)]
 
-   type(foreign_keyword_type), parameter :: all_foreign(69) = &
+   type(foreign_keyword_type), parameter :: all_foreign(68) = &
       [ignored, properties, connections, procedures]
 
 contains

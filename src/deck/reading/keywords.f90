@@ -45,7 +45,7 @@ module keywords
       character(72) :: reason      !! why
    end type refusal_type
 
-   type(known_keyword_type), parameter :: model_keywords(26) = [ &
+   type(known_keyword_type), parameter :: model_keywords(27) = [ &
       known_keyword_type('HEADING', built, in_model, 0, many, ''), &
       known_keyword_type('OPTIONS', built, in_model, 0, 0, &
          'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
@@ -78,6 +78,8 @@ module keywords
       'PRESSURE-OVERCLOSURE='), &
       known_keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
       'INTERACTION=/NAME=/PAIRING=/~TYPE=/~SMALL SLIDING/!ADJUST=/!TIED'), &
+      known_keyword_type('TIE', built, in_model, 1, many, 'NAME=/POSITION TOLERANCE=/ADJUST=/'// &
+      '~TYPE=/~NO ROTATION/~NO THICKNESS/!CYCLIC SYMMETRY/!MULTISTAGE/!TIED NSET='), &
       known_keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
       known_keyword_type('TRANSFORM', refused, in_model, 0, many, '')]
 
@@ -139,10 +141,10 @@ module keywords
       known_keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Every keyword of the dialect.
-   type(known_keyword_type), parameter :: known_keywords(60) = &
+   type(known_keyword_type), parameter :: known_keywords(61) = &
       [model_keywords, control_keywords, step_keywords]
 
-   type(refusal_type), parameter :: refusals(25) = [ &
+   type(refusal_type), parameter :: refusals(28) = [ &
       refusal_type('TRANSFORM', '', 'displacements and forces are along x and y; give them so'), &
       refusal_type('EQUATION', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('MPC', '', 'bodies are held by *BOUNDARY and by contact only'), &
@@ -150,7 +152,10 @@ module keywords
       refusal_type('GAP CONDUCTANCE', 'USER', 'no routine of the user is called; give the table'), &
       refusal_type('GAP CONDUCTANCE', 'DEPENDENCIES', 'conductance depends on one quantity only'), &
       refusal_type('CONTACT PAIR', 'ADJUST', 'it would move nodes; gaps are those of the mesh'), &
-      refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; let the bodies share nodes'), &
+      refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; take *TIE'), &
+      refusal_type('TIE', 'CYCLIC SYMMETRY', 'only faces that lie opposite each other are tied'), &
+      refusal_type('TIE', 'MULTISTAGE', 'only faces that lie opposite each other are tied'), &
+      refusal_type('TIE', 'TIED NSET', 'POSITION TOLERANCE= says which nodes are tied'), &
       refusal_type('', 'TIME POINTS', 'FREQUENCY= says which increments are printed'), &
       refusal_type('', 'TIME DELAY', 'shift the times of the *AMPLITUDE'), &
       refusal_type('', 'FILM TIME DELAY', 'shift the times of the *AMPLITUDE'), &

@@ -49,7 +49,8 @@ contains
       model%materials(2)%elasticity = isotropic_elasticity(3000.0_dp, 0.2_dp)
       model%materials(1)%conductivity = 2.0_dp
       model%materials(2)%conductivity = 5.0_dp
-      allocate (model%interactions(1), model%contacts(1), model%amplitudes(0), model%steps(1))
+      allocate (model%interactions(1), model%contacts(1), model%ties(0), model%amplitudes(0), &
+         model%steps(1))
       allocate (model%verifications(0), model%orientations(0))
       model%interactions(1)%friction = friction
       model%interactions(1)%law%closed_kind = law_power
