@@ -44,7 +44,7 @@ def without_unused_surfaces(cards):
     """Return the cards without the surfaces that no pair and no surface load names."""
     keywords = list(accumulate(cards, lambda last, card: card if card.startswith("*") else last))
     used = {field.strip() for keyword, card in zip(keywords, cards, strict=True)
-            if keyword.startswith(("*CONTACT PAIR", "*DSLOAD")) for field in card.split(",")}
+            if keyword.startswith(("*CONTACT PAIR", "*TIE", "*DSLOAD", "*DFLUX")) for field in card.split(",")}
     return [card for keyword, card in zip(keywords, cards, strict=True)
             if not keyword.startswith("*SURFACE, NAME=") or keyword.split("=")[1] in used]
 
