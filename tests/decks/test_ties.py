@@ -289,13 +289,15 @@ def on_a_table(ties, friction=0.3):
     vertical face between its halves; both halves touch the table with nodes that they share with
     the tied face."""
     cards = [*mesh("TABLE", [*parts(4), *parts(4, 1.0, 2.0)[1:]], [-1.0, -0.3, 0.0], "CPE8", 1),
+             "*SURFACE, NAME=HERE", *(f"{e}, S3" for e in range(9, 13)),
+             "*SURFACE, NAME=THERE", *(f"{e}, S3" for e in range(13, 17)),
              *mesh("ONE", parts(4), parts(3), "CPE8", 2001),
              *mesh("TWO", parts(4, 1.0, 2.0), parts(5), "CPE8", 4001)]
     return [*cards, *materials("TABLE", "ONE", "TWO"), *ties,
             "*SURFACE INTERACTION, NAME=FACES", "*FRICTION", f"{friction}, 1.E5",
             "*GAP LAW, TYPE=POWER", "0.5, 0., 1.",
-            "*CONTACT PAIR, INTERACTION=FACES, NAME=A", "ONE.BOTTOM, TABLE.TOP",
-            "*CONTACT PAIR, INTERACTION=FACES, NAME=B", "TWO.BOTTOM, TABLE.TOP"]
+            "*CONTACT PAIR, INTERACTION=FACES, NAME=A", "ONE.BOTTOM, HERE",
+            "*CONTACT PAIR, INTERACTION=FACES, NAME=B", "TWO.BOTTOM, THERE"]
 
 
 def test_a_tie_stands_beside_contact_that_shares_its_nodes(tmp_path):
@@ -317,7 +319,7 @@ def test_a_tie_stands_beside_contact_that_shares_its_nodes(tmp_path):
     assert moment == pytest.approx(6.0 * 0.5 + 2.0 * 1.5, rel=1e-6)
     assert heat == pytest.approx(9.0, rel=1e-9)
     assert force[1] > 2.0 + 1e-3   # the tie takes a part of the other half's
-    assert "there are ties" in (tmp_path / "press.lst").read_text()
+    assert "there are ties" in " ".join((tmp_path / "press.lst").read_text().split())
 
 
 def pulled(folder, name, *cards, gap=0.0, counts=(4, 6), width=(0.0, 1.0), status=0):

@@ -130,7 +130,7 @@ contains
       case ('TIED')
          call report%error(parameter_place(card, 'PRESSURE-OVERCLOSURE'), &
             'PRESSURE-OVERCLOSURE='//kind// &
-            ' is refused: tied faces do not open; let the bodies share nodes')
+            ' is refused: tied faces do not open; take *TIE')
       case default
          call choose(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD', report, kind)
          call context%note('*SURFACE BEHAVIOR is read and not needed: contact is exact')

@@ -54,8 +54,8 @@ contains
 
       call choose(card, 'ADJUST', 'YES/NO', report, adjust)
       if (.not. allocated(adjust)) adjust = 'NO'
-      if (adjust == 'YES') call context%note('*TIE, ADJUST=YES: nodes are not moved, an initial '// &
-         'gap is not closed')
+      if (adjust == 'YES') call context%note('*TIE, ADJUST=YES: nodes are not moved, an '// &
+         'initial gap is not closed')
       if (.not. has_parameter(card, 'NAME')) return
       do i = 1, size(ties)
          if (to_upper(ties(i)%faces%name) /= to_upper(parameter_text(card, 'NAME'))) cycle
