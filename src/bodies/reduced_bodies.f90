@@ -127,8 +127,8 @@ contains
          call set_error(error, status_deck, model%contacts(i)%title()//': ties and supports '// &
             'prescribe how slave node '//to_text(number(self%points%slave(k)))// &
             ' moves against master node '//to_text(number(self%points%master(k)))// &
-            ', so that their contact force is undetermined; leave the faces out of the *TIE or '// &
-            'of the *CONTACT PAIR', model%contacts(i)%card)
+            ' along an axis; give *BOUNDARY at both nodes where supports behind the tie do, or '// &
+            'leave the faces out of the *TIE or of the *CONTACT PAIR', model%contacts(i)%card)
       end associate
    end subroutine check_tied
 

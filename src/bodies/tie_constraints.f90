@@ -48,8 +48,9 @@ contains
          do k = 1, size(determined)
             slave_dof = rows%components*(ties%slave(k) - 1) + c
             master_dof = rows%components*(ties%master(k) - 1) + c
-            if (ties%is_opposite(k) .and. held(slave_dof) .and. held(master_dof)) &
+            if (ties%is_opposite(k) .and. held(slave_dof) .and. held(master_dof)) then
                call add_row([slave_dof, master_dof], [1.0_dp, -1.0_dp], k, slave_dof, rows)
+            end if
             if (owner(k) == k) call add_point(ties, owner, k, c, rows)
          end do
       end do

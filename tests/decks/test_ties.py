@@ -284,15 +284,15 @@ def test_matching_faces_that_are_tied_are_as_shared_nodes(tmp_path):
                                    atol=1e-11 * abs(expected).max(), err_msg=name)
 
 
-def on_a_table(ties, friction=0.3):
+def on_a_table(ties, rows, friction=0.3):
     """Return a press whose ram, two blocks side by side, stands on a table and is tied along the
     vertical face between its halves; both halves touch the table with nodes that they share with
     the tied face."""
     cards = [*mesh("TABLE", [*parts(4), *parts(4, 1.0, 2.0)[1:]], [-1.0, -0.3, 0.0], "CPE8", 1),
              "*SURFACE, NAME=HERE", *(f"{e}, S3" for e in range(9, 13)),
              "*SURFACE, NAME=THERE", *(f"{e}, S3" for e in range(13, 17)),
-             *mesh("ONE", parts(4), parts(3), "CPE8", 2001),
-             *mesh("TWO", parts(4, 1.0, 2.0), parts(5), "CPE8", 4001)]
+             *mesh("ONE", parts(4), parts(rows[0]), "CPE8", 2001),
+             *mesh("TWO", parts(4, 1.0, 2.0), parts(rows[1]), "CPE8", 4001)]
     return [*cards, *materials("TABLE", "ONE", "TWO"), *ties,
             "*SURFACE INTERACTION, NAME=FACES", "*FRICTION", f"{friction}, 1.E5",
             "*GAP LAW, TYPE=POWER", "0.5, 0., 1.",
@@ -300,12 +300,14 @@ def on_a_table(ties, friction=0.3):
             "*CONTACT PAIR, INTERACTION=FACES, NAME=B", "TWO.BOTTOM, THERE"]
 
 
-def test_a_tie_stands_beside_contact_that_shares_its_nodes(tmp_path):
+@pytest.mark.parametrize("rows", [(3, 5), (4, 4)], ids=["mortar", "matching"])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_a_tie_stands_beside_contact_that_shares_its_nodes(tmp_path, rows, friction):
     """One half of the ram is pressed; the other one, which only the tie and contact hold, is
     pressed along by the tie: the whole force arrives at the table, with its moment."""
     result = solve(deck(tmp_path / "press.inp",
-                        on_a_table(["*TIE, NAME=SEAM", "TWO.LEFT, ONE.RIGHT"]), COUPLED,
-                        ["*BOUNDARY", "TABLE.BOTTOM, 1, 2", "TABLE.BOTTOM, 11, 11, 0.", "*DSLOAD",
+                        on_a_table(["*TIE, NAME=SEAM", "TWO.LEFT, ONE.RIGHT"], rows, friction),
+                        COUPLED, ["*BOUNDARY", *(() if friction else ("2001, 1",)), "TABLE.BOTTOM, 1, 2", "TABLE.BOTTOM, 11, 11, 0.", "*DSLOAD",
                          "ONE.TOP, P, 6.", "TWO.TOP, P, 2.", "*DFLUX", "TWO.TOP, S, 9.",
                          "*END STEP"]))
     assert_balanced(result)
