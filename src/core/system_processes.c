@@ -25,7 +25,7 @@ enum { grace = 2, rest = 2 };   /* seconds of an increment after a signal: to it
 
 /* report_type of the module; what a child says of itself */
 struct report {
-   int is_whole, lacks_memory, status, increments, iterations, verify_passed, verify_failed;
+   int is_whole, lacks_memory, status, increments, iterations, verify_passed, verify_failed, files;
    double seconds;
    char reason[longest];
 };

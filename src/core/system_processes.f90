@@ -18,6 +18,7 @@ module system_processes
       integer(c_int) :: iterations = 0_c_int      !! passes so far
       integer(c_int) :: verify_passed = 0_c_int   !! *VERIFY checks
       integer(c_int) :: verify_failed = 0_c_int   !! *VERIFY checks
+      integer(c_int) :: files = 0_c_int           !! how many of its files it has written so far
       real(c_double) :: seconds = 0.0_c_double    !! time that the work took [s]
       character(c_char) :: reason(longest_reason) = achar(0)   !! why, where the status is not 0
    end type report_type

@@ -5,8 +5,8 @@ module text
    implicit none
    private
    public :: string_type
-   public :: others, to_text, to_upper, without_blanks, is_same_name, read_integer, read_real
-   public :: append
+   public :: others, counted, to_text, to_upper, without_blanks, is_same_name, read_integer
+   public :: read_real, append
    public :: is_whole, integer_fault, real_fault, largest_magnitude
    public :: nearest_name, nearest_known, edit_distance, is_slip
 
@@ -329,6 +329,15 @@ contains
       end do
       distance = row(len(b), len(a))
    end function edit_distance
+
+   !> A number with its noun, such as 1 row or 3 rows.
+   pure function counted(n, noun) result(words)
+      integer, intent(in) :: n                 !! how many
+      character(*), intent(in) :: noun         !! in the singular, with a plural in -s
+      character(:), allocatable :: words
+
+      words = to_text(n)//' '//noun//trim(merge(' ', 's', n == 1))
+   end function counted
 
    !> The ending of a message that names one of several: their number, if it is more than one.
    pure function others(n, words) result(ending)

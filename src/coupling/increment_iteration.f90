@@ -15,7 +15,7 @@ module increment_iteration
    use resting_points, only: find_residual, settle
    use solution_report, only: solution_report_type, iteration_record_type
    use solution_state, only: solution_state_type
-   use text, only: append, to_text
+   use text, only: append, counted, to_text
    implicit none
    private
    public :: iterate
@@ -226,7 +226,7 @@ contains
       if (allocated(error) .or. n == 0) return
       if (passes(n)%residual <= wanted) return
       call set_error(error, status_no_convergence, 'the conductance does not converge in '// &
-         to_text(n)//' iterations; last residual '//to_text(passes(n)%residual)//', wanted '// &
+         counted(n, 'iteration')//'; last residual '//to_text(passes(n)%residual)//', wanted '// &
          to_text(wanted))
    end subroutine close_passes
 

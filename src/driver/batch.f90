@@ -15,7 +15,7 @@ module batch
    use messages, only: pass_on, print_error
    use processes, only: child_type, pause_briefly, report_type
    use progress, only: progress_type
-   use text, only: to_text
+   use text, only: counted, to_text
    implicit none
    private
    public :: run_batch
@@ -252,7 +252,7 @@ contains
       type(batch_type), intent(inout) :: self
       character(:), allocatable :: line
 
-      line = to_text(self%ended)//' of '//to_text(size(self%outcomes))//' decks ended, '// &
+      line = to_text(self%ended)//' of '//counted(size(self%outcomes), 'deck')//' ended, '// &
          to_text(count(self%slots%deck > 0))//' running, '//to_text(self%failed)//' failed'
       if (caught_signal() /= '') line = line//'; ending after their increments, again to kill'
       call self%progress%say(line)

@@ -6,7 +6,7 @@ module batch_table
    use file_calls, only: create_working_file, remove_file, rename_file, write_file
    use kinds, only: dp
    use messages, only: print_line
-   use text, only: to_text
+   use text, only: counted, to_text
    use utf8, only: character_count, printable
    implicit none
    private
@@ -47,7 +47,7 @@ contains
                character_count(printable(deck%path)))//trim(line))
          end associate
       end do
-      call print_line(unit, to_text(size(outcomes))//' decks in '//decimal(seconds)//' s: '// &
+      call print_line(unit, counted(size(outcomes), 'deck')//' in '//decimal(seconds)//' s: '// &
          counts_of(outcomes))
    end subroutine print_batch
 

@@ -8,10 +8,14 @@ module deck_outcomes
    use messages, only: print_line
    use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
-   use text, only: to_text
+   use text, only: counted, to_text
    implicit none
    private
    public :: deck_outcome_type
+
+   !> Files that a run has written by how far it came: none, listing, passes that failed, all.
+   character(*), parameter :: extensions(0:3) = [character(25) :: '', '.lst', '.lst, .cvg', &
+      '.vtkhdf, .lst, .sta, .cvg']
 
    !> How a deck ended.
    type :: deck_outcome_type
@@ -22,6 +26,7 @@ module deck_outcomes
       integer :: iterations = 0             !! passes of these and of the one that failed
       integer :: verify_passed = 0          !! *VERIFY checks that passed
       integer :: verify_failed = 0          !! *VERIFY checks that failed
+      integer :: files = 0                  !! how many files it has written: run_output's written
       real(dp) :: seconds = 0.0_dp          !! time it took [s]
       ! The rest is what a batch knows of the deck's process.
       logical :: is_running = .false.       !! whether it was started and has not ended
@@ -32,6 +37,7 @@ module deck_outcomes
       character(:), allocatable :: reason   !! why it is not solved, one sentence; or nothing
    contains
       procedure :: note
+      procedure :: note_files
       procedure :: as_report
       procedure :: take
       procedure :: fail
@@ -41,16 +47,26 @@ module deck_outcomes
 
 contains
 
-   !> Counts the passes of an increment; the process of a deck of a batch reports them.
-   subroutine note(self, record, accepted)
+   !> Counts the passes of an increment, and what is written of it.
+   subroutine note(self, record, accepted, files)
       class(deck_outcome_type), intent(inout) :: self     !! the run
       type(increment_record_type), intent(in) :: record
       integer, intent(in) :: accepted                     !! increments accepted so far
+      integer, intent(in) :: files                        !! what run_output has written
 
       self%increments = accepted
       if (allocated(record%iterations)) self%iterations = self%iterations + size(record%iterations)
-      call file_report(self%as_report())
+      call self%note_files(files)
    end subroutine note
+
+   !> Notes what is written; the process of a deck of a batch reports this and all else.
+   subroutine note_files(self, files)
+      class(deck_outcome_type), intent(inout) :: self     !! the run
+      integer, intent(in) :: files                        !! what run_output has written
+
+      self%files = files
+      call file_report(self%as_report())
+   end subroutine note_files
 
    !> The outcome as a deck's process reports it.
    function as_report(self) result(report)
@@ -63,6 +79,7 @@ contains
       report%iterations = int(self%iterations, c_int)
       report%verify_passed = int(self%verify_passed, c_int)
       report%verify_failed = int(self%verify_failed, c_int)
+      report%files = int(self%files, c_int)
       report%seconds = self%seconds
       if (allocated(self%reason)) call set_reason(report, self%reason)
    end function as_report
@@ -77,6 +94,7 @@ contains
       self%iterations = int(report%iterations)
       self%verify_passed = int(report%verify_passed)
       self%verify_failed = int(report%verify_failed)
+      self%files = int(report%files)
       self%reason = reason_of(report)
    end subroutine take
 
@@ -126,12 +144,12 @@ contains
 
       write (seconds, '(f12.2)') self%seconds
       call print_line(output_unit, self%path//': '//self%words()//', '// &
-         to_text(self%increments)//' increments in '//trim(adjustl(seconds))//' s')
+         counted(self%increments, 'increment')//' in '//trim(adjustl(seconds))//' s')
       if (self%verify_passed + self%verify_failed > 0) call print_line(output_unit, '  '// &
-         to_text(self%verify_passed)//' checks passed, '//to_text(self%verify_failed)//' failed')
+         counted(self%verify_passed, 'check')//' passed, '//to_text(self%verify_failed)//' failed')
       if (self%status == status_deck .or. self%status == status_internal) return
-      call print_line(output_unit, '  results: '//results// &
-         trim(merge('.vtkhdf, .lst, .sta, .cvg', '.lst, .cvg               ', self%increments > 0)))
+      if (self%files > 0) call print_line(output_unit, '  results: '//results// &
+         trim(extensions(self%files)))
    end subroutine print_outcome
 
 end module deck_outcomes

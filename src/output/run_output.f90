@@ -32,6 +32,7 @@ module run_output
       type(run_judgement_type) :: judgement                    !! what the whole run shows
       type(iteration_record_type), allocatable :: failed(:)    !! passes of an increment that failed
       integer, allocatable :: point_node(:)                    !! (points) node index of each point
+      logical :: is_finished = .false.                         !! whether it came to its end
    contains
       procedure :: reserve
       procedure :: start
@@ -45,6 +46,7 @@ module run_output
       procedure :: listing_path
       procedure :: working_path
       procedure :: published
+      procedure :: written
       procedure :: failed_checks
    end type run_output_type
 
@@ -154,6 +156,7 @@ contains
          call self%break_off(error%message)
          return
       end if
+      self%is_finished = .true.
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
       warnings = self%judgement%warnings(model, interfaces)
       call self%listing%warn(warnings)
@@ -235,6 +238,16 @@ contains
 
       published = self%results%published
    end function published
+
+   !> How many kinds of files of this run are in place: 0 none, 1 the listing, 2 with it the passes
+   !> that failed, which the end of a run leaves, 3 all.
+   pure integer function written(self)
+      class(run_output_type), intent(in) :: self
+
+      written = merge(1, 0, self%is_begun())
+      if (self%is_finished) written = 2
+      if (self%published() > 0) written = 3
+   end function written
 
    !> What the results of a run hold.
    pure function kept_words(increments) result(words)

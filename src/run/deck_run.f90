@@ -143,6 +143,7 @@ contains
          call output%start(model, interfaces, points%node, points%element_points, &
             self%cards%images, error)
          if (allocated(error)) return
+         call outcome%note_files(output%written())
          call prepare_end(self, end_at_once)
          call self%end%hold(.false.)
          call solve_increments(self, outcome, record, is_written, error)
@@ -161,9 +162,10 @@ contains
                error%status = status_no_convergence
             end if
             call output%fail(error%message, record)
-            call outcome%note(record, output%accepted())
+            call outcome%note(record, output%accepted(), output%written())
          end if
          call output%finish(model, interfaces, output_error)
+         call outcome%note_files(output%written())
          if (allocated(output_error)) then
             if (allocated(error)) output_error%message = error%message//'; '//output_error%message
             call move_alloc(output_error, error)
@@ -205,7 +207,7 @@ contains
             call estimator%end_increment(model, simulation, record)
             call self%end%hold(.true.)
             call output%accept(record, model, simulation%bodies%interfaces, error)
-            call outcome%note(record, output%accepted())
+            call outcome%note(record, output%accepted(), output%written())
             is_written = .not. allocated(error)
             if (allocated(error)) return
             call self%end%hold(.false.)

@@ -23,7 +23,7 @@ module increments
    use sparse_matrix, only: sparse_matrix_type
    use step_reduction, only: assemble_bodies, measure_factors, measure_steps, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
-   use text, only: append, to_text
+   use text, only: append, counted, to_text
    use tie_checks, only: check_prescribed_ties
    use unconstrained_bodies, only: unconstrained_now
    implicit none
@@ -228,7 +228,7 @@ contains
       associate (step => model%steps(control%step))
          if (control%increments_of_step < step%max_increments) return
          call set_error(error, status_no_convergence, 'step '//to_text(control%step)// &
-            ' is not over after INC='//to_text(step%max_increments)//' increments, at '// &
+            ' is not over after INC='//counted(step%max_increments, 'increment')//', at '// &
             to_text(control%step_time)//' of its period '//to_text(step%period))
       end associate
    end subroutine check_count

@@ -6,7 +6,7 @@ module deck_trade
    use deck_preparation, only: prepare_deck
    use deck_run, only: base_name
    use element_kinds, only: element_corner_count
-   use errors, only: error_type, status_deck
+   use errors, only: error_type, status_deck, status_interrupted
    use file_calls, only: is_stream, make_folder, print_text, try_file
    use increments, only: simulation_type
    use kinds, only: dp
@@ -15,6 +15,7 @@ module deck_trade
    use printed_text, only: printed_text_type
    use recommendation, only: judge_rows
    use sorting, only: unique_sorted
+   use text, only: counted
    use trade_errors, only: state_errors
    use trade_file, only: write_trade
    use trade_instants, only: common_instants
@@ -34,7 +35,7 @@ module deck_trade
 contains
 
    !> Measures a deck and prints and writes the table. What goes wrong is printed on stderr. A deck
-   !> that does not run as it is written has a table all the same.
+   !> that does not run as it is written has a table all the same; so has a trade that a signal ends.
    subroutine trade_deck(path, command, status)
       character(*), intent(in) :: path             !! the deck as given
       type(command_type), intent(in) :: command    !! options of the command line
@@ -44,7 +45,7 @@ contains
       type(simulation_type) :: simulation
       type(trade_type) :: trade
       type(reference_type) :: reference
-      type(error_type), allocatable :: error
+      type(error_type), allocatable :: error, ended_early
       character(:), allocatable :: results
       integer :: i
 
@@ -65,6 +66,7 @@ contains
       trade%instants = common_instants(model, longest_factor)
       call try_file(results//'.csv', error)
       if (.not. allocated(error)) call measure(path, command, results, model, trade, error)
+      call forgive_signal(trade, error, ended_early)
       if (.not. allocated(error)) then
          call find_reference(trade, reference)
          call state_errors(reference, model%initial_temperature, trade)
@@ -80,11 +82,30 @@ contains
          call print_table(path, results, trade)
       end if
       call print_imbalances(error_unit, path, trade)
+      if (allocated(ended_early)) then
+         status = ended_early%status
+         call print_error(path, ended_early%message)
+         return
+      end if
       i = findloc(trade%rows(:trade%count)%is_default, .true., dim=1)
       status = trade%rows(i)%status
       if (status /= 0) call print_error(path, 'the deck as it is written fails: '// &
          trade%rows(i)%reason)
    end subroutine trade_deck
+
+   !> A signal after some rows is no error yet: their table can be made.
+   pure subroutine forgive_signal(trade, error, ended_early)
+      type(trade_type), intent(inout) :: trade
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable, intent(out) :: ended_early
+
+      if (.not. allocated(error)) return
+      if (error%status /= status_interrupted .or. trade%count == 0) return
+      call move_alloc(error, ended_early)
+      ended_early%message = ended_early%message//': the table holds only the '// &
+         counted(trade%count, 'row')//' measured before'
+      trade%ended_early = ended_early%message
+   end subroutine forgive_signal
 
    !> Prints the table on stdout, where it may find no room.
    subroutine print_table(path, results, trade)

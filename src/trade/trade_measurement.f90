@@ -42,13 +42,14 @@ module trade_measurement
 
 contains
 
-   !> Runs some rows of a trade. A row that fails keeps its reason.
-   !> Errors: status_interrupted after a signal; status_internal where no process can be started.
+   !> Runs the last rows of a trade. A row that fails keeps its reason.
+   !> Errors: status_interrupted after a signal, then the trade has only the rows that were measured;
+   !> status_internal where no process can be started.
    subroutine run(self, trade, first, last, error)
       class(measurement_type), intent(inout) :: self      !! what the runs have in common
       type(trade_type), intent(inout) :: trade
       integer, intent(in) :: first                        !! first row to be run
-      integer, intent(in) :: last                         !! last row to be run
+      integer, intent(in) :: last                         !! last row that there is
       type(error_type), allocatable, intent(out) :: error
       type(slot_type) :: slots(self%jobs)
       integer :: queue((last - first + 1)*maxval(runs_within))
@@ -73,11 +74,27 @@ contains
          call remove_file(values_path(self, s))
       end do
       call self%progress%clear()
-      do i = first, last
-         if (.not. allocated(trade%rows(i)%cpu)) cycle
+      if (allocated(error)) call keep_measured(trade, first)
+      do i = first, trade%count
          trade%rows(i)%cpu_seconds = median(trade%rows(i)%cpu)
       end do
    end subroutine run
+
+   !> Takes the rows out again that were not run to their end.
+   pure subroutine keep_measured(trade, first)
+      type(trade_type), intent(inout) :: trade
+      integer, intent(in) :: first
+      integer :: i, kept
+
+      kept = first - 1
+      do i = first, trade%count
+         if (.not. allocated(trade%rows(i)%cpu)) cycle
+         if (trade%rows(i)%status == status_interrupted) cycle
+         kept = kept + 1
+         if (kept < i) trade%rows(kept) = trade%rows(i)
+      end do
+      trade%count = kept
+   end subroutine keep_measured
 
    subroutine set_error_once(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -146,7 +163,8 @@ contains
       associate (ended => slot%child%end)
          row%peak_bytes = max(row%peak_bytes, ended%peak_bytes)
          if (allocated(row%cpu)) then
-            if (ended%signal == 0) row%cpu = [row%cpu, ended%cpu_seconds]
+            if (ended%signal == 0 .and. ended%status == 0) row%cpu = [row%cpu, &
+               ended%cpu_seconds]
             if (.not. slot%is_late) call slot%child%drop_files()
             return
          end if

@@ -36,6 +36,7 @@ module trade_rows
       type(trade_row_type), allocatable :: rows(:)      !! room for all rows
       integer :: count = 0                              !! rows that there are
       type(string_type), allocatable :: left_out(:)     !! what was not run, and why
+      character(:), allocatable :: ended_early          !! why rows are missing; else not allocated
       real(dp) :: uncertainty(quantity_count) = absent  !! of the reference; absent: not judged
       logical :: is_known(quantity_count) = .false.     !! whether there is a reference to judge by
       !> What a recommendation does not hold for, or why there is none; empty for neither

@@ -43,6 +43,7 @@ contains
       do i = 1, size(trade%left_out)
          write (unit, '(2a)') 'left out by --limit or memory: ', trade%left_out(i)%value
       end do
+      if (allocated(trade%ended_early)) write (unit, '(a)') trade%ended_early
       write (unit, '(a)') ''
       do i = 1, target_count
          call print_target(unit, trade, i)

@@ -1,5 +1,6 @@
 """SIGINT and SIGTERM end a run after the current increment; the files are whole and agree."""
 
+import os
 import signal
 import subprocess
 import time
@@ -129,6 +130,22 @@ def test_a_signal_ends_a_run_that_reduces_its_bodies(tmp_path):
         f"{deck}: error: ended by SIGINT before the first increment"
     assert earlier.read_text() == "of an earlier run"
     assert not list(tmp_path.glob("*.tmp"))
+
+
+def test_a_batch_names_no_results_of_a_deck_that_wrote_none(tmp_path):
+    """The deck is a pipe that says nothing: the signal comes while it is read."""
+    deck = tmp_path / "silent.inp"
+    os.mkfifo(deck)
+    process = subprocess.Popen(
+        [PROGRAM, "run", str(deck), "--jobs", "1", "--out", str(tmp_path)], text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    with deck.open("w"):   # waits for its reader
+        process.send_signal(signal.SIGINT)
+        output, messages = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 5, messages
+    assert f"{deck}: interrupted, 0 increments" in output
+    assert "results:" not in output
+    assert sorted(f.name for f in tmp_path.iterdir()) == ["silent.inp", "thercon-batch.csv"]
 
 
 def test_a_signal_ends_an_increment_without_an_end_and_keeps_those_before(tmp_path):

@@ -332,6 +332,28 @@ def test_a_signal_ends_the_trade_and_its_child(number, tmp_path):
             os.kill(child, 0)
 
 
+def test_a_trade_that_a_signal_ends_keeps_the_rows_that_were_measured(tmp_path):
+    deck = tmp_path / "cylinder.inp"
+    text = CYLINDER.read_text().replace("20., 900.", "180., 900.")
+    deck.write_text(text[: text.index("*VERIFY")])
+    process = subprocess.Popen([PROGRAM, "trade", str(deck), "--out", str(tmp_path)],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    begun = set()
+    while len(begun) < 4 and process.poll() is None:   # each row of a grid has a process first
+        begun.update(children(process))
+    process.send_signal(signal.SIGINT)
+    table, said = process.communicate(timeout=60)
+    assert process.returncode == 5, said
+    with open(tmp_path / "cylinder.trade.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) >= 3 and rows[-1]["row"] == "reference"
+    assert all(row["status"] == "0" and float(row["cpu_seconds"]) > 0 for row in rows[:-1])
+    words = f"ended by SIGINT: the table holds only the {len(rows) - 1} rows measured before"
+    assert f"{deck}: error: {words}\n" in said
+    assert words in table
+    assert [file.name for file in tmp_path.iterdir() if file.suffix == ".tmp"] == []
+
+
 def test_a_row_that_the_system_kills_is_only_that_row_s_failure(tmp_path):
     """As it does where memory runs out; here the first child dies as soon as it is seen."""
     deck = tmp_path / "cylinder.inp"
