@@ -2,7 +2,7 @@
 !> what is said of the solution.
 module coupled_increment
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use controls, only: start_both, start_closed, start_given, start_open, start_previous
+   use controls, only: method_picard, start_both, start_closed, start_given, start_open, start_previous
    use coupling_gains, only: coupling_gain_type, find_gain
    use errors, only: error_type
    use fixed_point, only: predicted_conductance
@@ -15,7 +15,7 @@ module coupled_increment
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
    use steps, only: step_type
-   use text, only: append, to_text
+   use text, only: append
    implicit none
    private
    public :: solve_coupled
@@ -49,7 +49,7 @@ contains
          call iterate(bodies, step%fixed_point, data, workspace, next, error)
       end if
       if (allocated(error) .or. .not. step%fixed_point%finds_gain) return
-      call judge(bodies, data, next, workspace)
+      call judge(bodies, data, next, step%fixed_point%method == method_picard, workspace)
    end subroutine solve_coupled
 
    !> omega*^0 of a start.
@@ -134,12 +134,10 @@ contains
       type(solution_report_type), intent(inout) :: record
 
       if (found(1) .and. found(2) .and. differ(from_open, from_closed)) then
-         call append(record%warnings, 'increment '//to_text(record%increment)//': the starts '// &
-            'from OPEN and from CLOSED lead to different solutions; this is one of several')
+         call record%warn('the starts from OPEN and from CLOSED lead to different solutions; this is one of several')
       else if (found(3) .and. ((found(1) .and. differ(from_open, from_previous)) .or. &
          (found(2) .and. differ(from_closed, from_previous)))) then
-         call append(record%warnings, 'increment '//to_text(record%increment)//': the start '// &
-            'from PREVIOUS leads elsewhere than that from the ends; this is one of several '// &
+         call record%warn('the start from PREVIOUS leads elsewhere than that from the ends; this is one of several '// &
             'solutions')
       else if (found(1) .and. found(2)) then
          call append(record%notes, 'the starts from OPEN and from CLOSED lead to one solution')
@@ -154,10 +152,11 @@ contains
    end function differ
 
    !> The gain of the coupling, and what follows from it.
-   subroutine judge(bodies, data, next, workspace)
+   subroutine judge(bodies, data, next, is_plain, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: next
+      logical, intent(in) :: is_plain                            !! whether the iteration is (4.1)
       type(increment_workspace_type), intent(inout) :: workspace
       real(dp), allocatable :: derivative(:, :), body(:)
       type(coupling_gain_type) :: gain
@@ -179,21 +178,16 @@ contains
       workspace%record%coupling_gain_max = gain%largest_real
       if (gain%largest_real <= -huge(1.0_dp)) workspace%record%coupling_gain_max = &
          ieee_value(1.0_dp, ieee_quiet_nan)
-      call warn(gain%largest < -1.0_dp, 'the coupling gain is '// &
-         to_text(gain%largest)//', below -1: plain iteration (4.1) would diverge')
-      call warn(abs(gain%largest_real - 1.0_dp) <= near_turning_point, &
-         'the largest real gain is '//to_text(gain%largest_real)//', near 1: a turning point, '// &
-         'where solutions meet and small changes of the load change much')
-      call warn(gain%is_one_of_several, 'det(I - U'') is negative: '// &
-         'the branch is unstable, and there are at least two other solutions')
-   contains
-      subroutine warn(is_so, words)
-         logical, intent(in) :: is_so
-         character(*), intent(in) :: words
-
-         if (is_so) call append(workspace%record%warnings, 'increment '// &
-            to_text(workspace%record%increment)//': '//words)
-      end subroutine warn
+      associate (record => workspace%record)
+         if (gain%largest < -1.0_dp .and. is_plain) call record%warn('the coupling gain is ', &
+            gain%largest, ', below -1: plain iteration (4.1) would diverge')
+         if (abs(gain%largest_real - 1.0_dp) <= near_turning_point) call record%warn( &
+            'the largest real gain is ', gain%largest_real, ', near 1: a turning point, '// &
+            'where solutions meet and small changes of the load change much', &
+            severity=-abs(gain%largest_real - 1.0_dp))
+         if (gain%is_one_of_several) call record%warn('det(I - U'') is negative: '// &
+            'the branch is unstable, and there are at least two other solutions')
+      end associate
    end subroutine judge
 
 end module coupled_increment

@@ -9,7 +9,7 @@ module scheme_start
    use scheme_properties, only: amplification
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
-   use text, only: append, to_text
+   use text, only: to_text
    implicit none
    private
    public :: warn_of_imbalance
@@ -37,8 +37,7 @@ contains
       imbalance = start_imbalance(bodies, loads%temperature%active, data, previous)
       if (imbalance <= equilibrium) return
       next%is_out_of_balance = .true.
-      call append(record%warnings, 'increment '//to_text(record%increment)// &
-         ': heat starts out of equilibrium, (K + G) T - Q is '//to_text(imbalance)// &
+      call record%warn('heat starts out of equilibrium, (K + G) T - Q is ', imbalance, &
          ' of the largest rate; the scheme of (3.4), amplification '//to_text(factor)// &
          ', never damps that (*THERMAL SCHEME, TYPE=IMPLICIT does)')
    end subroutine warn_of_imbalance

@@ -30,7 +30,7 @@ module listing
       type(printed_text_type) :: text                          !! what is not yet in the file
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       character(:), allocatable :: failure                     !! why the run ended early
-      type(string_type), allocatable :: warnings(:)            !! of increments and of the run
+      type(string_type), allocatable :: warnings(:)            !! of the run
       type(contact_record_type), allocatable :: contacts(:)    !! contact at the last increment
    contains
       procedure :: reserve
@@ -242,8 +242,7 @@ contains
       end if
       if (.not. allocated(record%warnings)) return
       do i = 1, size(record%warnings)
-         call print_wrapped(self%text%unit, '   ', 'warning: '//record%warnings(i)%value)
-         call append(self%warnings, record%warnings(i)%value)
+         call print_wrapped(self%text%unit, '   ', 'warning: '//record%warnings(i)%words())
       end do
    end subroutine print_warnings
 

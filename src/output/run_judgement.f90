@@ -9,6 +9,7 @@ module run_judgement
    use records, only: increment_record_type
    use steps, only: solves_heat, solves_mechanics
    use strains, only: largest_strain
+   use warning_summary, only: warning_summary_type
    use text, only: append, string_type, to_text
    implicit none
    private
@@ -29,6 +30,7 @@ module run_judgement
       integer :: element = 0                       !! element that has it
       integer :: increment = 0                     !! increment that has it
       logical :: ended_early = .false.             !! whether the run failed
+      type(warning_summary_type) :: repeated       !! warnings of its increments
    contains
       procedure :: take
       procedure :: fail
@@ -50,6 +52,7 @@ contains
          allocate (self%closes(size(interfaces)), source=.false.)
          self%smallest_gap = [(minval(interfaces(i)%initial_gap), i=1, size(interfaces))]
       end if
+      if (allocated(record%warnings)) call self%repeated%take(record%increment, record%warnings)
       associate (analysis => model%steps(record%step)%analysis, fields => record%fields)
          if (solves_heat(analysis)) self%warms = self%warms .or. any(abs(fields%temperature - &
             model%initial_temperature) > unheated*maxval(abs(fields%temperature)))
@@ -86,7 +89,7 @@ contains
       type(string_type), allocatable :: lines(:)          !! one a warning
       integer :: i
 
-      allocate (lines(0))
+      lines = self%repeated%lines()
       if (.not. allocated(self%closes)) return
       if (self%strain > small_strain) call append(lines, 'increment '// &
          to_text(self%increment)//': the strain of element '// &

@@ -105,7 +105,6 @@ contains
       call self%listing%add(record, model, interfaces, error)
       call self%verifier%judge(record, model, interfaces, self%point_node)
       call self%judgement%take(record, model, interfaces)
-      if (allocated(record%warnings)) call print_warnings(self, record%warnings)
       call self%progress%take(record)
       if (.not. allocated(error)) call self%results%append(record, model, interfaces, self%run, &
          error)
@@ -113,7 +112,7 @@ contains
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine accept
 
-   !> Prints warnings of an increment or of the run on stderr.
+   !> Prints warnings of the run on stderr.
    subroutine print_warnings(self, warnings)
       class(run_output_type), intent(inout) :: self
       type(string_type), intent(in) :: warnings(:)

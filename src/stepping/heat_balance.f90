@@ -9,7 +9,6 @@ module heat_balance
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: carrying_conductance, solution_state_type
-   use text, only: append, to_text
    implicit none
    private
    public :: balance_heat, warn_of_heat, sound_imbalance
@@ -75,9 +74,8 @@ contains
       type(increment_record_type), intent(inout) :: record    !! receives the warning
 
       if (next%is_out_of_balance .or. record%heat_imbalance_pointwise <= sound_imbalance) return
-      call append(record%warnings, 'increment '//to_text(record%increment)// &
-         ': at its end heat is out of balance by '// &
-         to_text(100.0_dp*record%heat_imbalance_pointwise)//' % of the largest rate '// &
+      call record%warn('at its end heat is out of balance by ', &
+         100.0_dp*record%heat_imbalance_pointwise, ' % of the largest rate '// &
          '(heat_imbalance_pointwise), left by the scheme '//trim(scheme%name)// &
          '; *THERMAL SCHEME, TYPE=IMPLICIT leaves none')
    end subroutine warn_of_heat

@@ -10,7 +10,7 @@ module increment_checks
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
-   use text, only: append, to_text
+   use text, only: to_text
    use thermal_matrix, only: contact_diagonal
    use unconstrained_bodies, only: unconstrained_now, undetermined_now
    implicit none
@@ -129,8 +129,7 @@ contains
          if (len(free) > 0) words = &
             'the least motion is taken where nothing drives or holds one'//free
       end if
-      if (words /= undecided .and. len(words) > 0) call append(record%warnings, &
-         'increment '//to_text(record%increment)//': '//words)
+      if (words /= undecided .and. len(words) > 0) call record%warn(words)
       undecided = words
    end subroutine warn_of_choices
 

@@ -20,7 +20,7 @@ module increment_records
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: carrying_conductance, solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
-   use text, only: append, to_text
+   use text, only: to_text
    use zone_edges, only: contact_edges, contact_profile_type, stick_edges
    implicit none
    private
@@ -102,8 +102,7 @@ contains
 
       if (.not. allocated(record%iterations)) return
       if (record%residual_floor <= step%fixed_point%tolerance) return
-      call append(record%warnings, 'increment '//to_text(record%increment)// &
-         ': the conductance of the contacts is known to '//to_text(record%residual_floor)// &
+      call record%warn('the conductance of the contacts is known to ', record%residual_floor, &
          ' only, not to TOL='//to_text(step%fixed_point%tolerance)//': it takes its gaps from '// &
          'displacements that are far larger, whose last places change it')
    end subroutine warn_of_floor

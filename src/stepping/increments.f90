@@ -23,7 +23,7 @@ module increments
    use sparse_matrix, only: sparse_matrix_type
    use step_reduction, only: assemble_bodies, measure_factors, measure_steps, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
-   use text, only: append, counted, to_text
+   use text, only: counted, to_text
    use tie_checks, only: check_prescribed_ties
    use unconstrained_bodies, only: unconstrained_now
    implicit none
@@ -213,9 +213,8 @@ contains
 
       if (self%sizes%smallest_pivot >= min(doubtful, 0.1_dp*self%pivot_told)) return
       self%pivot_told = self%sizes%smallest_pivot
-      call append(record%warnings, 'increment '//to_text(record%increment)// &
-         ': the smallest pivot of the bodies is '//to_text(self%pivot_told)//' of its diagonal '// &
-         'entry, so that results may be right to '//to_text(10*epsilon(1.0_dp)/self%pivot_told)// &
+      call record%warn('the smallest pivot of the bodies is '//to_text(self%pivot_told)// &
+         ' of its diagonal entry, so that results may be right to '//to_text(10*epsilon(1.0_dp)/self%pivot_told)// &
          ' only: are bodies held by others that are far softer?')
    end subroutine warn_of_pivot
 

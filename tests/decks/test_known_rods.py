@@ -198,10 +198,13 @@ def test_both_ends_lead_to_one_solution(rod, tmp_path):
     assert "lead to one solution" in (tmp_path / "rods" / "r2.lst").read_text()
 
 
-def test_gain_below_minus_one_is_warned_of(rod):
+def test_gain_below_minus_one_is_warned_of_with_plain_iteration_alone(rod):
+    """Which here starts at its solution."""
+    (omega,) = rods.solutions(*RODS["r2"])
+    start = f"{CARD.replace('NEWTON', 'PICARD').replace('E-11', 'E-6')}\n*START, FROM=GIVEN\nFACE, {omega!r}"
     warning = r"the coupling gain is -11\.35\d*, below -1: plain iteration \(4\.1\) would diverge"
-    assert re.search(warning, rod("r2")[0].stderr)
-    assert "gain" not in rod("r1")[0].stderr
+    assert re.search(warning, rod("r2", {CARD: start})[0].stderr)
+    assert "gain" not in rod("r2")[0].stderr
 
 
 OPEN_LAW = "*GAP LAW, TYPE=GAS\n<a>, <b>\n"
