@@ -10,7 +10,8 @@ module messages
 
 contains
 
-   !> Prints one line with its control characters made visible.
+   !> Prints one line with its control characters made visible. What goes to stderr is there at
+   !> once, in its place among the lines of stdout where both go to one file.
    subroutine print_line(unit, line)
       integer, intent(in) :: unit           !! open for formatted output, or output_unit
       character(*), intent(in) :: line      !! the line, without its end
@@ -20,6 +21,7 @@ contains
          call print_text(printable(line)//new_line('a'))
       else
          write (unit, '(a)', iostat=status) printable(line)
+         if (unit == error_unit) flush (error_unit, iostat=status)
          if (status /= 0) return   ! there is nobody left to tell
       end if
    end subroutine print_line
@@ -30,6 +32,7 @@ contains
       integer :: status
 
       write (error_unit, '(a)', iostat=status) lines
+      flush (error_unit, iostat=status)
       if (status /= 0) return   ! there is nobody left to tell
    end subroutine pass_on
 

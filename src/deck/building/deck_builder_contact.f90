@@ -2,8 +2,8 @@
 module deck_builder_contact
    use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, &
       parameter_text, take_parameter
-   use card_values, only: check_extra, field_place, need_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces
    use deck_builder_interactions, only: find_interaction
    use deck_context, only: deck_context_type, report_unknown

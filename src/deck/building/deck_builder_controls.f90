@@ -1,8 +1,8 @@
 !> *FIXED POINT and *THERMAL SCHEME.
 module deck_builder_controls
    use card_parameters, only: choose, lacks_parameter, parameter_place, take_parameter
-   use card_values, only: check_extra, field_place, need_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use controls, only: crank_nicolson_scheme, explicit_scheme, fixed_point_type, galerkin_scheme, &
       implicit_scheme, method_names, thermal_scheme_type
    use deck_report, only: deck_report_type

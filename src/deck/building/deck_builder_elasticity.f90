@@ -1,8 +1,7 @@
 !> *ELASTIC -> stiffness of a material along its own axes.
 module deck_builder_elasticity
    use card_parameters, only: choose
-   use card_values, only: field_place
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: cards_type, field_place, keyword_card_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &

@@ -1,7 +1,7 @@
 !> Data cards of *DLOAD, *DFLUX and *FILM: element or set, label, values.
 module deck_builder_element_loads
-   use card_values, only: check_extra, field_place, field_text, need_field
-   use cards, only: data_card_type
+   use card_values, only: check_extra, need_field
+   use cards, only: data_card_type, field_place, field_text
    use deck_builder_mass_loads, only: build_gravity, build_rotation
    use deck_context, only: deck_context_type, find_set, read_target
    use deck_report, only: deck_report_type

@@ -1,9 +1,11 @@
 !> *GAP CONDUCTANCE: a table of conductance over the pressure, or over the clearance.
 module deck_builder_gap_conductance
    use card_parameters, only: has_parameter, parameter_place
-   use card_values, only: check_unneeded_temperature, field_place, has_field, take_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: take_field
+   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure
+   use decimal_commas, only: check_unneeded_temperature, decimal_comma, &
+      report_decimal_comma
    use deck_builder_gap_laws, only: note_ends, read_table
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -102,7 +104,7 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       real(dp) :: first, temperature
-      integer :: i
+      integer :: comma, i
       logical :: valid
 
       valid = .true.
@@ -114,6 +116,11 @@ contains
          if (i == 1) first = temperature
          if (i == 1 .and. valid) call check_unneeded_temperature(rows(i), 3, report)
          if (.not. valid .or. abs(temperature - first) <= 0.0_dp) cycle
+         comma = decimal_comma(rows(i))
+         if (comma > 0 .and. size(rows(i)%fields) > size(rows(1)%fields)) then
+            call report_decimal_comma(rows(i), comma, report)
+            return
+         end if
          call report%error(field_place(rows(i), 3), &
             'another temperature than in the first row: properties that vary with temperature '// &
             'are refused')

@@ -1,8 +1,8 @@
 !> *GAP LAW -> one side of the conductance of a surface interaction, and the rows of its tables.
 module deck_builder_gap_laws
    use card_parameters, only: choose, lacks_parameter
-   use card_values, only: check_extra, field_place, need_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type

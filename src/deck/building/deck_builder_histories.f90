@@ -2,8 +2,8 @@
 module deck_builder_histories
    use amplitudes, only: amplitude_type
    use card_parameters, only: choose, lacks_parameter, need_parameter, parameter_place
-   use card_values, only: check_extra, field_place, need_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use decimal_commas, only: decimal_comma, report_decimal_comma
    use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
@@ -34,6 +34,7 @@ contains
          if (find_amplitude(model%amplitudes(:n - 1), model%amplitudes(n)%name) > 0) then
             call report%error(parameter_place(cards%keywords(k), 'NAME'), &
                'amplitude '//model%amplitudes(n)%name//' is defined twice')
+            call report%lose('amplitude')
          end if
       end do
    end subroutine build_amplitudes

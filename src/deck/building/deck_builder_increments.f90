@@ -1,7 +1,7 @@
 !> Data card of an analysis -> first increment, period, smallest and largest increment of a step.
 module deck_builder_increments
-   use card_values, only: check_extra, field_place, has_field, take_field
-   use cards, only: data_card_type
+   use card_values, only: check_extra, take_field
+   use cards, only: data_card_type, field_place, has_field
    use decimal_commas, only: decimal_comma, report_decimal_comma
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type

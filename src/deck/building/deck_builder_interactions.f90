@@ -1,10 +1,11 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
    use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, parameter_text
-   use card_values, only: check_extra, check_unneeded, field_place, need_field, take_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, table_jump
    use contact_definitions, only: interaction_type
+   use decimal_commas, only: check_unneeded
    use deck_builder_gap_conductance, only: build_gap_clearance, build_gap_conductance, &
       join_gap_conductance
    use deck_builder_gap_laws, only: build_gap_law
@@ -47,6 +48,7 @@ contains
                   model%interactions(n)%name) > 0) then
                   call report%error(parameter_place(card, 'NAME'), &
                      'surface interaction '//model%interactions(n)%name//' is defined twice')
+                  call report%lose('surface interaction')
                end if
                law_place = card%place
                call build_laws(cards, k, context, report, model%interactions(n), law_place)

@@ -2,8 +2,8 @@
 !> of the mesh, but their sets name nodes and faces.
 module deck_builder_lines
    use card_parameters, only: parameter_place, parameter_text
-   use card_values, only: check_extra, field_place, need_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_types, only: line_node_count

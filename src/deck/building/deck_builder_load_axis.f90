@@ -62,6 +62,7 @@ contains
             'prescribes: '//dof_name(dof)//' of '//name)
          return
       end do
+      if (report%has_lost('*STEP')) return
       call report%error(last, 'no *BOUNDARY prescribes any '//dof_name(dof)// &
          ' (degree of freedom '//to_text(dof)//'), which LOAD='//context%load_set// &
          ' of *OPTIONS follows; give the values, as '//name//', '//to_text(dof)//', '// &

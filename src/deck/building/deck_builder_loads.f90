@@ -2,8 +2,8 @@
 module deck_builder_loads
    use amplitudes, only: amplitude_type
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text
-   use card_values, only: check_extra, field_place, need_field, take_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use deck_builder_element_loads, only: build_element_load
    use deck_builder_histories, only: find_amplitude
    use deck_builder_surface_loads, only: build_surface_load

@@ -1,8 +1,8 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY.
 module deck_builder_materials
    use card_parameters, only: need_parameter, parameter_place
-   use card_values, only: check_unneeded
    use cards, only: cards_type, keyword_card_type
+   use decimal_commas, only: check_unneeded
    use deck_builder_elasticity, only: build_elasticity
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -38,6 +38,7 @@ contains
                if (find_material(model%materials(:n - 1), model%materials(n)%name) > 0) then
                   call report%error(parameter_place(card, 'NAME'), &
                      'material '//model%materials(n)%name//' is defined twice')
+                  call report%lose('material')   ! another name may have been meant
                end if
             case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY')
                if (n == 0) then

@@ -1,9 +1,9 @@
 !> *NODE and *ELEMENT -> nodes and elements of the mesh.
 module deck_builder_mesh
    use card_parameters, only: need_parameter, parameter_place
-   use card_values, only: check_unneeded, field_place, has_field, is_undefined, may_be_decimals, &
-      check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, has_field, is_undefined
+   use decimal_commas, only: check_unneeded, may_be_decimals
    use deck_builder_lines, only: element_card_count, is_line_card
    use deck_context, only: deck_context_type, plane_by_element
    use deck_report, only: deck_report_type

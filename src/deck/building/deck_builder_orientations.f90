@@ -1,8 +1,8 @@
 !> *ORIENTATION -> axes of materials.
 module deck_builder_orientations
    use card_parameters, only: choose, need_parameter, parameter_place
-   use card_values, only: check_extra, field_place, has_field, need_field, take_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
    use kinds, only: dp

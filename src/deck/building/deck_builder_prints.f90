@@ -1,8 +1,8 @@
 !> *NODE PRINT and *EL PRINT -> tables of the listing.
 module deck_builder_prints
    use card_parameters, only: choose, need_parameter, parameter_place, take_parameter
-   use card_values, only: field_place, field_text, has_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
+      keyword_card_type
    use deck_context, only: deck_context_type, find_set, report_lines, report_unknown, &
       set_names
    use deck_report, only: deck_report_type

@@ -2,8 +2,8 @@
 module deck_builder_sections
    use card_parameters, only: has_parameter, lacks_parameter, need_parameter, parameter_place, &
       parameter_text
-   use card_values, only: check_extra, field_place, take_field
-   use cards, only: cards_type, keyword_card_type
+   use card_values, only: check_extra, take_field
+   use cards, only: cards_type, field_place, keyword_card_type
    use deck_builder_materials, only: find_material
    use deck_builder_orientations, only: find_orientation
    use deck_context, only: deck_context_type, find_set, report_lines, report_unknown, &

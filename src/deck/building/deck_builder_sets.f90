@@ -1,8 +1,8 @@
 !> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets.
 module deck_builder_sets
    use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
-   use card_values, only: check_extra, field_place, need_field, take_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use deck_builder_lines, only: is_line_card
    use deck_builder_set_nodes, only: find_nodes
    use deck_context, only: deck_context_type, read_target

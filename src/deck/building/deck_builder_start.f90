@@ -1,8 +1,8 @@
 !> *START: where the fixed point of an increment starts.
 module deck_builder_start
    use card_parameters, only: choose, lacks_parameter
-   use card_values, only: check_extra, field_place, need_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use controls, only: start_both, start_closed, start_given, start_open, start_previous, start_type
    use deck_context, only: report_unknown
    use deck_report, only: deck_report_type

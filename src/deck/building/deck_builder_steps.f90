@@ -11,6 +11,7 @@ module deck_builder_steps
    use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use deck_structure, only: card_count
    use keywords, only: refusal
    use kinds, only: dp
@@ -24,6 +25,7 @@ module deck_builder_steps
    public :: build_steps, increment_rounding
 
    real(dp), parameter :: increment_rounding = 1.0e-6_dp   !! a shorter rest is none, relative
+   real(dp), parameter :: most_counted = 1.0e9_dp   !! increments that a message counts
 
    !> What every step takes over that does not say otherwise.
    type :: lasting_controls_type
@@ -72,7 +74,7 @@ contains
                counts%analyses = counts%analyses + 1
                if (counts%analyses > 1) call report%error(card%place, &
                   'a second analysis in one step')
-               if (n > 0) call build_analysis(cards, card, context, report, model%steps(n))
+               if (n > 0) call build_analysis(cards, card, n, context, report, model%steps(n))
             case ('END STEP')
                if (counts%analyses > 0) cycle
                context%analyses_sound = .false.
@@ -169,9 +171,10 @@ contains
    end subroutine begin_step
 
    !> Takes *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
-   subroutine build_analysis(cards, card, context, report, step)
+   subroutine build_analysis(cards, card, n, context, report, step)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: n   ! number of the step
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
@@ -205,30 +208,33 @@ contains
       if (card%flawed .or. report%error_count() > errors) then
          context%analyses_sound = .false.
       else
-         call fit_increments(card, report, step)
+         call fit_increments(context%step_place(n), report, step)
       end if
    end subroutine build_analysis
 
    !> INC= holds for increments that are all as long as the first; CalculiX lengthens those behind
    !> it, up to the largest. Where the card gives that, the first may be longer.
-   subroutine fit_increments(card, report, step)
-      type(keyword_card_type), intent(in) :: card
+   subroutine fit_increments(place, report, step)
+      type(place_type), intent(in) :: place   ! of *STEP, where INC= stands
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
-      character(:), allocatable :: too_many
+      character(:), allocatable :: number, too_many
       real(dp) :: needed
 
       if (step%max_increments < 1) return
       needed = step%period/(step%max_increments + increment_rounding)
       if (needed <= step%first_increment) return
-      too_many = 'the step takes more increments than the '//to_text(step%max_increments)// &
-         ' of INC= on *STEP; '
+      number = to_text(ceiling(min(step%period/step%first_increment - increment_rounding, &
+         most_counted)))
+      too_many = 'the step takes '//number//' increments of '//to_text(step%first_increment)// &
+         ', more than the '//to_text(step%max_increments)//' of INC=; '
       needed = step%period/step%max_increments
       if (step%direct .or. needed > step%largest_increment) then
-         call report%error(card%place, too_many//'give a larger INC= or a longer first increment')
+         call report%error(place, too_many//'give INC='//number//' or a first increment of '// &
+            to_text(needed))
       else
          step%first_increment = needed
-         call report%warning(card%place, too_many//'the first one is lengthened to '// &
+         call report%warning(place, too_many//'the first one is lengthened to '// &
             to_text(needed)//', as CalculiX lengthens those behind it')
       end if
    end subroutine fit_increments

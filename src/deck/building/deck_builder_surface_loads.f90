@@ -1,8 +1,8 @@
 !> Data cards of *DSLOAD: surface, label, values.
 module deck_builder_surface_loads
+   use card_values, only: check_extra, need_field
    use card_vectors, only: need_plane_vector
-   use card_values, only: check_extra, field_place, need_field
-   use cards, only: data_card_type
+   use cards, only: data_card_type, field_place
    use deck_builder_element_loads, only: report_label
    use deck_context, only: deck_context_type, report_unknown
    use deck_report, only: deck_report_type

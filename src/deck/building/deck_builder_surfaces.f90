@@ -1,8 +1,9 @@
 !> *SURFACE -> sets of element faces.
 module deck_builder_surfaces
    use card_parameters, only: choose, need_parameter, parameter_place
-   use card_values, only: check_extra, field_place, field_text, has_field, need_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
+      keyword_card_type
    use deck_context, only: deck_context_type, find_set, place_list_type, read_target
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -34,9 +35,10 @@ contains
          n = n + 1
          call build_surface(cards, cards%keywords(k), context, mesh, report, mesh%surfaces(n), &
             context%face_places(n))
-         if (.not. is_new(mesh%surfaces(:n))) call report%error( &
-            parameter_place(cards%keywords(k), 'NAME'), 'surface '//mesh%surfaces(n)%name// &
-            ' is defined twice')
+         if (is_new(mesh%surfaces(:n))) cycle
+         call report%error(parameter_place(cards%keywords(k), 'NAME'), 'surface '// &
+            mesh%surfaces(n)%name//' is defined twice')
+         call report%lose('surface')
       end do
    end subroutine build_surfaces
 

@@ -1,8 +1,8 @@
 !> *VERIFY -> checks of the results.
 module deck_builder_verify
    use card_parameters, only: choose, lacks_parameter, parameter_text
-   use card_values, only: check_extra, field_place, field_text, has_field, need_field
-   use cards, only: cards_type, data_card_type
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, data_card_type, field_place, field_text, has_field
    use deck_builder_mesh, only: data_card_count
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_context_type, read_target, report_unknown

@@ -1,9 +1,9 @@
 !> Constants of a property of a material, as they stand on its data cards.
 module property_constants
    use card_parameters, only: choose
-   use card_values, only: check_extra, check_unneeded_temperature, field_place, has_field, &
-      need_field, take_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
+   use decimal_commas, only: check_unneeded_temperature
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp

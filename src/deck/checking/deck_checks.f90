@@ -33,16 +33,16 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: uses(4, size(model%mesh%element_number))
-      logical :: turned(size(model%mesh%element_number))
+      logical :: misordered(size(model%mesh%element_number))
 
       call check_size(context, model%mesh, report)
       call check_sections(context, model, report)
       call check_materials(context, model, report)
       call check_planes(context, model%mesh, report)
       call check_orientations(context, model, report)
-      call check_jacobians(context, model%mesh, turned, report)
+      call check_jacobians(context, model%mesh, misordered, report)
       call check_slenderness(context, model%mesh, report)
-      call check_sides(context, model%mesh, turned, uses, report)
+      call check_sides(context, model%mesh, misordered, uses, report)
       call check_loads(context, model, uses, report)
    end subroutine check_model
 
@@ -99,10 +99,11 @@ contains
          if (.not. any(model%sections%material == m)) cycle
          associate (material => model%materials(m))
             if (mechanics .and. .not. material%has_elasticity) call report%missing( &
-               context%material_place(m), 'material '//material%name//' has no *ELASTIC')
+               context%material_place(m), 'material '//material%name//' has no *ELASTIC', &
+               '*ELASTIC')
             if (heat .and. .not. material%has_conductivity) call report%missing( &
                context%material_place(m), 'material '//material%name// &
-               ' has no *CONDUCTIVITY, which a step with heat needs')
+               ' has no *CONDUCTIVITY, which a step with heat needs', '*CONDUCTIVITY')
             if (mechanics .and. material%has_elasticity) call check_locking(context, model, m, &
                report)
          end associate

@@ -8,6 +8,7 @@ module jacobian_checks
    use kinds, only: dp
    use mesh, only: mesh_type
    use misplaced_nodes, only: corner_areas, element_jacobians, find_misplaced
+   use node_orders, only: alternates, exchanged_midsides
    use text, only: others, to_text
    implicit none
    private
@@ -19,13 +20,13 @@ contains
 
    !> The Jacobian is positive at the Gauss points of every element. A node that is out of place is
    !> reported where it stands, once for all elements that it inverts; elements that go round
-   !> clockwise are reported once.
-   subroutine check_jacobians(context, mesh, turned, report)
+   !> clockwise, or whose cards have their nodes in another order, are reported once.
+   subroutine check_jacobians(context, mesh, misordered, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
       type(mesh_type), intent(in) :: mesh
-      logical, intent(out) :: turned(:)                    !! (elements) whether it goes clockwise
+      logical, intent(out) :: misordered(:)  !! (elements) whether its sides are others than meant
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      logical :: inverted(size(mesh%element_number))
+      logical, dimension(size(mesh%element_number)) :: inverted, turned
       integer, allocatable :: nodes(:)
       integer :: e, searched
 
@@ -43,7 +44,9 @@ contains
       e = findloc(turned, .true., dim=1)
       if (e > 0) call report%error(context%element_place(e), inverted_element(mesh, e)// &
          advice(mesh%element_kind(e))//others(count(turned), '; elements that do not: '))
+      misordered = turned
       inverted = inverted .and. .not. turned
+      call check_orders(context, mesh, inverted, misordered, report)
       searched = 0
       do e = 1, size(inverted)
          if (.not. inverted(e)) cycle
@@ -64,6 +67,34 @@ contains
          end select
       end do
    end subroutine check_jacobians
+
+   !> Reports the inverted elements whose cards have their nodes in another order; they are explained
+   !> then.
+   subroutine check_orders(context, mesh, inverted, misordered, report)
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(in) :: mesh
+      logical, intent(inout) :: inverted(:), misordered(:)
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: nodes(:)
+      integer :: e
+
+      do e = 1, size(inverted)
+         if (.not. inverted(e)) cycle
+         if (alternates(mesh, e)) then
+            call report%error(context%element_place(e), inverted_element(mesh, e)//': its nodes '// &
+               'are corner, midside node, corner and so on; write the corners first, then the '// &
+               'midside nodes', 'alternating nodes')
+         else
+            nodes = exchanged_midsides(mesh, e)
+            if (size(nodes) == 0) cycle
+            call report%error(context%element_place(e), inverted_element(mesh, e)//': its '// &
+               listed('midside node', mesh%node_number(nodes), ' and ')//' are exchanged on '// &
+               'this card', 'exchanged nodes')
+         end if
+         inverted(e) = .false.
+         misordered(e) = .true.
+      end do
+   end subroutine check_orders
 
    !> Reports a node that is out of place; the elements that it inverts are explained then.
    subroutine report_misplaced(context, mesh, node, inverted, report)

@@ -122,7 +122,7 @@ contains
          if (m == 0) cycle
          if (model%materials(m)%has_density) cycle
          call report%missing(request%place, 'material '//model%materials(m)%name// &
-            ' has no *DENSITY, which '//label//' needs')
+            ' has no *DENSITY, which '//label//' needs', '*DENSITY')
          return
       end do
    end subroutine check_density

@@ -58,17 +58,18 @@ contains
 
    !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is
    !> free.
-   subroutine check_sides(context, mesh, turned, uses, report)
+   subroutine check_sides(context, mesh, misordered, uses, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
       type(mesh_type), intent(in) :: mesh
-      logical, intent(in) :: turned(:)                     !! (elements) whether it goes clockwise
-      integer, intent(out) :: uses(:, :)  !! (4, elements) elements that meet at each side
+      logical, intent(in) :: misordered(:)  !! (elements) whether its sides are others than meant
+      !> (4, elements) elements that meet at each side; 0 where an error tells that it is a wrong one
+      integer, intent(out) :: uses(:, :)
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(side_type) :: sides(4*size(mesh%element_number))
       integer, allocatable :: order(:)
       integer :: first, last, n
 
-      call list_sides(context, mesh, sides, n)
+      call list_sides(context%element_valid .and. .not. misordered, mesh, sides, n)
       order = sort_order(sides(:n)%high)
       order = order(sort_order(sides(order)%low))
       uses = 0
@@ -84,12 +85,12 @@ contains
          first = last + 1
       end do
       call check_middles(context, mesh, sides(:n), report)
-      call check_faces(context, mesh, turned, uses, report)
+      call check_faces(context, mesh, uses, report)
    end subroutine check_sides
 
-   !> The sides of all elements whose nodes are known, in the order of the elements.
-   pure subroutine list_sides(context, mesh, sides, n)
-      type(deck_context_type), intent(in) :: context
+   !> The sides of sound elements, in the order of the elements.
+   pure subroutine list_sides(sound, mesh, sides, n)
+      logical, intent(in) :: sound(:)   !! (elements)
       type(mesh_type), intent(in) :: mesh
       type(side_type), intent(inout) :: sides(:)
       integer, intent(out) :: n
@@ -97,7 +98,7 @@ contains
 
       n = 0
       do e = 1, size(mesh%element_number)
-         if (.not. context%element_valid(e)) cycle
+         if (.not. sound(e)) cycle
          associate (kind => mesh%element_kind(e))
             do f = 1, element_corner_count(kind)
                n = n + 1
@@ -169,23 +170,24 @@ contains
       end do
    end subroutine check_middles
 
-   !> Faces of surfaces are free: reported once a surface, where the first is named. Those of
-   !> elements whose nodes go clockwise are others than meant.
-   subroutine check_faces(context, mesh, turned, uses, report)
+   !> Faces of surfaces are free: reported once a surface, where the first is named. What is loaded
+   !> through such a face is not told again.
+   subroutine check_faces(context, mesh, uses, report)
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
-      logical, intent(in) :: turned(:)    !! (elements)
-      integer, intent(in) :: uses(:, :)   !! (4, elements) elements that meet at each side
+      integer, intent(inout) :: uses(:, :)   !! (4, elements) elements that meet at each side
       type(deck_report_type), intent(inout) :: report
+      logical :: wrong(size(uses, 1), size(uses, 2))
       logical, allocatable :: inside(:)
       integer :: i, s
 
+      wrong = .false.
       do s = 1, size(mesh%surfaces)
          associate (faces => mesh%surfaces(s)%faces)
             allocate(inside(size(faces, 2)))
             do i = 1, size(inside)
-               inside(i) = context%element_valid(faces(1, i)) .and. .not. turned(faces(1, i)) &
-                  .and. uses(faces(2, i), faces(1, i)) > 1
+               inside(i) = uses(faces(2, i), faces(1, i)) > 1
+               wrong(faces(2, i), faces(1, i)) = wrong(faces(2, i), faces(1, i)) .or. inside(i)
             end do
             i = findloc(inside, .true., dim=1)
             if (i > 0) call report%error(context%face_places(s)%items(i), 'face S'// &
@@ -195,6 +197,7 @@ contains
             deallocate(inside)
          end associate
       end do
+      where (wrong) uses = 0
    end subroutine check_faces
 
 end module mesh_checks

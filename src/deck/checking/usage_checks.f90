@@ -2,8 +2,7 @@
 module usage_checks
    use amplitudes, only: amplitude_type
    use card_parameters, only: parameter_text
-   use card_values, only: field_text
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: cards_type, field_text, keyword_card_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
@@ -13,6 +12,8 @@ module usage_checks
    implicit none
    private
    public :: check_usage
+
+   integer, parameter :: most_names = 10   !! that one message lists
 
    !> An amplitude that ends before this part of its step is over ends long before it.
    real(dp), parameter :: long_before = 0.5_dp
@@ -37,23 +38,30 @@ contains
       call check_ends(cards, context%loads, model, told, report)
    end subroutine check_usage
 
-   !> Warns of the cards of a keyword whose names no card refers to. Meshes and materials that a
+   !> Warns once of the cards of a keyword whose names no card refers to. Meshes and materials that a
    !> deck includes may well hold more than it needs.
    subroutine check_names(cards, keyword, noun, report)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: keyword, noun
       type(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: name
-      integer :: k
+      character(:), allocatable :: name, names
+      integer :: count, first, k
 
+      names = ''
+      count = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= keyword) cycle
          if (report%source%file(cards%keywords(k)%place%image) /= 1) cycle
          name = to_upper(parameter_text(cards%keywords(k), 'NAME'))
          if (is_used(cards, keyword, name)) cycle
-         call report%warning(cards%keywords(k)%place, 'nothing uses the '//noun// &
-            ' '//name)
+         count = count + 1
+         if (count == 1) first = k
+         if (count <= most_names) names = names//', '//name
       end do
+      if (count == 0) return
+      if (count > most_names) names = names//' and '//to_text(count - most_names)//' more'
+      call report%warning(cards%keywords(first)%place, 'nothing uses the '//noun// &
+         trim(merge(' ', 's', count == 1))//names(2:))
    end subroutine check_names
 
    !> Whether a card refers to a name that a keyword defines.

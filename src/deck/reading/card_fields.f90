@@ -57,10 +57,11 @@ contains
       type(deck_report_type), intent(inout) :: report             !! receives errors
       type(field_type), allocatable, intent(out) :: fields(:)     !! at least one field
       integer :: commas(len(line) + 1)
-      integer :: i, n, first, opened
+      integer :: i, n, first, opened, told
       logical :: is_format
 
       is_format = .false.
+      told = 0
       opened = 0
       n = 0
       do i = 1, last_text(line)
@@ -73,7 +74,9 @@ contains
             if (opened > 0 .and. is_format) then
                cycle
             else if (opened > 0) then
-               call report%error(place_type(image, i), 'no comma may stand inside quotes')
+               if (opened /= told) call report%error(place_type(image, i), &
+                  'no comma may stand inside quotes; write blanks in its place')
+               told = opened
             else
                n = n + 1
                commas(n) = i

@@ -55,6 +55,11 @@ contains
       if (is_comment(line)) return
       title = .false.
       if (allocated(self%keyword)) title = self%keyword == 'HEADING'
+      if (.not. title .and. line(first_text(line):first_text(line)) == '#') then
+         call report%error(place_type(image, first_text(line)), 'a comment begins with **', &
+            'comments of other programs')
+         return
+      end if
       if (is_keyword(line) .or. lacks_star(line, title, cards)) then
          call self%finish(cards, report)
          call split_fields(line, image, report, fields)

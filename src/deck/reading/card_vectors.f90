@@ -1,7 +1,7 @@
 !> Vectors on data cards: three components, or a magnitude and a direction in the plane.
 module card_vectors
-   use card_values, only: field_place, need_field, take_field
-   use cards, only: data_card_type
+   use card_values, only: need_field, take_field
+   use cards, only: data_card_type, field_place
    use deck_report, only: deck_report_type
    use kinds, only: dp
    implicit none

@@ -6,6 +6,7 @@ module cards
    private
    public :: cards_type, keyword_card_type, data_card_type, parameter_type, field_type
    public :: add_keyword, add_data, extend_data, add_note, trim_cards
+   public :: has_field, is_undefined, field_text, field_place
 
    !> One field of a card.
    type :: field_type
@@ -55,6 +56,44 @@ module cards
    end type cards_type
 
 contains
+
+   !> Whether a data card has a field that is not empty.
+   pure logical function has_field(data, i)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                   !! position, from 1
+
+      has_field = i <= size(data%fields)
+      if (has_field) has_field = len(data%fields(i)%text) > 0
+   end function has_field
+
+   !> A field as written; empty where the card does not have it.
+   pure function field_text(data, i) result(string)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                   !! position, from 1
+      character(:), allocatable :: string        !! the field
+
+      string = ''
+      if (i <= size(data%fields)) string = data%fields(i)%text
+   end function field_text
+
+   !> Whether the text of a field is not known, which is reported already.
+   pure logical function is_undefined(data, i)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                   !! position, from 1
+
+      is_undefined = i <= size(data%fields)
+      if (is_undefined) is_undefined = data%fields(i)%undefined
+   end function is_undefined
+
+   !> Place of a field; the end of the card where it does not have it.
+   pure function field_place(data, i) result(place)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                   !! position, from 1
+      type(place_type) :: place                  !! where it stands
+
+      place = data%end
+      if (i <= size(data%fields)) place = data%fields(i)%place
+   end function field_place
 
    !> Adds a keyword card.
    subroutine add_keyword(cards, card)

@@ -1,12 +1,17 @@
 !> Numbers written with a decimal comma, which the dialect reads as two fields.
 module decimal_commas
-   use card_values, only: field_place, may_be_decimals
-   use cards, only: data_card_type
+   use cards, only: data_card_type, field_place, field_text
    use deck_report, only: deck_report_type
-   use text, only: is_whole
+   use kinds, only: dp
+   use text, only: is_whole, read_real
    implicit none
    private
-   public :: decimal_comma, report_decimal_comma
+   public :: decimal_comma, surplus_comma, decimal_comma_words, report_decimal_comma
+   public :: may_be_decimals, check_unneeded, check_unneeded_temperature
+
+   !> Freezing point of water in kelvin. A whole number below it behind a property may well be
+   !> decimals; one above it is rather the temperature that the property was measured at.
+   real(dp), parameter :: least_plausible = 273.0_dp
 
 contains
 
@@ -36,6 +41,17 @@ contains
       end do
    end function decimal_comma
 
+   !> Position of the field whose decimals make a card longer than it may be; 0 where there is none.
+   pure integer function surplus_comma(data, most)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: most                         !! most fields of the card, fewer than it has
+
+      surplus_comma = decimal_comma(data)
+      if (may_be_decimals(data, most + 1)) then
+         if (adjacent(data, most)) surplus_comma = most
+      end if
+   end function surplus_comma
+
    !> Whether the next field begins right behind the comma.
    pure logical function adjacent(data, i)
       type(data_card_type), intent(in) :: data
@@ -53,10 +69,69 @@ contains
       integer, intent(in) :: i                            !! what decimal_comma found
       type(deck_report_type), intent(inout) :: report     !! receives the error
 
-      associate (whole => data%fields(i)%text, part => data%fields(i + 1)%text)
-         call report%error(field_place(data, i), 'a decimal comma? A comma separates fields; '// &
-            'write '//whole//'.'//part//' for '//whole//','//part)
-      end associate
+      call report%explain(field_place(data, i), 'a '//decimal_comma_words( &
+         data%fields(i)%text, data%fields(i + 1)%text))
    end subroutine report_decimal_comma
+
+   !> What is said of a decimal comma.
+   pure function decimal_comma_words(whole, decimals) result(words)
+      character(*), intent(in) :: whole       !! before the comma
+      character(*), intent(in) :: decimals    !! behind it
+      character(:), allocatable :: words
+
+      words = 'decimal comma? A comma separates fields; write '//whole//'.'//decimals//' for '// &
+         whole//','//decimals
+   end function decimal_comma_words
+
+   !> Whether a field may be the decimals of the one before it, torn off by a decimal comma, as in
+   !> 0,155 for 0.155: that one is written without a point and an exponent, this one is digits with
+   !> or without an exponent. Zeros alone are no decimals that matter.
+   pure logical function may_be_decimals(data, i)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                   !! position of the field, from 1
+      character(:), allocatable :: decimals
+      real(dp) :: number
+
+      may_be_decimals = .false.
+      if (i < 2) return
+      decimals = field_text(data, i)
+      if (.not. is_whole(field_text(data, i - 1)) .or. verify(decimals, '0') == 0) return
+      if (scan(decimals(1:1), '0123456789') == 0 .or. index(decimals, '.') > 0) return
+      call read_real(decimals, number, may_be_decimals)
+   end function may_be_decimals
+
+   !> Warns of a field that is read and means nothing where it may be the decimals of the field
+   !> before it.
+   subroutine check_unneeded(data, i, what, report)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                            !! position of the field, from 2
+      character(*), intent(in) :: what                    !! what the field is, with its article
+      type(deck_report_type), intent(inout) :: report     !! receives the warning
+
+      if (.not. may_be_decimals(data, i)) return
+      associate (whole => data%fields(i - 1)%text, decimals => data%fields(i)%text)
+         call report%warning(field_place(data, i - 1), 'decimal comma? '//whole//','//decimals// &
+            ' is two fields: '//whole//', and '//what//', which is not needed; write '//whole// &
+            '.'//decimals//', or '//whole//'. if that is meant')
+      end associate
+   end subroutine check_unneeded
+
+   !> As check_unneeded for the temperature behind a property: a plausible one is no decimals,
+   !> unless it stands directly behind the comma of `0,`.
+   subroutine check_unneeded_temperature(data, i, report)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                            !! position of the field, from 2
+      type(deck_report_type), intent(inout) :: report     !! receives the warning
+      real(dp) :: temperature
+      logical :: is_number
+
+      if (.not. may_be_decimals(data, i)) return
+      call read_real(field_text(data, i), temperature, is_number)
+      associate (before => data%fields(i - 1), field => data%fields(i))
+         if (temperature >= least_plausible .and. (verify(before%text, '+-0') > 0 .or. &
+            field%place%column > before%place%column + len(before%text) + 1)) return
+      end associate
+      call check_unneeded(data, i, 'a temperature', report)
+   end subroutine check_unneeded_temperature
 
 end module decimal_commas

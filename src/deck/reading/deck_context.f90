@@ -1,8 +1,8 @@
 !> What the builder of a model knows beyond the model itself: numbers -> indexes, places for
 !> messages, loads to be applied when the mesh is final; and how a card names nodes and elements.
 module deck_context
-   use card_values, only: field_place, need_field
-   use cards, only: add_note, data_card_type
+   use card_values, only: need_field
+   use cards, only: add_note, data_card_type, field_place
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use keywords, only: known_keywords

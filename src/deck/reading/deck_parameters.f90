@@ -18,7 +18,7 @@ module deck_parameters
       private
       type(string_type), allocatable :: names(:)            !! names in upper case
       type(string_type), allocatable :: values(:)           !! their values
-      type(string_type), allocatable :: setting_names(:)    !! names that --set gave
+      type(string_type), allocatable :: setting_names(:)    !! names that --set gave, as given
       type(string_type), allocatable :: setting_values(:)   !! their values
    contains
       procedure :: take_settings
@@ -47,7 +47,7 @@ contains
             call report%error(place_type(), '--set '//settings(i)%value//' has no value')
             cycle
          end if
-         call append(self%setting_names, to_upper(trim(settings(i)%value(:equals - 1))))
+         call append(self%setting_names, trim(settings(i)%value(:equals - 1)))
          call append(self%setting_values, as_utf8(settings(i)%value(equals + 1:)))
       end do
    end subroutine take_settings
@@ -140,10 +140,10 @@ contains
 
       do i = 1, size(self%setting_names)
          associate (name => self%setting_names(i)%value)
-            if (position(self%names, name) > 0) cycle
+            if (position(self%names, to_upper(name)) > 0) cycle
             call report%missing(place_type(), '--set '// &
                name//': no *PARAMETER of the deck has this name'// &
-               nearest_known(name, self%names), 'parameter', name)
+               nearest_known(to_upper(name), self%names), 'parameter', name)
          end associate
       end do
    end subroutine check_settings
@@ -155,7 +155,7 @@ contains
 
       position = 0
       do i = 1, size(names)
-         if (names(i)%value == name) position = i
+         if (to_upper(names(i)%value) == name) position = i
       end do
    end function position
 

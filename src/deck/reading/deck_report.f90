@@ -23,6 +23,7 @@ module deck_report
       character(:), allocatable :: message   !! what, in plain words
       character(:), allocatable :: group     !! what it has in common with others; empty for none
       integer :: places = 1                  !! places of its group, of which the first is told
+      logical :: explains = .false.          !! whether it explains what else is wrong on its card
    end type diagnostic_type
 
    !> The errors and warnings of one deck, and the card images to which they point.
@@ -38,6 +39,7 @@ module deck_report
       logical, private :: lost_file = .false.      !! whether a file of the deck could not be read
    contains
       procedure :: error
+      procedure :: explain
       procedure :: missing
       procedure :: warning
       procedure :: lose
@@ -60,6 +62,7 @@ contains
       character(*), intent(in), optional :: group     !! the group, such as node 6
       integer :: i
 
+      if (is_explained(self, place)) return
       if (present(group)) then
          do i = 1, min(self%count, most_errors)
             if (self%diagnostics(i)%group /= group) cycle
@@ -71,6 +74,40 @@ contains
       if (present(group)) self%diagnostics(self%count)%group = group
       self%errors = self%errors + 1
    end subroutine error
+
+   !> Reports an error from which all others of its card image follow: it takes the place of the
+   !> first one that is reported already, and those to come are dropped.
+   subroutine explain(self, place, message)
+      class(deck_report_type), intent(inout) :: self
+      type(place_type), intent(in) :: place           !! where
+      character(*), intent(in) :: message             !! what, in plain words
+      integer :: i
+
+      if (is_explained(self, place)) return
+      do i = 1, self%count
+         if (self%diagnostics(i)%place%image /= place%image) cycle
+         if (self%diagnostics(i)%severity == severity_error) exit
+      end do
+      if (i > self%count) call self%error(place, message)
+      self%diagnostics(i)%place = place
+      self%diagnostics(i)%message = message
+      self%diagnostics(i)%group = ''
+      self%diagnostics(i)%places = 1
+      self%diagnostics(i)%explains = .true.
+   end subroutine explain
+
+   !> Whether a reported error explains what is wrong at a place.
+   pure logical function is_explained(self, place)
+      class(deck_report_type), intent(in) :: self
+      type(place_type), intent(in) :: place
+      integer :: i
+
+      is_explained = .false.
+      do i = 1, self%count
+         is_explained = is_explained .or. (self%diagnostics(i)%explains .and. &
+            self%diagnostics(i)%place%image == place%image)
+      end do
+   end function is_explained
 
    !> Reports that something is not there, unless an error that is reported already explains it;
    !> one name is told once.
@@ -305,6 +342,7 @@ contains
             more(i)%severity = self%diagnostics(i)%severity
             more(i)%place = self%diagnostics(i)%place
             more(i)%places = self%diagnostics(i)%places
+            more(i)%explains = self%diagnostics(i)%explains
             call move_alloc(self%diagnostics(i)%message, more(i)%message)
             call move_alloc(self%diagnostics(i)%group, more(i)%group)
          end do

@@ -2,8 +2,7 @@
 !> are there.
 module deck_structure
    use card_parameters, only: has_parameter, parameter_text
-   use card_values, only: field_place
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: cards_type, field_place, keyword_card_type
    use deck_report, only: deck_report_type
    use keywords, only: built, in_model, in_step, known_keyword_type, known_keywords, not_needed
    use text, only: to_text, to_upper
@@ -41,7 +40,7 @@ contains
    subroutine check_structure(cards, report)
       type(cards_type), intent(in) :: cards
       type(deck_report_type), intent(inout) :: report     !! receives errors
-      logical :: step_open, after_step
+      logical :: step_open, after_step, told
       integer :: k
 
       do k = 1, size(cards%keywords)
@@ -50,13 +49,20 @@ contains
       if (report%has_lost()) return
       step_open = .false.
       after_step = .false.
+      told = .false.
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             call check_step_card(card, report, step_open)
             after_step = after_step .or. step_open
             if (card%known == 0) cycle
             if (.not. any(known_keywords(card%known)%status == [built, not_needed])) cycle
-            call check_section(card, step_open, after_step, report)
+            if (is_late(card, after_step)) then
+               if (.not. told) call report_late(cards, k, report)
+               told = .true.
+            else
+               told = .false.
+               call check_section(card, step_open, after_step, report)
+            end if
             call check_data_count(cards, card, report)
          end associate
       end do
@@ -84,6 +90,8 @@ contains
          call report%lose('surface')
       case ('MATERIAL')
          call report%lose('material')
+      case ('ELASTIC', 'CONDUCTIVITY', 'DENSITY')
+         call report%lose('*'//card%name)
       case ('ORIENTATION')
          call report%lose('orientation')
       case ('AMPLITUDE')
@@ -112,6 +120,34 @@ contains
       end if
    end subroutine check_step_card
 
+   !> Whether a card of the model stands behind the first *STEP.
+   pure logical function is_late(card, after_step)
+      type(keyword_card_type), intent(in) :: card
+      logical, intent(in) :: after_step
+
+      is_late = after_step .and. len(card%meant) == 0
+      if (is_late) is_late = known_keywords(card%known)%section == in_model
+   end function is_late
+
+   !> Reports a card of the model that stands behind the first *STEP, with those that follow it.
+   subroutine report_late(cards, first, report)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: first
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: followers
+      integer :: k
+
+      followers = ''
+      do k = first + 1, size(cards%keywords)
+         if (cards%keywords(k)%known == 0) exit
+         if (.not. is_late(cards%keywords(k), .true.)) exit
+         followers = followers//', *'//cards%keywords(k)%name
+      end do
+      if (len(followers) > 0) followers = ', and so must the cards behind it: '//followers(3:)
+      call report%error(cards%keywords(first)%place, '*'//cards%keywords(first)%name// &
+         ' must stand before the first *STEP'//followers)
+   end subroutine report_late
+
    subroutine check_section(card, step_open, after_step, report)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: step_open, after_step
@@ -120,8 +156,7 @@ contains
       if (len(card%meant) > 0) return
       select case (known_keywords(card%known)%section)
       case (in_model)
-         if (after_step) call report%error(card%place, '*'//card%name// &
-            ' must stand before the first *STEP')
+         continue
       case (in_step)
          if (.not. step_open .and. card%name /= 'END STEP') call report%error(card%place, &
             '*'//card%name//' must stand between *STEP and *END STEP')
@@ -174,6 +209,7 @@ contains
       type(deck_report_type), intent(inout) :: report
 
       if (card_count(cards, name) > 0 .or. has_stand_in(cards, name)) return
+      call report%lose('*'//name)
       if (size(cards%keywords) > 0) call report%error(cards%last, 'the deck has no *'//name)
    end subroutine need_card
 

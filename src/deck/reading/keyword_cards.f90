@@ -2,12 +2,14 @@
 module keyword_cards
    use card_fields, only: first_text, without_quotes
    use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
+   use decimal_commas, only: decimal_comma_words
    use deck_report, only: deck_report_type
    use foreign_keywords, only: find_foreign, foreign_keyword_type, not_printed, &
       passed_over, refused_always, refused_with_data
+   use kinds, only: dp
    use keywords, only: built, find_keyword, find_parameter, known_keywords, known_parameter_type, &
       not_needed, parameter_names, refusal, refused
-   use text, only: string_type, to_upper
+   use text, only: is_whole, read_real, string_type, to_upper
    use unknown_keywords, only: report_unknown_keyword, report_unknown_parameter
    implicit none
    private
@@ -141,6 +143,11 @@ contains
       n = 0
       i = 1
       do while (i <= size(fields))
+         if (is_number(fields(i)%text)) then
+            call report_number(fields, i, report)
+            card%flawed = .true.
+            exit
+         end if
          errors = report%error_count()
          call take_parameter(fields(i), report, cards, card, parameter, valid)
          if (card%name == 'OPTIONS' .and. parameter%name == 'LOAD' .and. i < size(fields)) then
@@ -163,6 +170,38 @@ contains
          card%parameters(i) = found(i)
       end do
    end subroutine take_parameters
+
+   !> Reports a number among the parameters: the decimals of a value, or the first of data that
+   !> stand on the keyword card.
+   subroutine report_number(fields, i, report)
+      type(field_type), intent(in) :: fields(:)
+      integer, intent(in) :: i
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: before, list
+      integer :: k
+
+      before = ''
+      if (i > 1) before = fields(i - 1)%text
+      if (is_whole(trim(adjustl(before(index(before, '=') + 1:)))) .and. is_whole( &
+         fields(i)%text) .and. verify(fields(i)%text, '0123456789') == 0) then
+         call report%explain(fields(i - 1)%place, 'a '//decimal_comma_words(before, &
+            fields(i)%text))
+         return
+      end if
+      list = fields(i)%text
+      do k = i + 1, size(fields)
+         list = list//', '//fields(k)%text
+      end do
+      call report%explain(fields(i)%place, 'a number is no parameter; data stand on a card of '// &
+         'their own: write '//list//' below the keyword')
+   end subroutine report_number
+
+   pure logical function is_number(string)
+      character(*), intent(in) :: string
+      real(dp) :: number
+
+      call read_real(string, number, is_number)
+   end function is_number
 
    pure logical function is_repeated(found, name)
       type(parameter_type), intent(in) :: found(:)
