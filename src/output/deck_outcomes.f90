@@ -26,6 +26,7 @@ module deck_outcomes
       integer :: iterations = 0             !! passes of these and of the one that failed
       integer :: verify_passed = 0          !! *VERIFY checks that passed
       integer :: verify_failed = 0          !! *VERIFY checks that failed
+      real(dp) :: known_to = 0.0_dp         !! conductance, relative, where rounding exceeds TOL
       integer :: files = 0                  !! how many files it has written: run_output's written
       real(dp) :: seconds = 0.0_dp          !! time it took [s]
       ! The rest is what a batch knows of the deck's process.
@@ -34,9 +35,11 @@ module deck_outcomes
       real(dp) :: cpu_seconds = 0.0_dp      !! its own and the system's [s]
       real(dp) :: peak_bytes = 0.0_dp       !! largest resident memory [byte]
       character(:), allocatable :: ending   !! its outcome in words where the status says too little
-      character(:), allocatable :: reason   !! why it is not solved, one sentence; or nothing
+      !> Why it is not solved, or how well where that is less than TOL; one sentence, or nothing
+      character(:), allocatable :: reason
    contains
       procedure :: note
+      procedure :: doubt
       procedure :: note_files
       procedure :: as_report
       procedure :: take
@@ -58,6 +61,16 @@ contains
       if (allocated(record%iterations)) self%iterations = self%iterations + size(record%iterations)
       call self%note_files(files)
    end subroutine note
+
+   !> Notes that rounding leaves the conductance of an increment less sure than TOL; the worst counts.
+   pure subroutine doubt(self, floor)
+      class(deck_outcome_type), intent(inout) :: self     !! the run
+      real(dp), intent(in) :: floor                       !! what it is known to, relative
+
+      if (floor <= self%known_to .or. self%status /= status_ok) return
+      self%known_to = floor
+      self%reason = 'the conductance of the contacts is known to '//to_text(floor)//' only'
+   end subroutine doubt
 
    !> Notes what is written; the process of a deck of a batch reports this and all else.
    subroutine note_files(self, files)
@@ -141,10 +154,16 @@ contains
       class(deck_outcome_type), intent(in) :: self    !! the run
       character(*), intent(in) :: results             !! path of its results without extension
       character(12) :: seconds
+      character(:), allocatable :: doubts
 
       write (seconds, '(f12.2)') self%seconds
+      doubts = ''
+      if (self%status == status_ok .and. allocated(self%reason)) then
+         if (len(self%reason) > 0) doubts = '; '//self%reason
+      end if
       call print_line(output_unit, self%path//': '//self%words()//', '// &
-         counted(self%increments, 'increment')//' in '//trim(adjustl(seconds))//' s')
+         counted(self%increments, 'increment')//' in '//trim(adjustl(seconds))//' s'// &
+         doubts)
       if (self%verify_passed + self%verify_failed > 0) call print_line(output_unit, '  '// &
          counted(self%verify_passed, 'check')//' passed, '//to_text(self%verify_failed)//' failed')
       if (self%status == status_deck .or. self%status == status_internal) return

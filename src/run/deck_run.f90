@@ -206,6 +206,9 @@ contains
             end if
             call estimator%end_increment(model, simulation, record)
             call self%end%hold(.true.)
+            associate (tolerance => model%steps(record%step)%fixed_point%tolerance)
+               if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
+            end associate
             call output%accept(record, model, simulation%bodies%interfaces, error)
             call outcome%note(record, output%accepted(), output%written())
             is_written = .not. allocated(error)

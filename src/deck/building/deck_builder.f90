@@ -3,7 +3,6 @@
 module deck_builder
    use bodies, only: find_bodies
    use cards, only: cards_type
-   use conductance_laws, only: law_none
    use controls, only: method_names
    use deck_builder_contact, only: build_contacts
    use deck_builder_histories, only: build_amplitudes, build_temperatures
@@ -26,6 +25,7 @@ module deck_builder
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
    use errors, only: error_type
+   use heat_checks, only: check_heat_paths
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
    use load_checks, only: first_heat
    use memory_calls, only: check_memory
@@ -126,7 +126,10 @@ contains
       call apply_temperatures(context, deck_nodes, .false., model)
       call apply_boundaries(context, model)
       call apply_order(context, model, report)
-      if (.not. report%has_errors()) call check_usage(cards, context, model, report)
+      if (.not. report%has_errors()) then
+         call check_usage(cards, context, model, report)
+         call check_heat_paths(cards, model, report)
+      end if
       call find_bodies(model%mesh)
       call note_defaults(cards, context, model)
    end subroutine complete_model
@@ -153,7 +156,6 @@ contains
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context
       type(model_type), intent(in) :: model
-      integer :: i
 
       if (context%temperatures%count == 0) then
          call context%note('no *INITIAL CONDITIONS: the initial temperature is 0')
@@ -168,14 +170,6 @@ contains
       if (card_count(cards, 'THERMAL SCHEME') == 0) then
          call context%note('no *THERMAL SCHEME: IMPLICIT')
       end if
-      do i = 1, size(model%interactions)
-         associate (interaction => model%interactions(i))
-            if (interaction%law%open_kind /= law_none) cycle
-            if (interaction%law%closed_kind /= law_none) cycle
-            call context%note('surface interaction '//interaction%name// &
-               ' without *GAP LAW and *GAP CONDUCTANCE: no heat crosses')
-         end associate
-      end do
       if (size(model%contacts) == 0) return
       if (.not. any(model%steps%analysis == analysis_coupled)) return
       associate (fixed_point => model%steps(1)%fixed_point)

@@ -1,0 +1,105 @@
+!> What steps with heat show to be a slip: contact without a law for its conductance, coefficients of
+!> expansion in another unit than the temperatures.
+module heat_checks
+   use cards, only: cards_type
+   use conductance_laws, only: law_none
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use kinds, only: dp
+   use model, only: model_type
+   use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat
+   use text, only: to_text
+   implicit none
+   private
+   public :: check_heat_paths
+
+   real(dp), parameter :: small_strain = 0.1_dp   !! largest for which small strains hold
+
+contains
+
+   !> Warns of contact pairs that no heat crosses, and of materials whose expansion over the range of
+   !> the temperatures of the deck is no small strain.
+   subroutine check_heat_paths(cards, model, report)
+      type(cards_type), intent(in) :: cards
+      type(model_type), intent(in) :: model               !! with its loads and supports
+      type(deck_report_type), intent(inout) :: report     !! receives warnings
+      integer :: i
+
+      call check_expansion(cards, model, report)
+      if (.not. any(solves_heat(model%steps%analysis))) return
+      do i = 1, size(model%contacts)
+         associate (contact => model%contacts(i), &
+            interaction => model%interactions(model%contacts(i)%interaction))
+            if (interaction%law%open_kind /= law_none) cycle
+            if (interaction%law%closed_kind /= law_none) cycle
+            call report%warning(place_type(image=contact%card), 'no heat crosses '// &
+               contact%name//': its interaction '//interaction%name//' has no conductance '// &
+               'law; give it *GAP CONDUCTANCE or *GAP LAW')
+         end associate
+      end do
+   end subroutine check_heat_paths
+
+   !> Warns of the first *EXPANSION that is too large for small strains.
+   subroutine check_expansion(cards, model, report)
+      type(cards_type), intent(in) :: cards
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: strain, range
+      integer :: k, m
+
+      range = temperature_range(model)
+      m = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name == 'MATERIAL') m = m + 1
+         if (cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
+         if (.not. any(model%sections%material == m)) cycle
+         strain = maxval(abs(model%materials(m)%expansion))*range
+         if (strain <= small_strain) cycle
+         call report%warning(cards%keywords(k)%place, 'the expansion of '// &
+            model%materials(m)%name//' over the range of the temperatures, '//to_text(range)// &
+            ', is a strain of '//to_text(strain)//', where strains are taken as small; see '// &
+            'the unit of *EXPANSION, 1/temperature')
+         return
+      end do
+   end subroutine check_expansion
+
+   !> Largest difference between temperatures that the deck gives: initial ones, prescribed ones and
+   !> sinks of films, with the largest factors of their amplitudes.
+   pure real(dp) function temperature_range(model)
+      type(model_type), intent(in) :: model
+      real(dp) :: ends(2)
+      integer :: i, s
+
+      ends = [minval(model%initial_temperature), maxval(model%initial_temperature)]
+      do s = 1, size(model%steps)
+         associate (boundaries => model%steps(s)%boundaries, loads => model%steps(s)%loads)
+            do i = 1, size(boundaries)
+               if (boundaries(i)%dof == dof_temperature) call widen(model, &
+                  boundaries(i)%value, boundaries(i)%amplitude, ends)
+            end do
+            do i = 1, size(loads)
+               if (any(loads(i)%kind == [load_temperature, load_film_sink])) call widen(model, &
+                  loads(i)%value, loads(i)%amplitude, ends)
+            end do
+         end associate
+      end do
+      temperature_range = ends(2) - ends(1)
+   end function temperature_range
+
+   !> Widens a range to a value and, where it follows an amplitude, to all values that this gives it.
+   pure subroutine widen(model, value, amplitude, ends)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: value
+      integer, intent(in) :: amplitude   ! index into model%amplitudes, or 0
+      real(dp), intent(inout) :: ends(2)
+
+      if (amplitude == 0) then
+         ends = [min(ends(1), value), max(ends(2), value)]
+      else
+         associate (factors => model%amplitudes(amplitude)%values)
+            ends = [min(ends(1), minval(value*factors)), max(ends(2), maxval(value*factors))]
+         end associate
+      end if
+   end subroutine widen
+
+end module heat_checks
