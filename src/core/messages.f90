@@ -21,8 +21,8 @@ contains
          call print_text(printable(line)//new_line('a'))
       else
          write (unit, '(a)', iostat=status) printable(line)
-         if (unit == error_unit) flush (error_unit, iostat=status)
          if (status /= 0) return   ! there is nobody left to tell
+         if (unit == error_unit) call flush_errors()
       end if
    end subroutine print_line
 
@@ -32,9 +32,16 @@ contains
       integer :: status
 
       write (error_unit, '(a)', iostat=status) lines
+      if (status /= 0) return   ! there is nobody left to tell
+      call flush_errors()
+   end subroutine pass_on
+
+   subroutine flush_errors()
+      integer :: status
+
       flush (error_unit, iostat=status)
       if (status /= 0) return   ! there is nobody left to tell
-   end subroutine pass_on
+   end subroutine flush_errors
 
    !> Prints an error on stderr as `subject: error: message`.
    subroutine print_error(subject, message)

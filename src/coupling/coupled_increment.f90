@@ -2,7 +2,8 @@
 !> what is said of the solution.
 module coupled_increment
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use controls, only: method_picard, start_both, start_closed, start_given, start_open, start_previous
+   use controls, only: method_picard, start_both, start_closed, start_given, start_open, &
+      start_previous
    use coupling_gains, only: coupling_gain_type, find_gain
    use errors, only: error_type
    use fixed_point, only: predicted_conductance
@@ -134,11 +135,12 @@ contains
       type(solution_report_type), intent(inout) :: record
 
       if (found(1) .and. found(2) .and. differ(from_open, from_closed)) then
-         call record%warn('the starts from OPEN and from CLOSED lead to different solutions; this is one of several')
+         call record%warn('the starts from OPEN and from CLOSED lead to different solutions; '// &
+            'this is one of several')
       else if (found(3) .and. ((found(1) .and. differ(from_open, from_previous)) .or. &
          (found(2) .and. differ(from_closed, from_previous)))) then
-         call record%warn('the start from PREVIOUS leads elsewhere than that from the ends; this is one of several '// &
-            'solutions')
+         call record%warn('the start from PREVIOUS leads elsewhere than that from the ends; '// &
+            'this is one of several solutions')
       else if (found(1) .and. found(2)) then
          call append(record%notes, 'the starts from OPEN and from CLOSED lead to one solution')
       end if

@@ -62,7 +62,8 @@ contains
       call self%note_files(files)
    end subroutine note
 
-   !> Notes that rounding leaves the conductance of an increment less sure than TOL; the worst counts.
+   !> Notes that rounding leaves the conductance of an increment less sure than TOL; the worst
+   !> counts.
    pure subroutine doubt(self, floor)
       class(deck_outcome_type), intent(inout) :: self     !! the run
       real(dp), intent(in) :: floor                       !! what it is known to, relative

@@ -35,7 +35,8 @@ module deck_trade
 contains
 
    !> Measures a deck and prints and writes the table. What goes wrong is printed on stderr. A deck
-   !> that does not run as it is written has a table all the same; so has a trade that a signal ends.
+   !> that does not run as it is written has a table all the same; so has a trade that a signal
+   !> ends.
    subroutine trade_deck(path, command, status)
       character(*), intent(in) :: path             !! the deck as given
       type(command_type), intent(in) :: command    !! options of the command line

@@ -43,8 +43,8 @@ module trade_measurement
 contains
 
    !> Runs the last rows of a trade. A row that fails keeps its reason.
-   !> Errors: status_interrupted after a signal, then the trade has only the rows that were measured;
-   !> status_internal where no process can be started.
+   !> Errors: status_interrupted after a signal, then the trade has only the rows that were
+   !> measured; status_internal where no process can be started.
    subroutine run(self, trade, first, last, error)
       class(measurement_type), intent(inout) :: self      !! what the runs have in common
       type(trade_type), intent(inout) :: trade

@@ -397,4 +397,4 @@ def test_more_increments_than_inc_are_lengthened(tmp_path):
                                              for card in cards])
     process = run("check", direct)
     assert process.returncode == 1
-    assert "the step takes 100 increments of 0.01, more than the 8 of INC=; give INC=100 or a first increment of 0.125" in process.stderr
+    assert "the step takes 100 increments of 1E-2, more than the 8 of INC=; give INC=100 or a first increment of 0.125" in process.stderr

@@ -1,11 +1,12 @@
 """What the command line promises: batches, folders, widths, included files, exit statuses."""
 
 import os
+import subprocess
 
 import h5py
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
-from deck_runs import run
+from deck_runs import PROGRAM, run
 
 GOOD = [
     *without_unused_surfaces(block("BLOCK", [0.0, 1.0], [0.0, 1.0])),
@@ -49,6 +50,20 @@ def test_out_names_the_folder_of_the_results_and_makes_it(good, tmp_path):
     assert process.returncode == 0, process.stderr
     assert names(out) == sorted("good" + suffix for suffix in SUFFIXES)
     assert names(good.parent) == ["good.inp"]
+
+
+def test_messages_stand_in_their_order_where_both_outputs_are_one_file(good, bad):
+    process = subprocess.run([PROGRAM, "check", bad, good, bad], stdout=subprocess.PIPE,
+                             stderr=subprocess.STDOUT, text=True, timeout=60)
+    assert [line.split(":")[0] for line in process.stdout.splitlines() if ".inp:" in line] == [
+        str(bad), str(good), str(bad)]
+
+
+def test_counts_of_one_are_singular_and_settings_named_as_given(good, tmp_path):
+    good.write_text(good.read_text().replace("0.5, 1.", "1., 1."))
+    assert "solved, 1 increment in " in run("run", good, "--out", tmp_path).stdout
+    assert "\n1 deck in " in run("run", good, "--jobs", "1", "--out", tmp_path).stdout
+    assert "--set x: no *PARAMETER" in run("check", good, "--set", "x=1").stderr
 
 
 def test_quiet_silences_the_summary_but_no_error(good, bad, tmp_path):

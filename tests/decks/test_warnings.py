@@ -160,9 +160,9 @@ def test_loads_on_sides_inside_a_body(tmp_path, keyword, label):
                           "the same; elements with such a side: 4"),
                          ("102", "side 3 of element 102 lies inside a body; the load acts there "
                           "all the same")):
-        found = warnings(tmp_path, blocks(), [*load, f"{target}, {label}", "*END STEP"])
+        found = warnings(tmp_path, insulated(), [*load, f"{target}, {label}", "*END STEP"])
         assert one(found, target) == said
-    assert warnings(tmp_path, blocks(), [*load, f"105, {label}", "*END STEP"]) == []
+    assert warnings(tmp_path, insulated(), [*load, f"105, {label}", "*END STEP"]) == []
 
 
 def test_conductance_that_rounding_leaves_unknown(tmp_path):
@@ -177,9 +177,11 @@ def test_conductance_that_rounding_leaves_unknown(tmp_path):
         deck = write(tmp_path / "deck.inp", cards[:at],
                      ["*GAP LAW, TYPE=POWER", "0., 0.1, 1."], cards[at:],
                      [f"*FIXED POINT, TOL={tolerance}"], heated)
-        process = run("run", "--quiet", deck, "--out", tmp_path)
+        process = run("run", deck, "--out", tmp_path)
         assert process.returncode == 0, process.stderr
-        found = re.findall(r"increment 2: the conductance of the contacts is known to (\S+) only, "
+        summary = r"solved, 2 increments in [\d.]+ s; the conductance of the contacts is known to \S+ only"
+        assert bool(re.search(summary, process.stdout)) == warned
+        found = re.findall(r"2: the conductance of the contacts is known to (\S+) only, "
                            r"not to TOL=", process.stderr)
         assert len(found) == warned
         assert all(0 < float(value) < 1e-8 for value in found)
@@ -246,6 +248,37 @@ def test_decimal_commas(tmp_path):
     assert "write 1.18, or 1. if that is meant" in message
     for legitimate in ("1.18", "50, 293", "50., 20.", "50., 20"):
         assert warnings(tmp_path, conducting(HEATED, legitimate)) == []
+
+
+def test_an_expansion_that_is_no_small_strain(tmp_path):
+    """The coefficient in 1e-6 per degree; 10 % are the limit, here over 5 degrees."""
+    assert warnings(tmp_path, conducting(HEATED, expansion="0.0199")) == []
+    message = one(warnings(tmp_path, conducting(HEATED, expansion="0.0201")), "*EXPANSION")
+    assert "the expansion of A over the range of the temperatures, 5, is a strain of 0.1005" in message
+    factors = ["*AMPLITUDE, NAME=UP", "0., 0., 1., 4."]
+    follows = [card.replace("*BOUNDARY", "*BOUNDARY, AMPLITUDE=UP") for card in HEATED]
+    assert warnings(tmp_path, conducting([*factors, *follows], expansion="0.004")) == []
+    assert "range of the temperatures, 20, " in one(
+        warnings(tmp_path, conducting([*factors, *follows], expansion="0.006")), "*EXPANSION")
+
+
+def insulated():
+    """Return the two blocks with a contact that says that no heat crosses it."""
+    cards = blocks()
+    at = cards.index("*CONTACT PAIR, INTERACTION=I, NAME=F")
+    return [*cards[:at], "*GAP LAW, TYPE=POWER", "0., 0., 1.", *cards[at:]]
+
+
+def test_contact_that_no_heat_crosses(tmp_path):
+    """Unless the deck says that it is so, or has no heat."""
+    heated = PRESSED.copy()
+    heated[1:2] = ["*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE"]
+    heated[3:3] = ["*BOUNDARY", "A.BOTTOM, 11", "B.TOP, 11, 11, 50."]
+    cards = blocks()
+    message = one(warnings(tmp_path, cards, heated), "*CONTACT PAIR")
+    assert message.startswith("no heat crosses F: its interaction I has no conductance law")
+    assert warnings(tmp_path, insulated(), heated) == []
+    assert warnings(tmp_path, cards, PRESSED) == []
 
 
 def test_constants_are_printed_as_understood(tmp_path):

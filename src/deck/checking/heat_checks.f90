@@ -1,5 +1,5 @@
-!> What steps with heat show to be a slip: contact without a law for its conductance, coefficients of
-!> expansion in another unit than the temperatures.
+!> What steps with heat show to be a slip: contact without a law for its conductance, coefficients
+!> of expansion in another unit than the temperatures.
 module heat_checks
    use cards, only: cards_type
    use conductance_laws, only: law_none
@@ -17,8 +17,8 @@ module heat_checks
 
 contains
 
-   !> Warns of contact pairs that no heat crosses, and of materials whose expansion over the range of
-   !> the temperatures of the deck is no small strain.
+   !> Warns of contact pairs that no heat crosses, and of materials whose expansion over the range
+   !> of the temperatures of the deck is no small strain.
    subroutine check_heat_paths(cards, model, report)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model               !! with its loads and supports
@@ -86,7 +86,7 @@ contains
       temperature_range = ends(2) - ends(1)
    end function temperature_range
 
-   !> Widens a range to a value and, where it follows an amplitude, to all values that this gives it.
+   !> Widens a range to a value; where it follows an amplitude, to all values that this gives it.
    pure subroutine widen(model, value, amplitude, ends)
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: value

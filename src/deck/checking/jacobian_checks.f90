@@ -68,8 +68,8 @@ contains
       end do
    end subroutine check_jacobians
 
-   !> Reports the inverted elements whose cards have their nodes in another order; they are explained
-   !> then.
+   !> Reports the inverted elements whose cards have their nodes in another order; they are
+   !> explained then.
    subroutine check_orders(context, mesh, inverted, misordered, report)
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
@@ -81,8 +81,8 @@ contains
       do e = 1, size(inverted)
          if (.not. inverted(e)) cycle
          if (alternates(mesh, e)) then
-            call report%error(context%element_place(e), inverted_element(mesh, e)//': its nodes '// &
-               'are corner, midside node, corner and so on; write the corners first, then the '// &
+            call report%error(context%element_place(e), inverted_element(mesh, e)//': its '// &
+               'nodes are corner, midside node, corner and so on; write the corners first, then the '// &
                'midside nodes', 'alternating nodes')
          else
             nodes = exchanged_midsides(mesh, e)

@@ -61,8 +61,8 @@ contains
    subroutine check_sides(context, mesh, misordered, uses, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
       type(mesh_type), intent(in) :: mesh
-      logical, intent(in) :: misordered(:)  !! (elements) whether its sides are others than meant
-      !> (4, elements) elements that meet at each side; 0 where an error tells that it is a wrong one
+      logical, intent(in) :: misordered(:)   !! (elements) whether their sides are not as meant
+      !> (4, elements) elements that meet at each side; 0 where an error says that it is wrong
       integer, intent(out) :: uses(:, :)
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(side_type) :: sides(4*size(mesh%element_number))

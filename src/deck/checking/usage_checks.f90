@@ -38,8 +38,8 @@ contains
       call check_ends(cards, context%loads, model, told, report)
    end subroutine check_usage
 
-   !> Warns once of the cards of a keyword whose names no card refers to. Meshes and materials that a
-   !> deck includes may well hold more than it needs.
+   !> Warns once of the cards of a keyword whose names no card refers to. Meshes and materials that
+   !> a deck includes may well hold more than it needs.
    subroutine check_names(cards, keyword, noun, report)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: keyword, noun

@@ -44,7 +44,7 @@ contains
    !> Position of the field whose decimals make a card longer than it may be; 0 where there is none.
    pure integer function surplus_comma(data, most)
       type(data_card_type), intent(in) :: data
-      integer, intent(in) :: most                         !! most fields of the card, fewer than it has
+      integer, intent(in) :: most                         !! most fields, fewer than it has
 
       surplus_comma = decimal_comma(data)
       if (may_be_decimals(data, most + 1)) then
