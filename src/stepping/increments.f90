@@ -215,7 +215,8 @@ contains
       self%pivot_told = self%sizes%smallest_pivot
       call record%warn('the smallest pivot of the bodies is '//to_text(self%pivot_told)// &
          ' of its diagonal entry, so that results may be right to '// &
-         to_text(10*epsilon(1.0_dp)/self%pivot_told)//' only: are bodies held by others that are far softer?')
+         to_text(10*epsilon(1.0_dp)/self%pivot_told)// &
+         ' only: are bodies held by others that are far softer?')
    end subroutine warn_of_pivot
 
    !> A step takes no more increments than INC= allows; attempts that failed do not count.
