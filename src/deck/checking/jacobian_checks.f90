@@ -82,8 +82,8 @@ contains
          if (.not. inverted(e)) cycle
          if (alternates(mesh, e)) then
             call report%error(context%element_place(e), inverted_element(mesh, e)//': its '// &
-               'nodes are corner, midside node, corner and so on; write the corners first, then the '// &
-               'midside nodes', 'alternating nodes')
+               'nodes are corner, midside node, corner and so on; write the corners first, '// &
+               'then the midside nodes', 'alternating nodes')
          else
             nodes = exchanged_midsides(mesh, e)
             if (size(nodes) == 0) cycle
