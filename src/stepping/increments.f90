@@ -293,8 +293,8 @@ contains
          call check_values(record, error)
          if (allocated(error)) return
          if (solves_heat(step%analysis)) call check_balance(record, error)
-         if (allocated(error)) return
-         if (solves_mechanics(step%analysis)) call check_violation(record, error)
+         if (solves_mechanics(step%analysis) .and. .not. allocated(error)) &
+            call check_violation(record, error)
       end associate
    end subroutine attempt
 

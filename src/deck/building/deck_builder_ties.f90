@@ -1,8 +1,8 @@
 !> *TIE -> faces that are tied.
 module deck_builder_ties
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text, take_parameter
-   use card_values, only: check_extra, field_place
-   use cards, only: cards_type, keyword_card_type
+   use card_values, only: check_extra
+   use cards, only: cards_type, field_place, keyword_card_type
    use contact_definitions, only: tie_definition_type
    use deck_builder_contact, only: read_surface
    use deck_context, only: deck_context_type
