@@ -247,13 +247,7 @@ contains
 
       call self%loads%move_to(clock, model)
       call check_prescribed_ties(model, self%bodies, self%loads, self%control%step, error)
-      record%increment = self%control%increments + 1
-      record%step = self%control%step
-      record%increment_in_step = self%control%increments_of_step + 1
-      record%last_of_step = clock%step_time >= clock%period
-      record%cut_backs = self%control%cut_backs
-      record%time = clock%total_time
-      record%load = self%loads%axis_value(model, record%time)
+      call begin_record(self, model, clock, record)
       if (allocated(error)) return
       workspace%record%increment = record%increment
       next = self%state
@@ -293,10 +287,26 @@ contains
          call check_values(record, error)
          if (allocated(error)) return
          if (solves_heat(step%analysis)) call check_balance(record, error)
-         if (solves_mechanics(step%analysis) .and. .not. allocated(error)) &
-            call check_violation(record, error)
+         if (allocated(error)) return
+         if (solves_mechanics(step%analysis)) call check_violation(record, error)
       end associate
    end subroutine attempt
+
+   !> Which increment a record is of.
+   subroutine begin_record(self, model, clock, record)
+      type(simulation_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(step_clock_type), intent(in) :: clock
+      type(increment_record_type), intent(inout) :: record
+
+      record%increment = self%control%increments + 1
+      record%step = self%control%step
+      record%increment_in_step = self%control%increments_of_step + 1
+      record%last_of_step = clock%step_time >= clock%period
+      record%cut_backs = self%control%cut_backs
+      record%time = clock%total_time
+      record%load = self%loads%axis_value(model, record%time)
+   end subroutine begin_record
 
    !> Frees the factors.
    subroutine release(self)
