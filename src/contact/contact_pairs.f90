@@ -8,7 +8,7 @@ module contact_pairs
    use kinds, only: dp
    use mesh, only: mesh_type
    use interface_checks, only: check_sides, check_weights
-   use sum_lists, only: differences
+   use sum_lists, only: differences, single_values
    use surface_chains, only: surface_chain_type
    implicit none
    private
@@ -30,7 +30,7 @@ contains
       real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
       type(contact_points_type), intent(inout) :: points      !! its name and its axis are set
       type(error_type), allocatable, intent(out) :: error
-      integer :: first, last
+      integer :: first, k, last
 
       points%pairing = pairing_nodes
       points%slave_node = slave%nodes
@@ -49,6 +49,11 @@ contains
       call check_weights(mesh, definition%title(), points%slave_node, points%weight, error)
       if (allocated(error)) return
       points%difference = differences(points%slave_node, points%master_node)
+      points%slave_mean = single_values(points%slave_node)
+      points%master_mean = single_values(points%master_node)
+      points%face_node = [points%slave_node, points%master_node]
+      points%at_face_nodes = single_values([(k, k=1, size(points%slave_node)), &
+         (k, k=1, size(points%master_node))])
    end subroutine set_node_pairs
 
    !> Weights on the line midway between the faces. On three-node sides the integral vanishes for a

@@ -18,10 +18,16 @@ module contact_points
    type :: contact_points_type
       character(:), allocatable :: name        !! name of the *CONTACT PAIR
       integer :: pairing = pairing_nodes       !! pairing_nodes or pairing_surfaces
+      character(:), allocatable :: mismatch    !! why the faces do not match; unallocated if they do
       integer, allocatable :: slave_node(:)    !! (m) node indexes
       integer, allocatable :: master_node(:)   !! (m) the one opposite, or the nearest one
       !> (m, nodes) slave's value of a field less master's
       type(sum_list_type) :: difference
+      type(sum_list_type) :: slave_mean        !! (m, nodes) slave's value of a field
+      type(sum_list_type) :: master_mean       !! (m, nodes) master's
+      integer, allocatable :: face_node(:)     !! (n) nodes of both faces in the covered part
+      !> (n, m) their contact quantities, interpolated between the contact points
+      type(sum_list_type) :: at_face_nodes
       real(dp), allocatable :: position(:, :)  !! (2, m) undeformed slave [length]
       real(dp), allocatable :: arc_length(:)   !! (m) s from the first contact point [length]
       !> (m) tributary length times thickness, axisymmetric times 2 pi r; 0 where three-node sides
@@ -32,6 +38,12 @@ module contact_points
       real(dp), allocatable :: initial_gap(:)  !! (m) h [length]
       real(dp), allocatable :: edge(:)         !! (m) longest side of the slave there [length]
       integer :: side_nodes = 2                !! contact points of a side, 2 or 3
+      integer :: node_spacings = 1             !! of the slave, from a contact point to the next
+      integer :: corners = 0                   !! corners of the slave; 0 for node pairs
+      integer :: open_corners = 0              !! those without a master opposite
+      !> How far the first contact point lies from the master's first end and the last one from its
+      !> last end, along the slave; at least 0 [length]
+      real(dp) :: to_end(2) = huge(1.0_dp)
       logical :: about_axis = .false.          !! whether the model is axisymmetric
    end type contact_points_type
 

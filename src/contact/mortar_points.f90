@@ -5,10 +5,12 @@ module mortar_points
    use chain_geometry, only: arc_lengths, edge_lengths
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
+   use face_interpolation, only: interpolate_on_faces
    use kinds, only: dp
    use mesh, only: mesh_type
    use mortar_segments, only: face_line_type, integrate_segments, mortar_integrals_type
    use sparse_matrix, only: sparse_matrix_type
+   use sum_lists, only: sum_list_type
    use surface_chains, only: surface_chain_type
    implicit none
    private
@@ -42,6 +44,9 @@ contains
       kept = pack([(c, c=1, size(corner))], owner == [(c, c=1, size(corner))])
       points%pairing = pairing_surfaces
       points%side_nodes = 2
+      points%node_spacings = slave%side_nodes - 1
+      points%corners = size(corner)
+      points%open_corners = count(owner == 0)
       points%slave_node = corner(kept)
       points%position = mesh%coordinates(:, points%slave_node)
       associate (x => mesh%coordinates(:, slave%nodes), n => slave%side_nodes)
@@ -55,10 +60,14 @@ contains
       points%tangent = outward(1)*reshape([-points%normal(2, :), points%normal(1, :)], &
          shape(points%normal), order=[2, 1])
       call set_means(slave, master, integrals, owner, kept, points)
+      call set_face_nodes(line_of(slave, outward(1)), line_of(master, outward(2)), &
+         [slave%nodes, master%nodes], owner, kept, points)
       points%initial_gap = -sum(points%normal*reshape([ &
          means(points, mesh%coordinates(1, :)), means(points, mesh%coordinates(2, :))], &
          shape(points%normal), order=[2, 1]), dim=1)
       allocate (points%master_node, mold=points%slave_node)
+      if (size(kept) > 0 .and. .not. master%closed) points%to_end = ends_beyond(mesh%coordinates( &
+         :, master%nodes([1, size(master%nodes)])), points)
       do c = 1, size(kept)
          points%master_node(c) = master%nodes(minloc(norm2(mesh%coordinates(:, master%nodes) - &
             spread(points%position(:, c), 2, size(master%nodes)), dim=1), dim=1))
@@ -106,26 +115,76 @@ contains
       type(mortar_integrals_type), intent(in) :: integrals
       integer, intent(in) :: owner(:), kept(:)
       type(contact_points_type), intent(inout) :: points
-      integer, allocatable :: nodes(:)
-      real(dp), allocatable :: share(:)
+      integer, allocatable :: nodes(:), of_slave(:), of_master(:)
+      real(dp), allocatable :: share(:), share_slave(:), share_master(:)
       integer :: c, k
 
       allocate (points%weight(size(kept)))
-      call points%difference%reserve(size(kept), size(kept)*2*(slave%side_nodes + &
-         master%side_nodes))
+      associate (terms => size(kept)*2*(slave%side_nodes + master%side_nodes))
+         call points%difference%reserve(size(kept), terms)
+         call points%slave_mean%reserve(size(kept), terms)
+         call points%master_mean%reserve(size(kept), terms)
+      end associate
       do k = 1, size(kept)
          ! The corner's own node comes first.
          nodes = points%slave_node(k:k)
          share = [0.0_dp]
+         of_slave = nodes
+         share_slave = share
+         allocate (of_master(0), share_master(0))
          do c = 1, size(owner)
             if (owner(c) /= kept(k)) cycle
             call add_row(integrals%slave, c, slave%nodes, 1.0_dp, nodes, share)
             call add_row(integrals%master, c, master%nodes, -1.0_dp, nodes, share)
+            call add_row(integrals%slave, c, slave%nodes, 1.0_dp, of_slave, share_slave)
+            call add_row(integrals%master, c, master%nodes, 1.0_dp, of_master, share_master)
          end do
          points%weight(k) = sum(integrals%weight, mask=owner == kept(k))
          call points%difference%add(nodes, share/points%weight(k))
+         call points%slave_mean%add(of_slave, share_slave/points%weight(k))
+         call points%master_mean%add(of_master, share_master/points%weight(k))
+         deallocate (of_master, share_master)
       end do
    end subroutine set_means
+
+   !> The nodes of both faces that carry contact quantities.
+   pure subroutine set_face_nodes(slave, master, nodes, owner, kept, points)
+      type(face_line_type), intent(in) :: slave, master
+      integer, intent(in) :: nodes(:)                  ! of the slave, then of the master
+      integer, intent(in) :: owner(:), kept(:)
+      type(contact_points_type), intent(inout) :: points
+      type(sum_list_type) :: on_face(2)
+      integer :: c, i, k, n
+
+      call interpolate_on_faces(slave, master, [(findloc(kept, owner(c), dim=1), c=1, &
+         size(owner))], owner == [(c, c=1, size(owner))], on_face(1), on_face(2))
+      allocate (points%face_node(0))
+      call points%at_face_nodes%reserve(size(nodes), 2*size(nodes))
+      n = 0
+      do i = 1, 2
+         do k = 1, on_face(i)%count
+            associate (terms => on_face(i)%values_of(k))
+               if (size(terms) == 0) cycle
+               points%face_node = [points%face_node, nodes(n + k)]
+               call points%at_face_nodes%add(terms, on_face(i)%coefficients_of(k))
+            end associate
+         end do
+         n = n + on_face(i)%count
+      end do
+   end subroutine set_face_nodes
+
+   !> How far the first and the last contact point lie from the ends of the master, along the slave;
+   !> 0 where they lie beyond it.
+   pure function ends_beyond(ends, points) result(distance)
+      real(dp), intent(in) :: ends(2, 2)               ! [length]
+      type(contact_points_type), intent(in) :: points
+      real(dp) :: distance(2)
+      integer :: m
+
+      m = size(points%slave_node)
+      distance = max(0.0_dp, [dot_product(points%tangent(:, 1), points%position(:, 1) - &
+         ends(:, 1)), dot_product(points%tangent(:, m), ends(:, 2) - points%position(:, m))])
+   end function ends_beyond
 
    !> Adds a row of a matrix to a sum of nodal values.
    pure subroutine add_row(matrix, row, node, sign, nodes, share)

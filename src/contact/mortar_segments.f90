@@ -25,6 +25,7 @@ module mortar_segments
    implicit none
    private
    public :: face_line_type, mortar_integrals_type, integrate_segments, cross
+   public :: beside_normal, opposite_coordinate, side_opposite, side_type, sides_of
 
    real(dp), parameter :: two_pi = 6.283185307179586477_dp
    real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
@@ -75,30 +76,26 @@ contains
       logical, intent(in) :: about_axis       !! whether areas are swept round the axis x = 0
       type(mortar_integrals_type), intent(out) :: integrals
       real(dp) :: master_normal(2, size(master%x, 2)), normal(2, size(slave%x, 2)), section
-      integer :: corners, k, s, sides
+      integer :: corners, k, s
       integer, allocatable :: segments(:)
       type(segment_sums_type) :: sums
       type(side_type), allocatable :: side(:)
 
-      sides = side_total(size(slave%x, 2), slave%side_nodes, slave%closed)
-      corners = sides + merge(0, 1, slave%closed)
+      side = sides_of(slave)
+      corners = size(side) + merge(0, 1, slave%closed)
       allocate (sums%weight(corners), sums%whole(corners), sums%facing(2, corners), source=0.0_dp)
       allocate (sums%apart(corners), source=huge(1.0_dp))
       normal = outward_normals(slave)
       master_normal = outward_normals(master)
-      allocate (side(sides), segments(sides))
-      do s = 1, sides
-         side(s)%nodes = side_positions(s, slave%side_nodes, size(slave%x, 2))
-         side(s)%corners = [s, modulo(s, corners) + 1]
-         side(s)%x = slave%x(:, side(s)%nodes)
-         side(s)%normal = normal(:, side(s)%nodes)
+      allocate (segments(size(side)))
+      do s = 1, size(side)
          call find_kinks(side(s), master)
          segments(s) = size(side(s)%kinks) - 1
       end do
       call sums%slave%reserve(2*slave%side_nodes*sum(segments))
       call sums%master%reserve(2*master%side_nodes*sum(segments))
       section = merge(0.0_dp, thickness, about_axis)
-      do s = 1, sides
+      do s = 1, size(side)
          do k = 1, segments(s)
             associate (ends => side(s)%kinks(k:k + 1))
                if (ends(2) - ends(1) > no_segment) call add_segment(side(s), ends, master, &
@@ -115,6 +112,24 @@ contains
       integrals%slave = sums%slave%compress(corners, size(slave%x, 2))
       integrals%master = sums%master%compress(corners, size(master%x, 2))
    end subroutine integrate_segments
+
+   !> The sides of the slave, with the normals of their nodes.
+   pure function sides_of(slave) result(side)
+      type(face_line_type), intent(in) :: slave
+      type(side_type), allocatable :: side(:)
+      real(dp) :: normal(2, size(slave%x, 2))
+      integer :: corners, s
+
+      allocate (side(side_total(size(slave%x, 2), slave%side_nodes, slave%closed)))
+      corners = size(side) + merge(0, 1, slave%closed)
+      normal = outward_normals(slave)
+      do s = 1, size(side)
+         side(s)%nodes = side_positions(s, slave%side_nodes, size(slave%x, 2))
+         side(s)%corners = [s, modulo(s, corners) + 1]
+         side(s)%x = slave%x(:, side(s)%nodes)
+         side(s)%normal = normal(:, side(s)%nodes)
+      end do
+   end function sides_of
 
    !> Adds the integrals over one segment; without a master opposite, the area of the hats alone.
    pure subroutine add_segment(side, ends, master, master_normal, section, sums)

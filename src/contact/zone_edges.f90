@@ -5,12 +5,14 @@
 !> smoothly. The contact points next to the edge err most, pressures more than gaps: the edge is the
 !> zero of a parabola through gap^(2/3) of the second to fourth open contact point, kept between the
 !> two contact points. Where there are not so many, it is the mean of the zeros of straight lines
-!> through the two contact points on each side.
+!> through the two contact points on each side. Of mortar points the gap is the mean of (s - a)^(3/2)
+!> with a hat function, and they are as far apart as one or two node pairs: the edge is that of the
+!> C (s - a)^(3/2) whose means are the gaps of the first two open ones.
 !>
 !> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
 !> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
 !> contact point when the next one closed makes it noisy; so a straight line is fitted to the last
-!> two sides, weighted with the tributary lengths, which makes it the resultant and moment of the
+!> four node spacings, two sides of three nodes, weighted with the tributary lengths, which makes it the resultant and moment of the
 !> nodal forces themselves.
 !>
 !> Edges are looked for towards growing s; an edge on the other side is the same with the arrays
@@ -25,7 +27,8 @@ module zone_edges
 
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
-   integer, parameter :: fitted_points = 5  !! contact points of two three-node sides
+   integer, parameter :: fitted_spacings = 4   !! node spacings of two three-node sides
+   integer, parameter :: halvings = 60         !! of the interval with the edge
 
    !> What the contact points of an interface do, along it.
    type :: contact_profile_type
@@ -35,6 +38,9 @@ module zone_edges
       real(dp), allocatable :: pressure(:)   !! (m) [stress]
       real(dp), allocatable :: shear(:)      !! (m) [stress]
       real(dp), allocatable :: gap(:)        !! (m) [length]
+      !> node spacings from a contact point to the next, where gaps are means with hat functions; 0
+      !> for node pairs
+      integer :: hat_spacings = 0
    end type contact_profile_type
 
 contains
@@ -86,6 +92,7 @@ contains
       back%pressure = profile%pressure(m:1:-1)
       back%shear = profile%shear(m:1:-1)
       back%gap = profile%gap(m:1:-1)
+      back%hat_spacings = profile%hat_spacings
    end function turned
 
    !> Edge between closed contact point k and open contact point k + 1.
@@ -95,9 +102,15 @@ contains
       real(dp) :: edge
       real(dp) :: g(3)
 
-      associate (s => profile%s)
-         if (k + 4 <= size(s)) then
-            g = max(profile%gap(k + 2:k + 4), 0.0_dp)**(2.0_dp/3.0_dp)
+      associate (s => profile%s, gap => profile%gap)
+         if (profile%hat_spacings > 0 .and. k + 2 <= size(s)) then
+            if (profile%contact_state(k + 2) == contact_open .and. gap(k + 1) > 0.0_dp .and. &
+               gap(k + 2) > gap(k + 1)) then
+               edge = end_of_hats(s(k:min(k + 3, size(s))), gap(k + 1:k + 2))
+               return
+            end if
+         else if (k + 4 <= size(s)) then
+            g = max(gap(k + 2:k + 4), 0.0_dp)**(2.0_dp/3.0_dp)
             if (all(profile%contact_state(k + 2:k + 4) == contact_open) .and. g(1) < g(2) .and. &
                g(2) < g(3)) then
                edge = s(k + 2)*g(2)*g(3)/((g(2) - g(1))*(g(3) - g(1))) - &
@@ -110,6 +123,38 @@ contains
       end associate
       edge = end_of_lines(profile%s, profile%contact_state, profile%pressure, profile%gap, k)
    end function contact_end
+
+   !> Edge a of the C (s - a)^(3/2) whose means with two hat functions are the gaps there.
+   pure function end_of_hats(s, gap) result(edge)
+      real(dp), intent(in) :: s(:)      ! last closed, two open, and the next contact point, if any
+      real(dp), intent(in) :: gap(2)    ! of the two
+      real(dp) :: edge
+      real(dp) :: ends(2)
+      integer :: step
+
+      ends = s(:2)
+      do step = 1, halvings
+         edge = 0.5_dp*sum(ends)
+         if (mean_beyond(s(:3), edge)*gap(2) > gap(1)*mean_beyond(s(2:), edge)) then
+            ends(1) = edge
+         else
+            ends(2) = edge
+         end if
+      end do
+   end function end_of_hats
+
+   !> Mean of (x - a)^(3/2) beyond a with the hat function of the second of two or three contact
+   !> points.
+   pure real(dp) function mean_beyond(s, a)
+      real(dp), intent(in) :: s(:), a
+      real(dp) :: once(size(s)), twice(size(s))   ! the integrals of (x - a)^(3/2)
+
+      once = max(s - a, 0.0_dp)**2.5_dp/2.5_dp
+      twice = max(s - a, 0.0_dp)**3.5_dp/8.75_dp
+      mean_beyond = once(2) - (twice(2) - twice(1))/(s(2) - s(1))
+      if (size(s) > 2) mean_beyond = mean_beyond + (twice(3) - twice(2))/(s(3) - s(2)) - once(2)
+      mean_beyond = 2*mean_beyond/(s(size(s)) - s(1))
+   end function mean_beyond
 
    !> The same by straight lines through at most two contact points on each side.
    pure function end_of_lines(s, contact_state, pressure, gap, k) result(edge)
@@ -199,10 +244,10 @@ contains
       real(dp), intent(in) :: friction
       integer, intent(in) :: first, last
       real(dp) :: edge
-      real(dp) :: excess(fitted_points), limit, mean_s, mean_excess, slope, spread, total
+      real(dp) :: excess(fitted_spacings + 1), limit, mean_s, mean_excess, slope, spread, total
       integer :: n, start
 
-      start = max(first, last - fitted_points + 1)
+      start = max(first, last - fitted_spacings/max(profile%hat_spacings, 1))
       n = last - start + 1
       associate (s => profile%s(start:last), weight => profile%weight(start:last), &
          next_contact_state => profile%contact_state(last + 1))

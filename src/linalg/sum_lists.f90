@@ -3,7 +3,7 @@ module sum_lists
    use kinds, only: dp
    implicit none
    private
-   public :: sum_list_type, differences
+   public :: sum_list_type, differences, single_values
 
    !> The sums.
    type :: sum_list_type
@@ -34,6 +34,18 @@ contains
          call list%add([first(i), second(i)], [1.0_dp, -1.0_dp])
       end do
    end function differences
+
+   !> The values themselves, each a sum of its own.
+   pure function single_values(values) result(list)
+      integer, intent(in) :: values(:)              !! (n)
+      type(sum_list_type) :: list                   !! (n)
+      integer :: i
+
+      call list%reserve(size(values), size(values))
+      do i = 1, size(values)
+         call list%add(values(i:i), [1.0_dp])
+      end do
+   end function single_values
 
    !> Makes room, for no more than an estimate; what the list held is dropped.
    pure subroutine reserve(self, sums, terms)

@@ -5,7 +5,7 @@ module contact_definitions
    implicit none
    private
    public :: interaction_type, contact_definition_type, tie_definition_type
-   public :: pairing_by_faces, pairing_nodes, pairing_surfaces
+   public :: pairing_by_faces, pairing_nodes, pairing_surfaces, pairing_name
 
    integer, parameter :: pairing_by_faces = 0    !! nodes where the faces match, else surfaces
    integer, parameter :: pairing_nodes = 1       !! pairs of opposite nodes
@@ -49,5 +49,13 @@ contains
 
       words = trim(merge('tie         ', 'contact pair', self%is_tied))//' '//self%name
    end function title
+
+   !> The name of a pairing, as the deck has it.
+   pure function pairing_name(pairing) result(name)
+      integer, intent(in) :: pairing          !! pairing_nodes or pairing_surfaces
+      character(:), allocatable :: name
+
+      name = trim(merge('NODES   ', 'SURFACES', pairing == pairing_nodes))
+   end function pairing_name
 
 end module contact_definitions

@@ -34,7 +34,7 @@ module result_fields
       integer, allocatable, public :: point_node(:)              !! (points) node index
       integer, allocatable :: face_point(:)                      !! points on contact faces
       integer, allocatable :: face_interface(:)                  !! their interface
-      integer, allocatable :: face_contact_point(:)              !! their contact point in it
+      integer, allocatable :: face_row(:)                        !! their row of its at_face_nodes
       integer :: increments = 0                                  !! increments appended
       type(quantity_type), allocatable :: point_data(:)          !! point data that varies
       type(quantity_type), allocatable :: cell_data(:)           !! cell data that varies
@@ -186,20 +186,20 @@ contains
    subroutine find_faces(self, interfaces)
       class(field_results_type), intent(inout) :: self
       type(contact_points_type), intent(in) :: interfaces(:)
-      integer, allocatable :: interface_of(:), contact_point_of(:)
+      integer, allocatable :: interface_of(:), row_of(:)
       integer :: i, k
 
       allocate(interface_of(maxval([1, self%point_node])), source=0)
-      allocate(contact_point_of(size(interface_of)), source=0)
+      allocate(row_of(size(interface_of)), source=0)
       do i = 1, size(interfaces)
-         do k = 1, size(interfaces(i)%slave_node)
-            interface_of([interfaces(i)%slave_node(k), interfaces(i)%master_node(k)]) = i
-            contact_point_of([interfaces(i)%slave_node(k), interfaces(i)%master_node(k)]) = k
-         end do
+         associate (nodes => interfaces(i)%face_node)
+            interface_of(nodes) = i
+            row_of(nodes) = [(k, k=1, size(nodes))]
+         end associate
       end do
       self%face_point = pack([(k, k=1, size(self%point_node))], interface_of(self%point_node) > 0)
       self%face_interface = interface_of(self%point_node(self%face_point))
-      self%face_contact_point = contact_point_of(self%point_node(self%face_point))
+      self%face_row = row_of(self%point_node(self%face_point))
    end subroutine find_faces
 
    function field_values(self, quantity, record, interfaces) result(values)
@@ -210,7 +210,8 @@ contains
       real(dp), allocatable :: values(:)
 
       if (quantity%kind == of_contact_points) then
-         values = face_values(self, quantity%name(len(mark) + 1:), record, interfaces)
+         values = face_values(self, quantity%name(len(mark) + 1:), quantity%is_integer, record, &
+            interfaces)
       else
          values = or_nan(point_values(quantity%name, record%fields, self%point_node), &
             quantity%values*size(self%point_node))
@@ -227,9 +228,10 @@ contains
       if (size(values) == 0) filled = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, due)
    end function or_nan
 
-   function face_values(self, name, record, interfaces) result(values)
+   function face_values(self, name, is_state, record, interfaces) result(values)
       class(field_results_type), intent(in) :: self
       character(*), intent(in) :: name
+      logical, intent(in) :: is_state        ! not interpolated: that of the nearest contact point
       type(increment_record_type), intent(in) :: record
       type(contact_points_type), intent(in) :: interfaces(:)
       real(dp), allocatable :: values(:), face(:)
@@ -237,12 +239,27 @@ contains
 
       values = or_nan([real(dp) ::], size(self%point_node))
       do i = 1, size(interfaces)
-         face = contact_values(name, interfaces(i), record%contacts(i))
+         associate (at_nodes => interfaces(i)%at_face_nodes, &
+            of_points => contact_values(name, interfaces(i), record%contacts(i)))
+            if (is_state) then
+               face = [(nearest_value(at_nodes%coefficients_of(k), &
+                  of_points(at_nodes%values_of(k))), k=1, at_nodes%count)]
+            else
+               face = spread(0.0_dp, 1, at_nodes%count)
+               call at_nodes%add_totals(of_points, face)
+            end if
+         end associate
          do k = 1, size(self%face_point)
-            if (self%face_interface(k) == i) values(self%face_point(k)) = &
-               face(self%face_contact_point(k))
+            if (self%face_interface(k) == i) values(self%face_point(k)) = face(self%face_row(k))
          end do
       end do
    end function face_values
+
+   !> The value with the largest share; midway between two the larger one.
+   pure real(dp) function nearest_value(share, values)
+      real(dp), intent(in) :: share(:), values(:)
+
+      nearest_value = maxval(values, mask=share >= maxval(share))
+   end function nearest_value
 
 end module result_fields

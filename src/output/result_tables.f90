@@ -1,6 +1,7 @@
 !> Groups `/history`, `/convergence`, `/contact/<name>` and `/errors` of the result file.
 module result_tables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use contact_definitions, only: pairing_name
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, geometry_values
    use errors, only: error_type
@@ -193,6 +194,8 @@ contains
       call create_group(file, group, error)
       if (allocated(error)) return
       call write_attribute(file, group, 'friction', friction, error)
+      if (allocated(error)) return
+      call write_attribute(file, group, 'pairing', pairing_name(points%pairing), error)
       if (allocated(error)) return
       do i = 1, size(quantities)
          if (.not. quantities(i)%is_geometry) cycle

@@ -3,6 +3,7 @@ module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use balances, only: contact_violation, force_residual, imbalance, scales_type
    use conductance_laws, only: conductance
+   use contact_definitions, only: pairing_surfaces
    use contact_operator, only: kept_contact, thermal_forces
    use contact_points, only: contact_points_type
    use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
@@ -141,8 +142,10 @@ contains
             contact%force(first:last), contact%shear_force(first:last), record)
          record%slip = contact%tangential(first:last) - contact%slip_origin(first:last)
          if (allocated(bodies%thermal%matrix%value)) then
-            record%slave_temperature = next%temperature(points%slave_node)
-            record%master_temperature = next%temperature(points%master_node)
+            allocate (record%slave_temperature(size(closed)), record%master_temperature( &
+               size(closed)), source=0.0_dp)
+            call points%slave_mean%add_totals(next%temperature, record%slave_temperature)
+            call points%master_mean%add_totals(next%temperature, record%master_temperature)
          end if
          if (.not. with_heat) return
          record%conductance = carrying(first:last)
@@ -170,7 +173,8 @@ contains
       record%normal_force = sum(force)
       record%shear_force = sum(shear_force)
       profile = contact_profile_type(points%arc_length, points%weight, record%contact_state, &
-         record%pressure, record%shear, record%gap)
+         record%pressure, record%shear, record%gap, merge(points%node_spacings, 0, &
+         points%pairing == pairing_surfaces))
       call contact_edges(profile, record%edges_contact, record%edge_contact)
       call stick_edges(profile, friction, record%edges_stick, record%edge_stick)
    end subroutine measure_contact
