@@ -7,7 +7,7 @@ module contact_points
    use sum_lists, only: sum_list_type
    implicit none
    private
-   public :: contact_points_type, never_approached, no_radius, on_axis
+   public :: contact_points_type, never_approached, no_radius, on_axis, past_end, small_offset
 
    real(dp), parameter :: no_radius = 1.0e-9_dp  !! part of the largest radius that counts as 0
    real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
@@ -47,7 +47,26 @@ module contact_points
       logical :: about_axis = .false.          !! whether the model is axisymmetric
    end type contact_points_type
 
+   !> Part of the node spacing by which nodes may lie beside each other. An offset misplaces the
+   !> force of a node pair, as lumping does: where the pressure varies by half of its mean from node
+   !> to node, the resultant over a tributary length lies 1/24 of the spacing beside the node.
+   !> Smaller offsets are no coarser than the mesh itself, and far larger ones than those of rounded
+   !> coordinates.
+   real(dp), parameter :: small_offset = 0.05_dp
+
 contains
+
+   !> How far a movement along the face takes the first or the last contact point past the end of
+   !> the master, less what is small for the mesh; not positive where it stays.
+   pure real(dp) function past_end(points, last, movement)
+      type(contact_points_type), intent(in) :: points  !! contact points of one interface
+      logical, intent(in) :: last                      !! the last one or the first one
+      real(dp), intent(in) :: movement                 !! of the slave along its tangent [length]
+
+      past_end = -movement - points%to_end(1) - small_offset*points%edge(1)
+      if (last) past_end = movement - points%to_end(2) - &
+         small_offset*points%edge(size(points%edge))
+   end function past_end
 
    !> Whether a contact point neither closed nor came nearer than it was.
    elemental function never_approached(initial_gap, smallest_gap) result(never)

@@ -10,7 +10,7 @@ module interface_checks
    use text, only: to_text
    implicit none
    private
-   public :: check_shared, check_lines, check_sides, check_weights, check_opposite
+   public :: check_shared, compare_lines, check_sides, check_weights, check_opposite
    public :: check_corner, check_covered, blame_corner
 
    !> Cosine between outward normals from which on faces look the same way: curved faces that part
@@ -43,36 +43,35 @@ contains
          definition%title()//': '//message)
    end subroutine check_shared
 
-   !> The two lines are of one kind and have equally many nodes.
-   subroutine check_lines(mesh, definition, slave, master, error)
+   !> Says how two lines are not of one kind or have different numbers of nodes, and what to do for
+   !> node pairs.
+   subroutine compare_lines(mesh, definition, slave, master, message, advice)
       type(mesh_type), intent(in) :: mesh
-      type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
-      type(surface_chain_type), intent(in) :: slave           !! line of the slave
-      type(surface_chain_type), intent(in) :: master !! line of the master, along the slave's
-      type(error_type), allocatable, intent(out) :: error     !! what does not fit
-      character(:), allocatable :: message
+      type(contact_definition_type), intent(in) :: definition    !! the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: slave, master      !! their lines
+      character(:), allocatable, intent(out) :: message          !! empty where they are alike
+      character(:), allocatable, intent(out) :: advice           !! from its semicolon on
 
+      message = ''
+      advice = way_out
       associate (slave_name => mesh%surfaces(definition%slave)%name, &
          master_name => mesh%surfaces(definition%master)%name)
          if (slave%side_nodes /= master%side_nodes) then
             message = 'surface '//slave_name//' has sides of '//to_text(slave%side_nodes)// &
-               ' nodes, surface '//master_name//' of '//to_text(master%side_nodes)// &
-               '; mesh both with elements with midside nodes, or both without, '// &
+               ' nodes, surface '//master_name//' of '//to_text(master%side_nodes)
+            advice = '; mesh both with elements with midside nodes, or both without, '// &
                'or take PAIRING=SURFACES'
          else if (slave%closed .neqv. master%closed) then
             message = 'one of the surfaces '//slave_name//' and '//master_name// &
-               ' is a closed ring, the other one an open line; let both be rings or both '// &
-               'open, or take PAIRING=SURFACES'
+               ' is a closed ring, the other one an open line'
+            advice = '; let both be rings or both open, or take PAIRING=SURFACES'
          else if (size(slave%nodes) /= size(master%nodes)) then
             message = to_text(size(slave%nodes))//' slave nodes but '// &
                to_text(size(master%nodes))//' master nodes; '//without_partner(mesh, slave%nodes, &
-               master%nodes)//way_out
-         else
-            return
+               master%nodes)
          end if
       end associate
-      call set_error(error, status_deck, definition%title()//': '//message)
-   end subroutine check_lines
+   end subroutine compare_lines
 
    !> Names the first node of the longer line that has no partner: to the node of the other line
    !> that is nearest to it, another one is nearer.

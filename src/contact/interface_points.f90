@@ -5,13 +5,13 @@ module interface_points
    use contact_pairs, only: set_node_pairs
    use contact_points, only: contact_points_type
    use element_kinds, only: axisymmetric
-   use errors, only: error_type
+   use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use mesh, only: mesh_type
    use mortar_points, only: set_mortar_points
-   use interface_checks, only: blame_corner, check_corner, check_covered, check_lines, &
-      check_opposite, check_shared
-   use interface_warnings, only: faces_match
+   use interface_checks, only: blame_corner, check_corner, check_covered, check_opposite, &
+      check_shared, compare_lines
+   use interface_warnings, only: mismatch_of_pairs
    use surface_chains, only: chain_faces, precedes, surface_chain_type
    implicit none
    private
@@ -58,29 +58,31 @@ contains
       type(contact_points_type), intent(inout) :: points
       type(error_type), allocatable, intent(out) :: error
       type(contact_points_type) :: found
+      character(:), allocatable :: advice, mismatch
 
       if (definition%pairing /= pairing_surfaces) then
          found = points
-         call check_lines(mesh, definition, slave, master, error)
-         if (.not. allocated(error)) then
+         call compare_lines(mesh, definition, slave, master, mismatch, advice)
+         if (len(mismatch) == 0) then
             call set_node_pairs(mesh, definition, slave, master, turned, thickness, found, error)
             if (allocated(error)) return
-            if (definition%pairing == pairing_nodes) then
-               call check_opposite(mesh, found, error)
-            else if (faces_match(mesh, found)) then
-               points = found
-               return
-            end if
+            if (definition%pairing /= pairing_nodes) mismatch = mismatch_of_pairs(mesh, found)
          end if
          if (definition%pairing == pairing_nodes) then
-            if (allocated(error)) then
-               call blame_corner(mesh, definition, slave, master, error)
+            if (len(mismatch) > 0) then
+               call set_error(error, status_deck, definition%title()//': '// &
+                  mismatch//advice)
             else
-               points = found
+               call check_opposite(mesh, found, error)
             end if
+            if (allocated(error)) call blame_corner(mesh, definition, slave, master, error)
+         end if
+         if (allocated(error)) return
+         if (len(mismatch) == 0) then
+            points = found
             return
          end if
-         if (allocated(error)) deallocate (error)
+         points%mismatch = mismatch
       end if
       call check_corner(mesh, definition, slave, error)
       if (allocated(error)) return

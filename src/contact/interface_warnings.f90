@@ -2,33 +2,54 @@
 !> inside each other.
 module interface_warnings
    use contact_definitions, only: pairing_nodes
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, small_offset
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
    use text, only: to_text
    implicit none
    private
-   public :: faces_match, offset_warning, overlap_warning
+   public :: mismatch_of_pairs, offset_warning, overlap_warning
 
-   !> Part of the node spacing from which on an offset is warned of. It misplaces the force of the
-   !> contact point, as lumping does: where the pressure varies by half of its mean from node to
-   !> node, the resultant over a tributary length lies 1/24 of the spacing beside the node. Smaller
-   !> offsets are no coarser than the mesh itself, and far larger ones than those of rounded
-   !> coordinates.
-   real(dp), parameter :: small_offset = 0.05_dp
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
 
 contains
 
-   !> Whether all nodes lie opposite each other, so that node pairs are accurate.
-   pure logical function faces_match(mesh, points)
+   !> Says where nodes do not lie opposite each other, so that node pairs are not accurate.
+   pure function mismatch_of_pairs(mesh, points) result(reason)
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points    !! node pairs of one interface
+      character(:), allocatable :: reason                !! empty where all lie opposite
       real(dp) :: offset(size(points%edge)), part(size(points%edge))
+      integer :: k
 
+      reason = ''
       call find_offsets(mesh, points, offset, part)
-      faces_match = all(part <= small_offset .and. norm2(points%tangent, dim=1) > 0.5_dp)
-   end function faces_match
+      if (any(part > small_offset)) then
+         k = farthest(part)
+         reason = offset_words(mesh, points, offset(k), part(k), k)
+      else if (any(norm2(points%tangent, dim=1) <= 0.5_dp)) then
+         k = minloc(norm2(points%tangent, dim=1), dim=1)
+         reason = nodes_of(mesh, points, k)//' have no common normal'
+      end if
+   end function mismatch_of_pairs
+
+   !> The first of those that are largest but for rounding.
+   pure integer function farthest(part)
+      real(dp), intent(in) :: part(:)
+
+      farthest = findloc(part >= (1.0_dp - rounding)*maxval(part), .true., dim=1)
+   end function farthest
+
+   pure function offset_words(mesh, points, offset, part, k) result(words)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: offset, part
+      integer, intent(in) :: k
+      character(:), allocatable :: words
+
+      words = nodes_of(mesh, points, k)//' lie '//to_text(offset)//' beside each other, '// &
+         percent(part)//' of the node spacing'
+   end function offset_words
 
    !> How far the nodes lie beside each other. Offsets up to half the gap, as of curved faces that
    !> part far from the contact, count as none in the node spacing.
@@ -61,10 +82,9 @@ contains
       if (points%pairing /= pairing_nodes) return
       call find_offsets(mesh, points, offset, part)
       if (count(part > small_offset) == 0) return
-      k = findloc(part >= (1.0_dp - rounding)*maxval(part), .true., dim=1)
-      warning = 'contact pair '//points%name//': '//nodes_of(mesh, points, k)//' lie '// &
-         to_text(offset(k))//' beside each other, '//percent(part(k))//' of the node spacing '// &
-         '(contact points with more than '//percent(small_offset)//': '// &
+      k = farthest(part)
+      warning = 'contact pair '//points%name//': '//offset_words(mesh, points, offset(k), &
+         part(k), k)//' (contact points with more than '//percent(small_offset)//': '// &
          to_text(count(part > small_offset))//'); their contact forces are not in one line, '// &
          'and a moment of force times offset is lost; put the nodes opposite each other '// &
          'or take PAIRING=SURFACES'

@@ -9,7 +9,8 @@ module deck_check
    use kinds, only: dp
    use messages, only: print_line
    use model, only: model_type
-   use model_words, only: closed_law_words, friction_words, material_words, open_law_words
+   use model_words, only: closed_law_words, friction_words, material_words, open_law_words, &
+      open_words, pairing_words, points_words
    use run_description, only: describe_run
    use run_summaries, only: run_summary_type
    use text, only: to_text
@@ -71,8 +72,10 @@ contains
       do i = 1, size(simulation%bodies%interfaces)
          associate (points => simulation%bodies%interfaces(i))
             call line('contact pair '//points%name, to_text(size(points%slave_node))// &
-               ' node pairs, initial gaps '//to_text(minval(points%initial_gap))//' to '// &
+               ' '//points_words(points)//', initial gaps '//to_text(minval(points%initial_gap))//' to '// &
                to_text(maxval(points%initial_gap)))
+            call line('pairing of '//points%name, pairing_words(model%contacts(i)%pairing, points))
+            if (len(open_words(points)) > 0) call line('note on '//points%name, open_words(points))
          end associate
       end do
       if (run%has_biot) call line('contact Biot number', to_text(run%contact_biot(1))//' to '// &

@@ -1,11 +1,11 @@
 !> The listing's summary of the model: what will be modelled and why, sizes, interfaces.
 module listing_model
-   use contact_definitions, only: pairing_nodes
    use contact_points, only: contact_points_type
    use kinds, only: dp
    use listing_text, only: print_title, print_wrapped
    use model, only: model_type
-   use model_words, only: closed_law_words, friction_words, material_words, open_law_words
+   use model_words, only: closed_law_words, friction_words, material_words, &
+      open_law_words, open_words, pairing_words, points_words
    use steps, only: analysis_heat, analysis_static, solves_heat
    use run_summaries, only: or_blank, run_summary_type
    use text, only: to_text
@@ -61,8 +61,10 @@ contains
       has_heat = any(solves_heat(model%steps%analysis))
       do i = 1, size(interfaces)
          write (unit, '(/, 3x, 2a)') 'CONTACT PAIR ', interfaces(i)%name
-         call print_count(unit, trim(merge('node pairs            ', 'contact points, mortar', &
-            interfaces(i)%pairing == pairing_nodes)), size(interfaces(i)%slave_node))
+         call print_entry(unit, 'pairing', pairing_words(model%contacts(i)%pairing, interfaces(i)))
+         call print_count(unit, points_words(interfaces(i)), size(interfaces(i)%slave_node))
+         if (len(open_words(interfaces(i))) > 0) call print_entry(unit, 'note', &
+            open_words(interfaces(i)))
          call print_entry(unit, 'length', to_text(maxval(interfaces(i)%arc_length)))
          call print_entry(unit, 'initial gaps', &
             from_to([minval(interfaces(i)%initial_gap), maxval(interfaces(i)%initial_gap)]))

@@ -1,14 +1,51 @@
-!> Materials and surface interactions in words, as they were understood.
+!> Materials, surface interactions and pairings in words, as they were understood.
 module model_words
    use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_power, law_pressure
+   use contact_definitions, only: pairing_by_faces, pairing_name, pairing_nodes
+   use contact_points, only: contact_points_type
    use kinds, only: dp
    use materials, only: constant_type, material_type
    use text, only: to_text
    implicit none
    private
    public :: material_words, friction_words, open_law_words, closed_law_words
+   public :: open_words, pairing_words, points_words
 
 contains
+
+   !> What contact points are.
+   pure function points_words(points) result(words)
+      type(contact_points_type), intent(in) :: points    !! contact points of the interface
+      character(:), allocatable :: words
+
+      words = trim(merge('node pairs    ', 'contact points', points%pairing == pairing_nodes))
+   end function points_words
+
+   !> The pairing of an interface and, where the deck does not ask for one, why.
+   pure function pairing_words(asked, points) result(words)
+      integer, intent(in) :: asked                       !! what the deck asks for
+      type(contact_points_type), intent(in) :: points    !! contact points of the interface
+      character(:), allocatable :: words
+
+      words = pairing_name(points%pairing)
+      if (asked /= pairing_by_faces) return
+      if (allocated(points%mismatch)) then
+         words = words//', because the faces do not match: '//points%mismatch
+      else
+         words = words//', because the faces match'
+      end if
+   end function pairing_words
+
+   !> What the master leaves open of the slave; empty for nothing.
+   pure function open_words(points) result(words)
+      type(contact_points_type), intent(in) :: points    !! contact points of the interface
+      character(:), allocatable :: words
+
+      words = ''
+      if (points%open_corners == 0) return
+      words = to_text(points%open_corners)//' of '//to_text(points%corners)// &
+         ' slave corners have no master opposite and stay open'
+   end function open_words
 
    !> The constants of a material.
    pure function material_words(material) result(words)

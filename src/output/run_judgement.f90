@@ -1,12 +1,12 @@
 !> What only a whole run shows of a deck that may not be meant so: contact that never closes, no
 !> load that acts, large strains.
 module run_judgement
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, past_end
    use contact_states, only: contact_open
    use kinds, only: dp
    use mesh, only: extent_of
    use model, only: model_type
-   use records, only: increment_record_type
+   use records, only: contact_record_type, increment_record_type
    use steps, only: solves_heat, solves_mechanics
    use strains, only: largest_strain
    use warning_summary, only: warning_summary_type
@@ -26,6 +26,8 @@ module run_judgement
       logical :: warms = .false.                   !! whether a temperature left its initial value
       logical, allocatable :: closes(:)           !! (interfaces) whether a contact point was closed
       real(dp), allocatable :: smallest_gap(:)     !! (interfaces) [length]
+      !> (first or last contact point, interfaces) farthest past the master's end so far [length]
+      real(dp), allocatable :: past(:, :)
       real(dp) :: strain = 0.0_dp                  !! largest so far [-]
       integer :: element = 0                       !! element that has it
       integer :: increment = 0                     !! increment that has it
@@ -50,6 +52,7 @@ contains
 
       if (.not. allocated(self%closes)) then
          allocate (self%closes(size(interfaces)), source=.false.)
+         allocate (self%past(2, size(interfaces)), source=0.0_dp)
          self%smallest_gap = [(minval(interfaces(i)%initial_gap), i=1, size(interfaces))]
       end if
       if (allocated(record%warnings)) call self%repeated%take(record%increment, record%warnings)
@@ -64,6 +67,7 @@ contains
                contact_open)
             self%smallest_gap(i) = min(self%smallest_gap(i), &
                minval(record%contacts(i)%smallest_gap))
+            call follow_ends(record%contacts(i), interfaces(i), self%past(:, i))
          end do
          if (.not. allocated(fields%stress)) return
          call largest_strain(model%mesh, fields%displacement, strain, element)
@@ -73,6 +77,21 @@ contains
          self%increment = record%increment
       end associate
    end subroutine take
+
+   !> Follows how far the first and the last contact point, where closed, move past the master's end.
+   pure subroutine follow_ends(contact, points, past)
+      type(contact_record_type), intent(in) :: contact
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(inout) :: past(2)
+      integer :: k, last
+
+      if (.not. allocated(contact%movement)) return
+      do last = 1, 2
+         k = merge(1, size(contact%movement), last == 1)
+         if (contact%contact_state(k) == contact_open) cycle
+         past(last) = max(past(last), past_end(points, last == 2, contact%movement(k)))
+      end do
+   end subroutine follow_ends
 
    !> Notes that the run ended early, so that what never happened might still have done.
    pure subroutine fail(self)
@@ -87,7 +106,7 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), allocatable :: lines(:)          !! one a warning
-      integer :: i
+      integer :: i, last
 
       lines = self%repeated%lines()
       if (.not. allocated(self%closes)) return
@@ -96,6 +115,18 @@ contains
          to_text(model%mesh%element_number(self%element))//' is '//percent(self%strain)// &
          '; strains and displacements are taken as small, which fails above '// &
          percent(small_strain))
+      do i = 1, size(interfaces)
+         associate (points => interfaces(i))
+            do last = 1, 2
+               if (self%past(last, i) <= 0.0_dp) cycle
+               call append(lines, 'contact pair '//points%name//': slave node '// &
+                  to_text(model%mesh%node_number(points%slave_node(merge(1, &
+                  size(points%slave_node), last == 1))))//' slides past the end of the master '// &
+                  'surface by more than a twentieth of its side; contact is solved as if it '// &
+                  'stayed opposite: let the master reach further, or exchange slave and master')
+            end do
+         end associate
+      end do
       if (self%ended_early) return
       if (any(solves_mechanics(model%steps%analysis))) then
          if (.not. self%moves) call append(lines, 'no load acts: all displacements are 0 in '// &

@@ -32,6 +32,8 @@ module records
       real(dp), allocatable :: pressure(:)             !! >= 0 in compression [stress]
       real(dp), allocatable :: shear(:)                !! on the slave, towards growing s [stress]
       real(dp), allocatable :: slip(:)                 !! of the slave since closing [length]
+      !> along the tangent, of the slave against the master since the start [length]
+      real(dp), allocatable :: movement(:)
       real(dp), allocatable :: smallest_gap(:)         !! smallest gamma so far [length]
       ! The next four are unallocated without heat.
       real(dp), allocatable :: conductance(:)          !! omega [power/(length^2 temperature)]

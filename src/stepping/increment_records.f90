@@ -140,7 +140,8 @@ contains
          end where
          call measure_contact(points, bodies%points%friction(first), closed, &
             contact%force(first:last), contact%shear_force(first:last), record)
-         record%slip = contact%tangential(first:last) - contact%slip_origin(first:last)
+         record%movement = contact%tangential(first:last)
+         record%slip = record%movement - contact%slip_origin(first:last)
          if (allocated(bodies%thermal%matrix%value)) then
             allocate (record%slave_temperature(size(closed)), record%master_temperature( &
                size(closed)), source=0.0_dp)
