@@ -28,7 +28,7 @@ def draw(result, options):
     for axes, window, nodes in panels:
         draw_elements(axes, cells, nodes)
         for contact in contacts:
-            draw_faces(axes, cells, contact, nodes)
+            draw_faces(axes, cells, result.faces(contact), contact, nodes)
         frame(axes, window, result.units, cut=nodes)
     if contacts:
         mark_window(whole, close, panels[1][1])
@@ -121,15 +121,18 @@ def draw_elements(axes, cells, close):
     axes.add_collection(LineCollection(lines, colors="black", linewidths=0.9, capstyle="round"))
 
 
-def draw_faces(axes, cells, contact, close):
+def draw_faces(axes, cells, faces, contact, close):
     """Mark the two faces of a contact: slave solid, master dashed; nodes in the close-up."""
     width = 1.8 if close else 1.3
-    for key, colour, dashes, marker, size in (
-        ("slave_node", style.VERMILION, "solid", "o", 4.2),
-        ("master_node", style.BLUE, (0, (2.2, 1.4)), "s", 2.4),
+    slave, master = faces
+    nodes = contact["slave_node"], contact["master_node"]
+    if contact.pairing != "NODES":
+        nodes = nodes[0], np.unique(cells.node_id[master[master >= 0]])
+    for edges, numbers, colour, dashes, marker, size in (
+        (slave, nodes[0], style.VERMILION, "solid", "o", 4.2),
+        (master, nodes[1], style.BLUE, (0, (2.2, 1.4)), "s", 2.4),
     ):
-        numbers = contact[key]
-        lines = curves(cells.face(numbers), cells.points)
+        lines = curves(edges, cells.points)
         axes.add_collection(
             LineCollection(lines, colors=colour, linewidths=width, linestyles=dashes, zorder=3)
         )

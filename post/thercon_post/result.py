@@ -32,11 +32,12 @@ FIELD_SOURCES = {
 
 @dataclass
 class Contact:
-    """One contact pair of the deck: arrays over its m node pairs, states over n increments."""
+    """One contact pair of the deck: arrays over its m contact points, states over n increments."""
 
     name: str
     data: dict
     friction: float | None
+    pairing: str = "NODES"
 
     def __getitem__(self, key):
         return self.data[key]
@@ -44,6 +45,11 @@ class Contact:
     def get(self, key):
         """Return the dataset `key`, or None where the deck does not model it."""
         return self.data.get(key)
+
+    @property
+    def point_word(self):
+        """What legends call a contact point."""
+        return "pair" if self.pairing == "NODES" else "point"
 
     def axis(self, along):
         """Return (name, coordinate of the pairs): x where it grows along the face, else s.
@@ -134,7 +140,8 @@ class Result:
         group = self.file["contact"][name]
         data = {key: item[()] for key, item in group.items()}
         friction = group.attrs.get("friction")
-        return Contact(name, data, None if friction is None else float(friction))
+        pairing = text(group.attrs.get("pairing", "NODES"))
+        return Contact(name, data, None if friction is None else float(friction), pairing)
 
     def contacts(self, name=None):
         """Return the contact pairs asked for: the named one, or all."""
@@ -166,6 +173,24 @@ class Result:
     def cells(self):
         """Mesh as written: points, cells and what bounds them."""
         return Cells.read(self.file["VTKHDF"])
+
+    def faces(self, contact):
+        """Return the element edges of slave and master of a contact.
+
+        Where its nodes are not paired, they are those that carry contact quantities: the slave's
+        have contact points at their ends, the master's none.
+        """
+        cells = self.cells
+        if contact.pairing == "NODES":
+            return [cells.face(contact[key]) for key in ("slave_node", "master_node")]
+        ends = np.concatenate([each["slave_node"] for each in self.contacts()])
+        step = len(self.file["VTKHDF/Steps/Values"]) - 1
+        status = self.point_data("contact_status", step) if step >= 0 else None
+        carry = np.zeros(len(cells.points), bool) if status is None else ~np.isnan(status)
+        both = cells.face(cells.node_id[carry])
+        of_slaves = np.isin(cells.node_id[both[:, :2]], ends).all(axis=1)
+        own = np.isin(cells.node_id[both[:, :2]], contact["slave_node"]).all(axis=1)
+        return [both[own], both[~of_slaves]]
 
     def field_row(self, row):
         """Return the index of the VTKHDF time step that holds the increment in `row`."""

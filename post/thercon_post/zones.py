@@ -197,6 +197,7 @@ class Picture:
 
     def legend_handles(self, overlays):
         """Return the legend's entries: curves, pair states, digitised figures."""
+        word = self.contact.point_word
         shown = [key for key in CURVES if not np.isnan(self.contact[key]).all()]
         handles = [
             Line2D([], [], color="black", ls=LINES[key], lw=1.2, label=CURVE_NAMES[key])
@@ -204,7 +205,7 @@ class Picture:
         ]
         handles += [
             Line2D(
-                [], [], ls="none", marker=marker, label=f"pair in {self.names[state][1]}", **options
+                [], [], ls="none", marker=marker, label=f"{word} in {self.names[state][1]}", **options
             )
             for state, marker, options in state_marks()
             if np.any(self.status == state)

@@ -81,7 +81,7 @@ contains
       points = 0
       if (s > 0) points = point_of(side(s)%corners)
       hat = 0.5_dp*[1.0_dp - xi, 1.0_dp + xi]
-      if (any(points == 0)) then
+      if (s == 0 .or. any(points == 0 .and. abs(hat) > 0.0_dp)) then
          call sums%add([integer ::], [real(dp) ::])
       else if (points(1) == points(2)) then
          call sums%add(points(:1), [1.0_dp])
