@@ -17,6 +17,7 @@ module variations
       integer :: levels = as_written            !! *REFINE, LEVELS=
       integer :: method = as_written            !! one of the method_* constants, in all steps
       integer :: solver = as_written            !! one of the solver_* constants
+      integer :: pairing = as_written           !! one of the pairing_* constants, of all contacts
       real(dp) :: tolerance = 0.0_dp            !! of the fixed point, in all steps; 0 as written
       real(dp) :: increments = 1.0_dp           !! factor on the size of all increments
       type(thermal_scheme_type), allocatable :: scheme   !! in all steps; unallocated as written
@@ -39,6 +40,7 @@ contains
       if (variation%order /= as_written) order = variation%order
       if (variation%levels /= as_written) levels = variation%levels
       if (variation%solver /= as_written) model%solver = variation%solver
+      if (variation%pairing /= as_written) model%contacts%pairing = variation%pairing
       do s = 1, size(model%steps)
          associate (step => model%steps(s))
             if (variation%method /= as_written) step%fixed_point%method = variation%method

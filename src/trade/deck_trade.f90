@@ -1,8 +1,11 @@
 !> `thercon trade`: speed against accuracy of one deck, measured.
 module deck_trade
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use all_contact_points, only: match_surfaces
    use cards, only: cards_type
    use command_line, only: command_type
+   use contact_definitions, only: pairing_by_faces, pairing_nodes, pairing_surfaces
+   use contact_points, only: contact_points_type
    use deck_preparation, only: prepare_deck
    use deck_run, only: base_name
    use element_kinds, only: element_corner_count
@@ -156,9 +159,30 @@ contains
          if (trade%count < first .and. level >= model%written_levels) exit
       end do
       first = trade%count + 1
-      call add_singles(model, trade)
+      call add_singles(model, other_pairing(model), trade)
       call measurement%run(trade, first, trade%count, error)
    end subroutine measure
+
+   !> The pairing that the deck does not have although all its faces match; 0 where one does not.
+   integer function other_pairing(model)
+      type(model_type), intent(in) :: model
+      type(model_type) :: by_faces
+      type(contact_points_type) :: points
+      type(error_type), allocatable :: error
+      integer :: i
+
+      other_pairing = 0
+      if (size(model%contacts) == 0) return
+      by_faces = model
+      by_faces%contacts%pairing = pairing_by_faces
+      do i = 1, size(model%contacts)
+         call match_surfaces(by_faces, i, points, error)
+         if (allocated(error)) return
+         if (points%pairing /= pairing_nodes) return
+      end do
+      other_pairing = merge(pairing_nodes, pairing_surfaces, &
+         any(model%contacts%pairing == pairing_surfaces))
+   end function other_pairing
 
    !> Takes the rows out again that would cost too much, but never the deck as it is written.
    subroutine keep_affordable(trade, first, command)

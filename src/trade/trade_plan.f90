@@ -1,6 +1,7 @@
 !> Which rows a trade has: the grid over mesh, increments and elements, level by level, and one
 !> thing at a time around the deck as it is written.
 module trade_plan
+   use contact_definitions, only: pairing_name
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
       method_names, solver_mumps, solver_skyline, thermal_scheme_type
    use element_kinds, only: quad8, quad8_reduced, triangle6
@@ -20,7 +21,7 @@ module trade_plan
    real(dp), parameter :: longest_factor = 4.0_dp   !! the first of them
    integer, parameter :: most_levels = 3            !! refinements beyond those of the deck
    real(dp), parameter :: tolerances(4) = [1.0e-3_dp, 1.0e-5_dp, 1.0e-8_dp, 1.0e-11_dp]
-   integer, parameter :: most_singles = 16          !! rows that vary one thing
+   integer, parameter :: most_singles = 17          !! rows that vary one thing
    type(thermal_scheme_type), parameter :: schemes(4) = [implicit_scheme, galerkin_scheme, &
       crank_nicolson_scheme, explicit_scheme]
 
@@ -63,8 +64,9 @@ contains
    end subroutine add_level
 
    !> Adds the rows that vary one thing, each where the deck has a use for it.
-   pure subroutine add_singles(model, trade)
+   pure subroutine add_singles(model, other_pairing, trade)
       type(model_type), intent(in) :: model        !! the model on the deck's mesh
+      integer, intent(in) :: other_pairing         !! pairing that the deck could have too, or 0
       type(trade_type), intent(inout) :: trade     !! receives the rows
       integer :: i, coupled, heated
 
@@ -88,6 +90,8 @@ contains
             call add_single(model, trade, trim(method_names(i)), method=i)
          end do
       end associate
+      if (other_pairing /= 0) call add_single(model, trade, pairing_name(other_pairing), &
+         pairing=other_pairing)
       if (model%solver == solver_skyline) then
          call add_single(model, trade, 'MUMPS', solver=solver_mumps)
       else
@@ -95,13 +99,13 @@ contains
       end if
    end subroutine add_singles
 
-   pure subroutine add_single(model, trade, varied, tolerance, scheme, method, solver)
+   pure subroutine add_single(model, trade, varied, tolerance, scheme, method, solver, pairing)
       type(model_type), intent(in) :: model
       type(trade_type), intent(inout) :: trade
       character(*), intent(in) :: varied
       real(dp), intent(in), optional :: tolerance
       type(thermal_scheme_type), intent(in), optional :: scheme
-      integer, intent(in), optional :: method, solver
+      integer, intent(in), optional :: method, solver, pairing
       type(trade_row_type) :: row
 
       row%order = default_order(model)
@@ -115,6 +119,7 @@ contains
       if (present(scheme)) row%variation%scheme = scheme
       if (present(method)) row%variation%method = method
       if (present(solver)) row%variation%solver = solver
+      if (present(pairing)) row%variation%pairing = pairing
       call add(trade, row)
    end subroutine add_single
 

@@ -20,7 +20,7 @@ PREFACE = """# Accuracy, and what it costs
 How far results are from the exact ones, what a user pays for more accuracy, and how other programs fare. The document
 is written by `python tests/accuracy/report.py` from runs of the program; the tests `accuracy_*` run a part of them again.
 """
-DOCUMENT = Document("accuracy.md", HERE, ("estimate", "recovered", "trade", "cylinder", "needed", "calculix"),
+DOCUMENT = Document("accuracy.md", HERE, ("estimate", "pairing", "recovered", "trade", "cylinder", "needed", "calculix"),
                     PREFACE)
 check, check_parts, rows = DOCUMENT.check, DOCUMENT.check_parts, DOCUMENT.rows
 check_rows = DOCUMENT.check_rows

@@ -60,9 +60,10 @@ CASES = (Case("cylinder", CYLINDER, "FACE", True),
          Case("press fit", INPUT / "examples" / "press_fit.inp", "SEAT"))
 
 
-def solve_case(case, level, parts, folder, estimates):
-    """Return the result file of a run."""
-    text = case.deck.read_text()
+def case_deck(case, level, parts, folder, estimates, pairing="NODES"):
+    """Write the deck of a case; return its path."""
+    text = re.sub(r", PAIRING=\w+", "", case.deck.read_text())
+    text = text.replace("*CONTACT PAIR,", f"*CONTACT PAIR, PAIRING={pairing},")
     text = re.sub(r"^\*REFINE.*\n", "", text, flags=re.M)
     text = text.split("*VERIFY")[0]
     text = re.sub(r"INC=\d+", "INC=10000", text)
@@ -75,7 +76,12 @@ def solve_case(case, level, parts, folder, estimates):
         (folder / mesh.name).write_text(mesh.read_text())
     deck = folder / f"{case.name.replace(' ', '_')}_{level}_{parts}.inp"
     deck.write_text(text)
-    return solve(deck, seconds=900)
+    return deck
+
+
+def solve_case(case, level, parts, folder, estimates):
+    """Return the result file of a run."""
+    return solve(case_deck(case, level, parts, folder, estimates), seconds=900)
 
 
 def run_case(case, level, parts, folder):

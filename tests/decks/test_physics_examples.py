@@ -63,6 +63,15 @@ def hot_sleeve():
     return found
 
 
+def roller():
+    """Hertz: a cylinder on a half-space, in plane strain."""
+    force, radius = 400.0, 20.0
+    compliance = (1 - 0.3**2) / 2.1e5 + (1 - 0.33**2) / 7.0e4
+    a = (4 * force * radius * compliance / pi) ** 0.5
+    return {("edge_contact", "LINE", "1."): a, ("pressure", "LINE@0.", "1."): 2 * force / (pi * a),
+            ("normal_force", "LINE", "1."): force / 2, ("normal_force", "LINE", "LAST"): force / 2}
+
+
 def fuel_pellet():
     """Free expansion, balances."""
     heat = 0.5 * pi * 4.1**2 * 30

@@ -36,6 +36,7 @@ COLUMNS = [
 CARDS = {"TOL": "*FIXED POINT, <>", "MUMPS": "*SOLVER, TYPE=<>"}
 CARDS |= {name: "*FIXED POINT, METHOD=<>" for name in ("NEWTON", "ANDERSON", "ZAITSEV", "PICARD")}
 CARDS |= {name: "*THERMAL SCHEME, TYPE=<>" for name in ("GALERKIN", "CRANK", "EXPLICIT")}
+PAIRINGS = "NODES", "SURFACES"
 
 
 def trade(deck, folder, *arguments, status=0):
@@ -63,6 +64,8 @@ def as_cards(deck, row, target):
                 lines += [card for word, card in CARDS.items() if row["varied"].startswith(word)]
                 lines = [card.replace("<>", row["varied"]) for card in lines]
             line = line.replace("INC=100", "INC=1000")
+            if line.startswith("*CONTACT PAIR") and row["varied"] in PAIRINGS:
+                line = re.sub(r", PAIRING=\w+", "", line) + f", PAIRING={row['varied']}"
         elif due and not line.startswith("*"):
             first, period = line.split(",")[:2]
             longer = min(float(first) * float(row["increment_factor"]), float(period))
