@@ -1,6 +1,6 @@
-!> Contact quantities at the nodes of both faces of mortar points, for fields: linear along each side
-!> of the slave, as the multipliers are; at a node of the master that of the slave's point whose
-!> normal meets it. A node outside the covered part has none.
+!> Contact quantities at the nodes of both faces of mortar points, for fields: linear along each
+!> side of the slave, as the multipliers are; at a node of the master that of the slave's point
+!> whose normal meets it. A node outside the covered part has none.
 module face_interpolation
    use chain_geometry, only: side_positions
    use kinds, only: dp

@@ -5,15 +5,15 @@
 !> smoothly. The contact points next to the edge err most, pressures more than gaps: the edge is the
 !> zero of a parabola through gap^(2/3) of the second to fourth open contact point, kept between the
 !> two contact points. Where there are not so many, it is the mean of the zeros of straight lines
-!> through the two contact points on each side. Of mortar points the gap is the mean of (s - a)^(3/2)
-!> with a hat function, and they are as far apart as one or two node pairs: the edge is that of the
-!> C (s - a)^(3/2) whose means are the gaps of the first two open ones.
+!> through the two contact points on each side. Of mortar points the gap is the mean of
+!> (s - a)^(3/2) with a hat function, and they are as far apart as one or two node pairs: the edge
+!> is that of the C (s - a)^(3/2) whose means are the gaps of the first two open ones.
 !>
 !> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
 !> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
 !> contact point when the next one closed makes it noisy; so a straight line is fitted to the last
-!> four node spacings, two sides of three nodes, weighted with the tributary lengths, which makes it the resultant and moment of the
-!> nodal forces themselves.
+!> four node spacings, two sides of three nodes, weighted with the tributary lengths, which makes it
+!> the resultant and moment of the nodal forces themselves.
 !>
 !> Edges are looked for towards growing s; an edge on the other side is the same with the arrays
 !> turned round. On a closed face none is looked for between the last contact point and the first.

@@ -72,8 +72,8 @@ contains
       do i = 1, size(simulation%bodies%interfaces)
          associate (points => simulation%bodies%interfaces(i))
             call line('contact pair '//points%name, to_text(size(points%slave_node))// &
-               ' '//points_words(points)//', initial gaps '//to_text(minval(points%initial_gap))//' to '// &
-               to_text(maxval(points%initial_gap)))
+               ' '//points_words(points)//', initial gaps '// &
+               to_text(minval(points%initial_gap))//' to '//to_text(maxval(points%initial_gap)))
             call line('pairing of '//points%name, pairing_words(model%contacts(i)%pairing, points))
             if (len(open_words(points)) > 0) call line('note on '//points%name, open_words(points))
          end associate

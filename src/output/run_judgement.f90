@@ -78,7 +78,7 @@ contains
       end associate
    end subroutine take
 
-   !> Follows how far the first and the last contact point, where closed, move past the master's end.
+   !> Follows how far the first and the last contact point, if closed, move past the master's end.
    pure subroutine follow_ends(contact, points, past)
       type(contact_record_type), intent(in) :: contact
       type(contact_points_type), intent(in) :: points
