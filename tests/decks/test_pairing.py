@@ -61,7 +61,6 @@ def write(path, upper, lower, pairing="", slide=0.0):
     return path
 
 
-@pytest.mark.changes("CONTACT PAIR, PAIRING")
 @pytest.mark.parametrize(
     ("columns", "asked", "pairing", "said"),
     [

@@ -187,7 +187,7 @@ def test_every_axis_is_varied(r2):
                     for factor in ("1", "0.5", "0.25")}
     single = {row["varied"] for row in rows} - {""}
     assert single == {"TOL=1E-3", "TOL=1E-5", "TOL=1E-8", "GALERKIN", "CRANK-NICOLSON", "EXPLICIT",
-                      "PICARD", "ZAITSEV", "ANDERSON", "MUMPS"}
+                      "PICARD", "ZAITSEV", "ANDERSON", "SURFACES", "MUMPS"}
     (default,) = (row for row in rows if row["default"] == "1")
     assert (default["elements"], default["level"], default["increment_factor"]) == ("Q8", "0", "1")
 

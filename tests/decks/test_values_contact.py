@@ -45,6 +45,19 @@ def test_every_field_of_a_table_of_pressure(tmp_path, other):
     follows(tmp_path, make, (0.5, 0.0, 1.5, 10.0), other)
 
 
+@pytest.mark.changes("CONTACT PAIR, PAIRING")
+def test_the_pairing_gives_a_corner_its_part_of_the_face(tmp_path):
+    """A sixth of the side by Simpson's rule, or the half of it by a hat; the flux is that of both."""
+    def make(pairing):
+        weight = {"NODES": XS[1] / 6, "SURFACES": XS[1] / 2}[pairing]
+        deck = [card.replace("NAME=FACE", f"NAME=FACE, PAIRING={pairing}")
+                if card.startswith("*CONTACT PAIR") else card
+                for card in pressed("*GAP CONDUCTANCE", "1., 0.", "1., 10.")]
+        return deck, [*crossing(1.0), ("weight", "FACE@0.", "LAST", weight, 1e-10)]
+
+    follows(tmp_path, make, "NODES", "SURFACES")
+
+
 @pytest.mark.changes("GAP CONDUCTANCE, PRESSURE", "GAP CONDUCTANCE, CLEARANCE")
 def test_the_second_column_is_what_the_parameter_says(tmp_path):
     """Under the pressure 5: the mean of two rows, or the value at clearance 0."""
