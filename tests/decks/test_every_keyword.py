@@ -15,6 +15,7 @@ ONE_VALUE = {
     "END STEP": "no data, no parameter",
     "SURFACE, TYPE": "ELEMENT is the only one that is built",
     "INITIAL CONDITIONS, TYPE": "TEMPERATURE is the only one",
+    "BOUNDARY, TYPE": "DISPLACEMENT is the only one",
     "STEP, NLGEOM": "NO is the only one",
     "NSET, ELSET": "stands in the section of both",
     "ELSET, NSET": "stands in the section of both",
@@ -22,7 +23,7 @@ ONE_VALUE = {
     "GAP CONDUCTANCE, DEPENDENCIES": "refused",
     "CLEARANCE": "no data", "FIXED POINT": "no data", "INCLUDE": "no data",
     "MATERIAL": "no data", "OPTIONS": "no data", "REFINE": "no data", "SOLVER": "no data",
-    "STEP": "no data", "SURFACE INTERACTION": "no data",
+    "STEP": "no data", "SURFACE INTERACTION": "its thickness is not needed",
 }
 
 

@@ -36,6 +36,15 @@ CHANGES = {
     "ZERO": ("*EXPANSION", "*EXPANSION, ZERO=300.", "ZERO"),
     "SOLVER": ("*STATIC", "*STATIC, SOLVER=SPOOLES", "SOLVER"),
     "stick slope": ("0.3", "0.3, 1.E5", "stick slope"),
+    "thickness": ("*FRICTION", "1.,\n*FRICTION", "*SURFACE INTERACTION"),
+    "slip tolerance": ("*FRICTION", "*FRICTION, SLIP TOLERANCE=0.005", "SLIP TOLERANCE"),
+    "name of a step": ("*STEP", "*STEP, NAME=PRESS, UNSYMM=YES, EXTRAPOLATION=NO",
+                       "EXTRAPOLATION"),
+    "stabilization": ("*STATIC", "*STATIC, STABILIZE=2.E-4, ALLSDTOL=0.05, CONTINUE=NO",
+                      "STABILIZE"),
+    "stabilization by default": ("*STATIC", "*STATIC, STABILIZE", "STABILIZE"),
+    "axes of output": ("*END STEP", "*ELEMENT OUTPUT, DIRECTIONS=YES\nS\n*END STEP", "DIRECTIONS"),
+    "symmetry of the third axis": ("*BOUNDARY", "*BOUNDARY, TYPE=DISPLACEMENT\nUP, ZSYMM", "3 to 6"),
     "temperature": ("1e-05", "1e-05, 20.", "temperature"),
 }
 

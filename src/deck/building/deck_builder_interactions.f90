@@ -51,6 +51,7 @@ contains
                   call report%lose('surface interaction')
                end if
                law_place = card%place
+               call pass_thickness(cards, card, context, report)
                call build_laws(cards, k, context, report, model%interactions(n), law_place)
                if (report%error_count() > errors .or. card%flawed) cycle
                call check_law(card, law_place, model%interactions(n), report)
@@ -65,6 +66,26 @@ contains
          end associate
       end do
    end subroutine build_interactions
+
+   !> Thickness of the contact out of the plane, which Abaqus takes for surfaces of nodes alone.
+   subroutine pass_thickness(cards, card, context, report)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: thickness
+      logical :: valid
+
+      if (card%last_data < card%first_data) return
+      valid = .true.
+      thickness = 1.0_dp
+      call take_field(cards%data(card%first_data), 1, 'thickness', report, thickness, valid)
+      call check_extra(cards%data(card%first_data), 1, 'thickness', report)
+      if (thickness <= 0.0_dp) call report%error(field_place(cards%data(card%first_data), 1), &
+         'the thickness must be positive')
+      call context%note('*SURFACE INTERACTION: the thickness is read and not needed: that of '// &
+         '*SOLID SECTION is taken')
+   end subroutine pass_thickness
 
    !> Index of a surface interaction by its name; 0 for an unknown one.
    pure integer function find_interaction(interactions, name)

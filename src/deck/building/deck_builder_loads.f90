@@ -2,8 +2,9 @@
 module deck_builder_loads
    use amplitudes, only: amplitude_type
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text
-   use card_values, only: check_extra, need_field, take_field
+   use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use deck_builder_boundaries, only: build_boundary
    use deck_builder_element_loads, only: build_element_load
    use deck_builder_histories, only: find_amplitude
    use deck_builder_surface_loads, only: build_surface_load
@@ -31,12 +32,15 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives the requests
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(request_type) :: request
+      character(:), allocatable :: kind
       integer :: j, errors, film_amplitude
 
       if (step == 0 .and. card%name /= 'BOUNDARY') return
       errors = report%error_count()
       request%step = step
       film_amplitude = 0
+      kind = 'DISPLACEMENT'
+      call choose(card, 'TYPE', 'DISPLACEMENT', report, kind)
       call read_operation(card, step, model, context, report)
       call read_amplitude(card, 'AMPLITUDE', model, report, request%amplitude)
       call read_amplitude(card, 'FILM AMPLITUDE', model, report, film_amplitude)
@@ -149,63 +153,6 @@ contains
          ' becomes negative ('//to_text(minval(amplitude%values))//'), which a film '// &
          'coefficient cannot be; give factors from 0 on')
    end subroutine check_film
-
-   !> Node or set, first and last degree of freedom, value; 0 on the degrees 3 to 6, which a plane
-   !> has not, is passed over.
-   subroutine build_boundary(data, request, model, context, report)
-      type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request
-      type(model_type), intent(in) :: model
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      integer :: first, last, dof
-      logical :: valid
-
-      request%card = request_card(context)
-      valid = .true.
-      request%value = 0.0_dp
-      call read_target(data, 1, 'node', context%node_index, model%mesh%node_sets, report, &
-         request%item, request%set, valid)
-      first = 0
-      call need_field(data, 2, 'first degree of freedom', report, first, valid)
-      last = first
-      call take_field(data, 3, 'last degree of freedom', report, last, valid)
-      call take_field(data, 4, 'value', report, request%value, valid)
-      call check_extra(data, 4, 'node or set, first and last degree of freedom, value', report)
-      if (.not. valid) return
-      if (last < first) then
-         call report%error(field_place(data, 3), 'the last degree of freedom is below the first')
-         return
-      end if
-      do dof = first, last
-         select case (dof)
-         case (1, 2, dof_temperature)
-            request%component = dof
-            call context%boundaries%add(request)
-         case (3:6)
-            if (abs(request%value) > 0.0_dp) then
-               call report%error(field_place(data, 4), 'degree of freedom '//to_text(dof)// &
-                  ' can only be 0 in the plane')
-               return
-            end if
-            call context%note('*BOUNDARY: 0 on degrees of freedom 3 to 6 is read and not needed')
-         case default
-            call report%error(field_place(data, merge(2, 3, dof == first)), &
-               'degree of freedom '//to_text(dof)//'; the plane has 1, 2 and 11')
-            return
-         end select
-      end do
-   end subroutine build_boundary
-
-   !> Number of the next data card of *BOUNDARY.
-   pure integer function request_card(context)
-      type(deck_context_type), intent(in) :: context
-
-      request_card = 1
-      if (context%boundaries%count > 0) then
-         request_card = context%boundaries%items(context%boundaries%count)%card + 1
-      end if
-   end function request_card
 
    !> *CLOAD, *CFLUX: node or set, degree of freedom, value; *TEMPERATURE: node or set, value.
    subroutine build_nodal_load(keyword, data, request, model, context, report)

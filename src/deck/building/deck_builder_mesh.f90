@@ -178,7 +178,7 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives the numbers
       type(mesh_type), intent(inout) :: mesh               !! receives the elements
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      character(:), allocatable :: name, message
+      character(:), allocatable :: name, message, note
       integer, allocatable :: card(:)
       integer :: k, j, kind, n, plane
 
@@ -195,7 +195,10 @@ contains
          if (cards%keywords(k)%name /= 'ELEMENT' .or. is_line_card(cards%keywords(k))) cycle
          call need_parameter(cards%keywords(k), 'TYPE', report, name)
          message = ''
-         if (len(name) > 0) call take_element_type(name, kind, plane, message)
+         if (len(name) > 0) then
+            call take_element_type(name, kind, plane, message, note)
+            if (len(note) > 0) call context%note(note)
+         end if
          if (context%plane /= plane_by_element) plane = context%plane
          if (len(message) > 0) call report%error(parameter_place(cards%keywords(k), 'TYPE'), &
             message)

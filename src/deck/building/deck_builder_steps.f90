@@ -178,7 +178,7 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
-      character(:), allocatable :: direct
+      character(:), allocatable :: creep, direct
       integer :: errors
 
       errors = report%error_count()
@@ -194,6 +194,8 @@ contains
          call report%error(card%place, '*'//card%name// &
             ' needs STEADY STATE: heat capacity is not modelled')
       end if
+      creep = 'NONE'
+      call choose(card, 'CREEP', 'NONE', report, creep)
       direct = 'NO'
       if (has_parameter(card, 'DIRECT')) direct = 'YES'
       if (len(parameter_text(card, 'DIRECT')) > 0) then

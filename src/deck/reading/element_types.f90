@@ -16,48 +16,93 @@ module element_types
 
 contains
 
-   !> Kind and plane that an element type names, or why it cannot be used.
-   pure subroutine take_element_type(name, kind, plane, message)
+   !> Kind and plane that an element type names, or why it cannot be used. Types of Abaqus for heat
+   !> (DC2D, DCAX), for both fields (T) and hybrid ones (H) are those of this program.
+   pure subroutine take_element_type(name, kind, plane, message, note)
       character(*), intent(in) :: name           !! TYPE= in upper case
       integer, intent(out) :: kind               !! quad8, ...; quad8 after an error
       integer, intent(out) :: plane              !! plane_strain, ...; plane_strain after an error
       character(:), allocatable, intent(out) :: message   !! what is wrong, or empty
+      !> What the type is taken for, or empty
+      character(:), allocatable, intent(out), optional :: note
       type(string_type) :: names(size(plane_names)*size(kind_names))
-      character(:), allocatable :: solid_name
+      character(:), allocatable :: own
       integer :: i, k, n
 
       kind = quad8
       plane = plane_strain
       message = ''
+      if (present(note)) note = ''
       n = 0
-      ! Abaqus' names of elements that conduct heat; CalculiX takes those of rings too.
-      solid_name = name
-      if (index(name, 'DCAX') == 1) solid_name = name(2:)
+      own = own_name(name)
       do i = 1, size(plane_names)
          do k = 1, size(kind_names)
             n = n + 1
             names(n)%value = trim(plane_names(i)//kind_names(k))
-            if (solid_name /= names(n)%value) cycle
+            if (own /= names(n)%value) cycle
             kind = element_kinds_named(k)
             plane = planes(i)
+            if (present(note) .and. own /= name) note = '*ELEMENT, TYPE='//name//' is '//own// &
+               difference(name)
             return
          end do
       end do
-      if (any(plane_names//'4R' == name)) then
-         message = 'element type '//name// &
-            ' is refused: linear elements with reduced integration need hourglass control; '// &
-            'take '//name(:4)
-      else if (index(name, 'C3D') == 1) then
-         message = 'element type '//name//' is refused: models are two-dimensional'
-      else if (name == 'M3D9') then
-         message = 'element type M3D9 is refused: quadrilaterals of second order have 8 nodes; '// &
-            'in gmsh set Mesh.SecondOrderIncomplete = 1'
-      else if (index(name, 'DC2D') == 1) then
-         message = 'element type '//name//' is refused; take CPE'//name(5:)
-      else
-         message = 'unknown element type '//name//nearest_known(name, names)
-      end if
+      message = refusal_of(name, own)
+      if (len(message) == 0) message = 'unknown element type '//name//nearest_known(name, names)
    end subroutine take_element_type
+
+   !> The type of this program that has the shape functions and points of one of Abaqus.
+   pure function own_name(name) result(own)
+      character(*), intent(in) :: name
+      character(:), allocatable :: own
+      integer :: last
+
+      own = name
+      if (index(name, 'DC2D') == 1) own = 'CPE'//name(5:)
+      if (index(name, 'DCAX') == 1) own = name(2:)
+      if (all(own(:min(3, len(own))) /= plane_names)) return
+      ! Displacement and temperature, then the pressure of its own that a hybrid element has.
+      last = len(own)
+      if (own(last:) == 'T') last = last - 1
+      if (last > 4 .and. own(last:last) == 'H' .and. own(:3) /= 'CPS') last = last - 1
+      own = own(:last)
+   end function own_name
+
+   !> In what a type of Abaqus differs from that of this program in whose place it stands.
+   pure function difference(name) result(words)
+      character(*), intent(in) :: name
+      character(:), allocatable :: words
+
+      words = ''
+      if (scan(name(4:), '68') > 0 .and. name(len(name):) == 'T') words = words// &
+         '; its temperatures are quadratic, as its displacements'
+      if (index(name(4:), 'H') > 0) words = words//'; it has no pressure of its own'
+   end function difference
+
+   !> Why a type cannot be used, and which one to take; empty for one that nobody knows.
+   pure function refusal_of(name, own) result(message)
+      character(*), intent(in) :: name   ! as in the deck
+      character(*), intent(in) :: own    ! without the letters that mean nothing here
+      character(:), allocatable :: message
+      character(:), allocatable :: reason
+
+      reason = ''
+      if (any(plane_names//'4R' == own)) then
+         reason = 'linear elements with reduced integration need hourglass control; take '//own(:4)
+      else if (any(plane_names//'4I' == own)) then
+         reason = 'incompatible modes are not built; take '//own(:3)//'8 or, with a finer mesh '// &
+            'where it bends, '//own(:4)
+      else if (any(plane_names//'6M' == own)) then
+         reason = 'modified triangles are not built; take '//own(:4)
+      else if (index(name, 'C3D') == 1 .or. index(name, 'DC3D') == 1) then
+         reason = 'models are two-dimensional'
+      else if (name == 'M3D9') then
+         reason = 'quadrilaterals of second order have 8 nodes; in gmsh set '// &
+            'Mesh.SecondOrderIncomplete = 1'
+      end if
+      message = ''
+      if (len(reason) > 0) message = 'element type '//name//' is refused: '//reason
+   end function refusal_of
 
    !> Fields of the data card of an element type; 0 for a type that cannot be used.
    pure integer function element_type_fields(name)

@@ -103,16 +103,11 @@ module keyword_meanings
       keyword_meaning_type('PERIOD', increments), &
       keyword_meaning_type('TIME', increments)]
 
-   character(*), parameter :: damping = &
-      'nothing is damped: bodies that contact alone holds are solved as they are; leave it out'
    character(*), parameter :: tabular = 'the card is a table of times and values; leave it out'
    character(*), parameter :: coulomb = 'friction is Coulomb''s with one coefficient; leave it out'
    character(*), parameter :: exact = 'contact is exact; leave it out'
 
-   type(parameter_meaning_type), parameter :: of_parameters(25) = [ &
-      parameter_meaning_type('', 'STABILIZE', damping), &
-      parameter_meaning_type('', 'FACTOR', damping), &
-      parameter_meaning_type('', 'ALLSDTOL', damping), &
+   type(parameter_meaning_type), parameter :: of_parameters(16) = [ &
       parameter_meaning_type('', 'RIKS', &
       'loads and temperatures follow the time; leave it out'), &
       parameter_meaning_type('', 'MXDEM', capacity), &
@@ -121,17 +116,9 @@ module keyword_meanings
       parameter_meaning_type('', 'TEMPERATURE', 'properties are constant; leave it out'), &
       parameter_meaning_type('', 'INPUT', 'data in a file of their own are *INCLUDE, INPUT='), &
       parameter_meaning_type('', 'INSTANCE', 'write the input file without parts and assemblies'), &
-      parameter_meaning_type('STEP', 'NAME', 'steps are numbered; leave it out'), &
-      parameter_meaning_type('STEP', 'UNSYMM', 'the solver chooses; leave it out'), &
-      parameter_meaning_type('STEP', 'EXTRAPOLATION', &
-      '*START says where an increment starts; leave it out'), &
-      parameter_meaning_type('BOUNDARY', 'TYPE', &
-      'it prescribes displacements and temperatures; leave it out'), &
       parameter_meaning_type('FRICTION', 'ROUGH', 'give a large coefficient of friction'), &
       parameter_meaning_type('FRICTION', 'TAUMAX', coulomb), &
       parameter_meaning_type('FRICTION', 'LAGRANGE', coulomb), &
-      parameter_meaning_type('FRICTION', 'SLIP TOLERANCE', coulomb), &
-      parameter_meaning_type('FRICTION', 'ELASTIC SLIP', coulomb), &
       parameter_meaning_type('CONTACT PAIR', 'HCRIT', exact), &
       parameter_meaning_type('CONTACT PAIR', 'MECHANICAL CONSTRAINT', exact), &
       parameter_meaning_type('CONTACT PAIR', 'EXTENSION ZONE', exact), &

@@ -27,7 +27,7 @@ module keywords
       integer :: section             !! in_model, in_step or in_both
       integer :: least_data          !! fewest data cards
       integer :: most_data           !! most data cards
-      character(128) :: parameters   !! its parameters
+      character(160) :: parameters   !! its parameters
    end type known_keyword_type
 
    !> One parameter of a keyword.
@@ -69,8 +69,9 @@ module keywords
       known_keyword_type('AMPLITUDE', built, in_model, 1, many, &
       'NAME=/TIME=/!USER/!SHIFTX=/!SHIFTY='), &
       known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
-      known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 0, 'NAME='), &
-      known_keyword_type('FRICTION', built, in_model, 1, 1, ''), &
+      known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 1, 'NAME='), &
+      known_keyword_type('FRICTION', built, in_model, 1, 1, &
+      '~SLIP TOLERANCE=/~ELASTIC SLIP='), &
       known_keyword_type('GAP CONDUCTANCE', built, in_model, 1, many, &
       'PRESSURE/CLEARANCE/!USER/!DEPENDENCIES='), &
       known_keyword_type('GAP LAW', built, in_model, 1, many, 'TYPE='), &
@@ -98,18 +99,24 @@ module keywords
 
    !> Parameters of the cards that write fields.
    character(*), parameter :: file_parameters = 'FREQUENCY=/~FREQUENCYF=/~NSET=/~GLOBAL=/'// &
-      '~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/!TIME POINTS='
+      '~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/~DIRECTIONS=/'// &
+      '~VARIABLE=/!TIME POINTS='
+
+   !> Parameters of the damping by which Abaqus stabilizes a step.
+   character(*), parameter :: stabilization = '~STABILIZE?/~FACTOR=/~ALLSDTOL=/~CONTINUE=/'
 
    type(known_keyword_type), parameter :: step_keywords(24) = [ &
-      known_keyword_type('STEP', built, in_both, 0, 0, 'INC=/AMPLITUDE=/NLGEOM?/!PERTURBATION'), &
+      known_keyword_type('STEP', built, in_both, 0, 0, &
+      'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM=/~EXTRAPOLATION=/!PERTURBATION'), &
       known_keyword_type('STATIC', built, in_step, 0, 1, &
-      'DIRECT?/~SOLVER=/!EXPLICIT/!TIME RESET/!TOTAL TIME AT START='), &
+      stabilization//'DIRECT?/~SOLVER=/!EXPLICIT/!TIME RESET/!TOTAL TIME AT START='), &
       known_keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
       'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX=/!TIME RESET/!TOTAL TIME AT START='), &
       known_keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
+      'CREEP=/'//stabilization// &
       'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX=/!TIME RESET/!TOTAL TIME AT START='), &
       known_keyword_type('BOUNDARY', built, in_both, 1, many, &
-      'OP=/AMPLITUDE=/!TIME DELAY=/!USER/!FIXED/!SUBMODEL/!MASS FLOW'), &
+      'OP=/AMPLITUDE=/TYPE=/!TIME DELAY=/!USER/!FIXED/!SUBMODEL/!MASS FLOW'), &
       known_keyword_type('CLOAD', built, in_step, 1, many, &
       'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
       known_keyword_type('DLOAD', built, in_step, 1, many, &

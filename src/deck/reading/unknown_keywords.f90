@@ -77,7 +77,7 @@ contains
       end if
    end subroutine report_unknown_parameter
 
-   !> The parameters that a keyword takes.
+   !> The parameters that a keyword takes; empty where none of them means anything.
    pure function listed(keyword, names) result(list)
       integer, intent(in) :: keyword
       type(string_type), intent(in) :: names(:)
@@ -90,7 +90,7 @@ contains
          parameter = find_parameter(keyword, names(i)%value)
          if (parameter%status == built) list = list//', '//parameter%name
       end do
-      list = 'it takes '//list(3:)
+      if (len(list) > 0) list = 'it takes '//list(3:)
    end function listed
 
    !> Whether a name is near enough to a known one to be worth naming: half of its letters agree.

@@ -1,0 +1,124 @@
+!> Data cards of *BOUNDARY -> requests.
+module deck_builder_boundaries
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: data_card_type, field_place, field_text
+   use deck_context, only: deck_context_type, read_target
+   use deck_report, only: deck_report_type
+   use kinds, only: dp
+   use load_requests, only: request_type
+   use model, only: model_type
+   use steps, only: dof_temperature
+   use text, only: to_text, to_upper
+   implicit none
+   private
+   public :: build_boundary
+
+   character(*), parameter :: out_of_plane = &
+      '*BOUNDARY: 0 on degrees of freedom 3 to 6 is read and not needed'
+
+contains
+
+   !> Takes one data card: node or set, first and last degree of freedom, value; or node or set and
+   !> the name of a support. 0 on the degrees 3 to 6, which a plane does not have, is ignored.
+   subroutine build_boundary(data, request, model, context, report)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request         !! step, amplitude, place
+      type(model_type), intent(in) :: model                !! mesh and its sets
+      type(deck_context_type), intent(inout) :: context    !! receives the requests
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer :: first, last, dof
+      integer, allocatable :: held(:)
+      logical :: valid
+
+      request%card = request_card(context)
+      valid = .true.
+      request%value = 0.0_dp
+      call read_target(data, 1, 'node', context%node_index, model%mesh%node_sets, report, &
+         request%item, request%set, valid)
+      held = held_degrees(to_upper(field_text(data, 2)))
+      if (size(held) > 0) then
+         call check_extra(data, 2, 'node or set, '//to_upper(field_text(data, 2)), report)
+         if (valid) call hold(held, request, context)
+         return
+      end if
+      first = 0
+      call need_field(data, 2, 'first degree of freedom', report, first, valid)
+      last = first
+      call take_field(data, 3, 'last degree of freedom', report, last, valid)
+      call take_field(data, 4, 'value', report, request%value, valid)
+      call check_extra(data, 4, 'node or set, first and last degree of freedom, value', report)
+      if (.not. valid) return
+      if (last < first) then
+         call report%error(field_place(data, 3), 'the last degree of freedom is below the first')
+         return
+      end if
+      do dof = first, last
+         select case (dof)
+         case (1, 2, dof_temperature)
+            request%component = dof
+            call context%boundaries%add(request)
+         case (3:6)
+            if (abs(request%value) > 0.0_dp) then
+               call report%error(field_place(data, 4), 'degree of freedom '//to_text(dof)// &
+                  ' can only be 0 in the plane')
+               return
+            end if
+            call context%note(out_of_plane)
+         case default
+            call report%error(field_place(data, merge(2, 3, dof == first)), &
+               'degree of freedom '//to_text(dof)//'; the plane has 1, 2 and 11')
+            return
+         end select
+      end do
+   end subroutine build_boundary
+
+   !> Degrees of freedom that a support known by a name holds at 0, rotations about x, y and z as 4
+   !> to 6 among them; empty for another word.
+   pure function held_degrees(name) result(degrees)
+      character(*), intent(in) :: name      ! in upper case
+      integer, allocatable :: degrees(:)
+
+      select case (name)
+      case ('ENCASTRE')
+         degrees = [1, 2, 3, 4, 5, 6]
+      case ('PINNED')
+         degrees = [1, 2, 3]
+      case ('XSYMM')
+         degrees = [1, 5, 6]
+      case ('YSYMM')
+         degrees = [2, 4, 6]
+      case ('ZSYMM')
+         degrees = [3, 4, 5]
+      case default
+         allocate (degrees(0))
+      end select
+   end function held_degrees
+
+   !> Requests those of some degrees of freedom at 0 that the plane has.
+   subroutine hold(degrees, request, context)
+      integer, intent(in) :: degrees(:)
+      type(request_type), intent(inout) :: request
+      type(deck_context_type), intent(inout) :: context
+      integer :: i
+
+      do i = 1, size(degrees)
+         if (degrees(i) > 2) then
+            call context%note(out_of_plane)
+         else
+            request%component = degrees(i)
+            call context%boundaries%add(request)
+         end if
+      end do
+   end subroutine hold
+
+   !> Number of the next data card of *BOUNDARY.
+   pure integer function request_card(context)
+      type(deck_context_type), intent(in) :: context
+
+      request_card = 1
+      if (context%boundaries%count > 0) then
+         request_card = context%boundaries%items(context%boundaries%count)%card + 1
+      end if
+   end function request_card
+
+end module deck_builder_boundaries
