@@ -6,10 +6,12 @@ module amplitudes
    private
    public :: amplitude_type, amplitude_value
 
-   !> One *AMPLITUDE: straight lines between points, held constant outside.
+   !> One *AMPLITUDE: lines between points, straight or smooth, held constant outside.
    type :: amplitude_type
       character(:), allocatable :: name      !! name in upper case
       logical :: total_time = .false.        !! abscissa is total time, not step time
+      !> Between two points a polynomial of fifth order that is level at both, without curvature
+      logical :: smooth = .false.
       real(dp), allocatable :: times(:)      !! (points) ascending [time]
       real(dp), allocatable :: values(:)     !! (points) factors [-]
    end type amplitude_type
@@ -21,8 +23,17 @@ contains
       type(amplitude_type), intent(in) :: amplitude !! the curve
       real(dp), intent(in) :: time                  !! of the step or in total, as the curve asks
       real(dp) :: factor                            !! ordinate [-]
+      real(dp) :: share
+      integer :: i
 
-      factor = line_value(amplitude%times, amplitude%values, time)
+      i = count(amplitude%times <= time)
+      if (.not. amplitude%smooth .or. i == 0 .or. i == size(amplitude%times)) then
+         factor = line_value(amplitude%times, amplitude%values, time)
+         return
+      end if
+      share = (time - amplitude%times(i))/(amplitude%times(i + 1) - amplitude%times(i))
+      factor = amplitude%values(i) + (amplitude%values(i + 1) - amplitude%values(i))* &
+         share**3*(10.0_dp - 15.0_dp*share + 6.0_dp*share**2)
    end function amplitude_value
 
 end module amplitudes

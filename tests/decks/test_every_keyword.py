@@ -15,6 +15,7 @@ ONE_VALUE = {
     "END STEP": "no data, no parameter",
     "SURFACE, TYPE": "ELEMENT is the only one that is built",
     "INITIAL CONDITIONS, TYPE": "TEMPERATURE is the only one",
+    "AMPLITUDE, VALUE": "RELATIVE is the only one",
     "BOUNDARY, TYPE": "DISPLACEMENT is the only one",
     "STEP, NLGEOM": "NO is the only one",
     "NSET, ELSET": "stands in the section of both",

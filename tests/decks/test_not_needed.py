@@ -43,7 +43,8 @@ CHANGES = {
     "stabilization": ("*STATIC", "*STATIC, STABILIZE=2.E-4, ALLSDTOL=0.05, CONTINUE=NO",
                       "STABILIZE"),
     "stabilization by default": ("*STATIC", "*STATIC, STABILIZE", "STABILIZE"),
-    "axes of output": ("*END STEP", "*ELEMENT OUTPUT, DIRECTIONS=YES\nS\n*END STEP", "DIRECTIONS"),
+    "axes of output": ("*END STEP", "*ELEMENT OUTPUT, DIRECTIONS=YES\nS\n*END STEP",
+                       "DIRECTIONS"),
     "symmetry of the third axis": ("*BOUNDARY", "*BOUNDARY, TYPE=DISPLACEMENT\nUP, ZSYMM", "3 to 6"),
     "temperature": ("1e-05", "1e-05, 20.", "temperature"),
 }

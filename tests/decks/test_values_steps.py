@@ -201,6 +201,41 @@ def test_time_of_an_amplitude(tmp_path, first):
             ", TIME=TOTAL TIME")
 
 
+def driven(parameters, data, factors):
+    """Return the cards of a block whose top follows an amplitude, and its factors at the end of
+    each quarter of the step."""
+    deck = block("*STEP", "*STATIC", "0.25, 1.", "*BOUNDARY, AMPLITUDE=COURSE",
+                 "BODY.TOP, 2, 2, 0.01", "*END STEP")
+    at = next(k for k, card in enumerate(deck) if card.startswith("*STEP"))
+    return [*deck[:at], f"*AMPLITUDE, NAME=COURSE{parameters}", data, *deck[at:]], [
+        ("U2", "BODY.TOP", 0.25 * (k + 1), 0.01 * factor, 1e-12, "ABS")
+        for k, factor in enumerate(factors)]
+
+
+@pytest.mark.changes("AMPLITUDE, DEFINITION")
+def test_definition_of_an_amplitude(tmp_path):
+    """Smooth: x³ (10 - 15 x + 6 x²) of the step from point to point."""
+    courses = {"TABULAR": (0.25, 0.5, 0.75, 1.0), "SMOOTH STEP": (53 / 512, 0.5, 459 / 512, 1.0)}
+    follows(tmp_path, lambda kind: driven(f", DEFINITION={kind}", "0., 0., 1., 1.", courses[kind]),
+            *courses)
+
+
+@pytest.mark.changes("AMPLITUDE, FIXED INTERVAL")
+def test_interval_of_an_amplitude(tmp_path):
+    courses = {"0.25": (1.0, 0.4, 0.4, 0.4), "0.5": (0.5, 1.0, 0.7, 0.4)}
+    follows(tmp_path, lambda interval: driven(
+        f", DEFINITION=EQUALLY SPACED, FIXED INTERVAL={interval}", "0., 1., 0.4",
+        courses[interval]), *courses)
+
+
+@pytest.mark.changes("AMPLITUDE, BEGIN")
+def test_begin_of_an_amplitude(tmp_path):
+    courses = {"0.": (0.5, 1.0, 0.7, 0.4), "0.25": (0.0, 0.5, 1.0, 0.7)}
+    follows(tmp_path, lambda begin: driven(
+        f", DEFINITION=EQUALLY SPACED, FIXED INTERVAL=0.5, BEGIN={begin}", "0., 1., 0.4",
+        courses[begin]), *courses)
+
+
 # Increments of the three analyses.
 
 ANALYSES = {

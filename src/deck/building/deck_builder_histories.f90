@@ -1,7 +1,8 @@
 !> *AMPLITUDE and *INITIAL CONDITIONS: what loads and temperatures start from and follow.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choose, lacks_parameter, need_parameter, parameter_place
+   use card_parameters, only: choose, has_parameter, lacks_parameter, need_parameter, &
+      parameter_place, parameter_text, take_parameter
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use decimal_commas, only: decimal_comma, report_decimal_comma
@@ -11,7 +12,7 @@ module deck_builder_histories
    use kinds, only: dp
    use load_requests, only: request_type
    use model, only: model_type
-   use text, only: read_real
+   use text, only: read_real, to_upper
    implicit none
    private
    public :: build_amplitudes, build_temperatures, find_amplitude
@@ -49,20 +50,96 @@ contains
       end do
    end function find_amplitude
 
-   !> Pairs of time and value, any number of them a card.
+   !> Parameters of the card, then its points.
    subroutine build_amplitude(cards, card, report, amplitude)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
       type(amplitude_type), intent(out) :: amplitude
       character(:), allocatable :: kind
-      integer :: j, i, n
-      logical :: valid
 
       call need_parameter(card, 'NAME', report, amplitude%name)
       kind = 'STEP TIME'
       call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', report, kind)
       amplitude%total_time = kind == 'TOTAL TIME'
+      kind = 'RELATIVE'
+      call choose(card, 'VALUE', 'RELATIVE', report, kind)
+      call read_definition(card, report, kind)
+      amplitude%smooth = kind == 'SMOOTH STEP'
+      if (len(kind) == 0) then
+         allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
+      else if (kind == 'EQUALLY SPACED') then
+         call read_values(cards, card, report, amplitude)
+      else
+         if (has_parameter(card, 'FIXED INTERVAL')) call report%error(parameter_place(card, &
+            'FIXED INTERVAL'), 'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
+         if (has_parameter(card, 'BEGIN')) call report%error(parameter_place(card, 'BEGIN'), &
+            'BEGIN= needs DEFINITION=EQUALLY SPACED')
+         call read_points(cards, card, report, amplitude)
+      end if
+   end subroutine build_amplitude
+
+   !> What the data cards are; those that are a formula in Abaqus are refused, and then it is empty.
+   subroutine read_definition(card, report, kind)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable, intent(inout) :: kind
+
+      kind = to_upper(parameter_text(card, 'DEFINITION'))
+      select case (kind)
+      case ('PERIODIC', 'MODULATED', 'DECAY', 'SOLUTION DEPENDENT', 'ACTUATOR', 'SPECTRUM', &
+         'USER', 'BUBBLE')
+         call report%error(parameter_place(card, 'DEFINITION'), 'DEFINITION='//kind// &
+            ' is refused; give times and values')
+         kind = ''
+      case default
+         kind = 'TABULAR'
+         call choose(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', report, kind)
+      end select
+   end subroutine read_definition
+
+   !> Values at equal intervals, any number of them a card.
+   subroutine read_values(cards, card, report, amplitude)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      type(amplitude_type), intent(inout) :: amplitude
+      real(dp) :: begin, interval
+      integer :: j, i, n
+      logical :: valid
+
+      begin = 0.0_dp
+      interval = 1.0_dp
+      call take_parameter(card, 'BEGIN', report, begin)
+      call take_parameter(card, 'FIXED INTERVAL', report, interval)
+      if (lacks_parameter(card, 'FIXED INTERVAL')) then
+         call report%error(card%place, 'DEFINITION=EQUALLY SPACED needs FIXED INTERVAL=')
+      else if (interval <= 0.0_dp) then
+         call report%error(parameter_place(card, 'FIXED INTERVAL'), &
+            'FIXED INTERVAL= must be positive')
+      end if
+      n = sum([(size(cards%data(j)%fields), j=card%first_data, card%last_data)])
+      allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
+      n = 0
+      do j = card%first_data, card%last_data
+         do i = 1, size(cards%data(j)%fields)
+            n = n + 1
+            amplitude%times(n) = begin + (n - 1)*interval
+            valid = .true.
+            call need_field(cards%data(j), i, 'value', report, amplitude%values(n), valid)
+         end do
+      end do
+   end subroutine read_values
+
+   !> Pairs of time and value, any number of them a card.
+   subroutine read_points(cards, card, report, amplitude)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      type(amplitude_type), intent(inout) :: amplitude
+      integer :: j, i, n
+      logical :: valid
+
       n = 0
       do j = card%first_data, card%last_data
          n = n + (size(cards%data(j)%fields) + 1)/2
@@ -86,7 +163,7 @@ contains
             end if
          end do
       end do
-   end subroutine build_amplitude
+   end subroutine read_points
 
    !> Whether a data card has pairs of time and value, and times that ascend behind those before.
    pure logical function is_history(data, before)

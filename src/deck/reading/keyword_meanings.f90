@@ -103,11 +103,10 @@ module keyword_meanings
       keyword_meaning_type('PERIOD', increments), &
       keyword_meaning_type('TIME', increments)]
 
-   character(*), parameter :: tabular = 'the card is a table of times and values; leave it out'
    character(*), parameter :: coulomb = 'friction is Coulomb''s with one coefficient; leave it out'
    character(*), parameter :: exact = 'contact is exact; leave it out'
 
-   type(parameter_meaning_type), parameter :: of_parameters(16) = [ &
+   type(parameter_meaning_type), parameter :: of_parameters(13) = [ &
       parameter_meaning_type('', 'RIKS', &
       'loads and temperatures follow the time; leave it out'), &
       parameter_meaning_type('', 'MXDEM', capacity), &
@@ -121,10 +120,7 @@ module keyword_meanings
       parameter_meaning_type('FRICTION', 'LAGRANGE', coulomb), &
       parameter_meaning_type('CONTACT PAIR', 'HCRIT', exact), &
       parameter_meaning_type('CONTACT PAIR', 'MECHANICAL CONSTRAINT', exact), &
-      parameter_meaning_type('CONTACT PAIR', 'EXTENSION ZONE', exact), &
-      parameter_meaning_type('AMPLITUDE', 'DEFINITION', tabular), &
-      parameter_meaning_type('AMPLITUDE', 'VALUE', tabular), &
-      parameter_meaning_type('AMPLITUDE', 'SMOOTH', tabular)]
+      parameter_meaning_type('CONTACT PAIR', 'EXTENSION ZONE', exact)]
 
 contains
 

@@ -67,7 +67,7 @@ module keywords
       known_keyword_type('SOLID SECTION', built, in_model, 0, 1, &
       'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET='), &
       known_keyword_type('AMPLITUDE', built, in_model, 1, many, &
-      'NAME=/TIME=/!USER/!SHIFTX=/!SHIFTY='), &
+      'NAME=/TIME=/DEFINITION=/FIXED INTERVAL=/BEGIN=/VALUE=/~SMOOTH=/!USER/!SHIFTX=/!SHIFTY='), &
       known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 1, 'NAME='), &
       known_keyword_type('FRICTION', built, in_model, 1, 1, &
