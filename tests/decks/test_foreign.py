@@ -1,8 +1,11 @@
 """Decks as other programs write them run unchanged."""
 
 import pytest
+from blocks import write
+from calculix import thercon
+from changes import note_changes
 from deck_runs import DECKS, run
-from physics import judge
+from physics import judge, material
 
 FOREIGN = DECKS / "foreign"
 
@@ -34,3 +37,57 @@ def test_it_is_sound_as_it_is(name):
     process = run("check", FOREIGN / name)
     assert process.returncode == 0, process.stderr
     assert "error" not in process.stderr
+
+
+def corner_grid(columns, rows):
+    """Return the cards of the corners of a grid of unit squares, numbered by tens upwards."""
+    return ["*NODE", "1, 0., 0.", f"{columns + 1}, {columns}., 0.",
+            f"{10 * rows + 1}, 0., {rows}.", f"{10 * rows + columns + 1}, {columns}., {rows}."]
+
+
+def generated_grid(columns=3, rows=2):
+    """Return the cards of a grid of unit squares, generated."""
+    right = columns + 1
+    return [*corner_grid(columns, rows), "*NGEN, NSET=LEFT", f"1, {10 * rows + 1}, 10",
+            "*NGEN, NSET=RIGHT", f"{right}, {10 * rows + right}, 10", "*NGEN, NSET=GRID",
+            *[f"{10 * j + 1}, {10 * j + right}" for j in range(rows + 1)],
+            "*ELEMENT, TYPE=CPE4", "7, 1, 2, 12, 11",
+            "*ELGEN, ELSET=GRID", f"7, {columns}, 1, 1, {rows}, 10, 100"]
+
+
+def listed_grid(columns=3, rows=2):
+    """Return the same cards, written out."""
+    numbers = {(i, j): 10 * j + i + 1 for j in range(rows + 1) for i in range(columns + 1)}
+    cards = ["*NODE, NSET=GRID", *[f"{n}, {i}., {j}." for (i, j), n in numbers.items()]]
+    for name, column in (("LEFT", 0), ("RIGHT", columns)):
+        cards += [f"*NSET, NSET={name}", *[str(numbers[column, j]) for j in range(rows + 1)]]
+    cards += ["*ELEMENT, TYPE=CPE4, ELSET=GRID"]
+    return cards + [
+        f"{7 + i + 100 * j}, {numbers[i, j]}, {numbers[i + 1, j]}, {numbers[i + 1, j + 1]}, "
+        f"{numbers[i, j + 1]}" for j in range(rows) for i in range(columns)]
+
+
+def stretched(mesh):
+    """Return a deck that stretches a grid along x and shifts one node."""
+    return [*mesh, *material("GRID"), "*BOUNDARY", "LEFT, ENCASTRE", "RIGHT, 1, 1, 0.01",
+            "13, 2, 2, 0.02", "*STEP", "*STATIC", "*NODE PRINT, NSET=GRID", "U, RF",
+            "*EL PRINT, ELSET=GRID", "S", "*END STEP"]
+
+
+@pytest.mark.changes("NGEN", "NGEN, NSET", "ELGEN", "ELGEN, ELSET")
+def test_a_generated_mesh_is_the_mesh_that_is_written_out(tmp_path):
+    decks = stretched(generated_grid()), stretched(listed_grid())
+    note_changes(*decks)
+    one, other = (thercon(write(tmp_path / f"{name}.inp", deck))
+                  for name, deck in zip(("generated", "listed"), decks, strict=True))
+    assert one == other
+    assert len(one[1.0, "U1"]) == 12
+    assert len({element for element, _ in one[1.0, "S11"]}) == 6
+
+
+def test_nodes_are_generated_at_equal_distances_on_a_line(tmp_path):
+    """The strain of a bar is the same everywhere."""
+    cards = [*generated_grid(7, 3), *material("GRID", (1000.0, 0.0)), "*BOUNDARY", "GRID, 2",
+             "LEFT, 1", "RIGHT, 1, 1, 0.07", "*STEP", "*STATIC", "*END STEP"]
+    judge(tmp_path, cards, [("S11", "MAX", "LAST", 10.0, 1e-13), ("U1", "14", "LAST", 0.03, 1e-13),
+                            ("S11", "MIN", "LAST", 10.0, 1e-13)])

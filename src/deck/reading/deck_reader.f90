@@ -5,6 +5,7 @@ module deck_reader
    use cards, only: cards_type, trim_cards
    use deck_report, only: deck_report_type
    use deck_source, only: place_type, read_lines
+   use generated_cards, only: generate_cards
    use text, only: append, string_type, to_text
    use utf8, only: first_byte
    implicit none
@@ -39,6 +40,7 @@ contains
       call read_file(path, path, none, open_lines, cards, report, fault)
       call open_lines%finish(cards, report)
       call trim_cards(cards)
+      call generate_cards(cards, report)
       if (len(fault) > 0) then
          call report%error(place_type(), 'the deck cannot be read: '//fault)
       else if (size(cards%keywords) == 0 .and. .not. report%has_errors()) then

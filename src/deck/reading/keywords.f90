@@ -45,13 +45,15 @@ module keywords
       character(72) :: reason      !! why
    end type refusal_type
 
-   type(known_keyword_type), parameter :: model_keywords(27) = [ &
+   type(known_keyword_type), parameter :: model_keywords(29) = [ &
       known_keyword_type('HEADING', built, in_model, 0, many, ''), &
       known_keyword_type('OPTIONS', built, in_model, 0, 0, &
          'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       known_keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
       known_keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
       known_keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
+      known_keyword_type('NGEN', built, in_model, 1, many, 'NSET=/!LINE='), &
+      known_keyword_type('ELGEN', built, in_model, 1, many, 'ELSET='), &
       known_keyword_type('NSET', built, in_model, 1, many, &
       'NSET=/GENERATE/ELSET=/SURFACE=/~INTERNAL/~UNSORTED'), &
       known_keyword_type('ELSET', built, in_model, 1, many, &
@@ -148,14 +150,16 @@ module keywords
       known_keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Every keyword of the dialect.
-   type(known_keyword_type), parameter :: known_keywords(61) = &
+   type(known_keyword_type), parameter :: known_keywords(63) = &
       [model_keywords, control_keywords, step_keywords]
 
-   type(refusal_type), parameter :: refusals(28) = [ &
+   type(refusal_type), parameter :: refusals(29) = [ &
       refusal_type('TRANSFORM', '', 'displacements and forces are along x and y; give them so'), &
       refusal_type('EQUATION', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('MPC', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('RIGID BODY', '', 'every body is elastic; give it a high modulus'), &
+      refusal_type('NGEN', 'LINE', &
+      'nodes are generated on straight lines; give those of a curve'), &
       refusal_type('GAP CONDUCTANCE', 'USER', 'no routine of the user is called; give the table'), &
       refusal_type('GAP CONDUCTANCE', 'DEPENDENCIES', 'conductance depends on one quantity only'), &
       refusal_type('CONTACT PAIR', 'ADJUST', 'it would move nodes; gaps are those of the mesh'), &

@@ -1,0 +1,363 @@
+!> *NGEN and *ELGEN -> the *NODE and *ELEMENT cards that they stand for.
+module generated_cards
+   use card_parameters, only: has_parameter, parameter_text
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, field_text, &
+      field_type, keyword_card_type, trim_cards
+   use deck_report, only: deck_report_type
+   use deck_source, only: place_type
+   use keywords, only: find_keyword
+   use kinds, only: dp
+   use text, only: read_integer, read_real, string_type, to_text
+   implicit none
+   private
+   public :: generate_cards
+
+   integer, parameter :: most_generated = 10000000   !! nodes or elements of one data card
+   integer, parameter :: most_nodes = 8              !! of an element
+
+   !> Nodes and elements of the cards so far.
+   type :: given_type
+      integer :: nodes = 0                        !! number of nodes
+      integer, allocatable :: node(:)             !! (capacity) their numbers
+      real(dp), allocatable :: place(:, :)        !! (2, capacity) [length]
+      integer :: elements = 0                     !! number of elements
+      integer, allocatable :: element(:)          !! (capacity) their numbers
+      integer, allocatable :: corners(:, :)       !! (most_nodes, capacity) their nodes, 0 behind
+      integer, allocatable :: keyword(:)          !! (capacity) keyword card that gives the type
+   end type given_type
+
+contains
+
+   !> Replaces each *NGEN by *NODE and each *ELGEN by *ELEMENT, with the data that they generate.
+   !> What is generated has the place of the data card that generates it.
+   subroutine generate_cards(cards, report)
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      type(cards_type) :: all
+      type(given_type) :: given
+      integer :: k, j
+
+      do k = 1, size(cards%keywords)
+         if (generates(cards%keywords(k))) exit
+      end do
+      if (k > size(cards%keywords)) return
+      allocate(given%node(0), given%place(2, 0), given%element(0), given%corners(most_nodes, 0), &
+         given%keyword(0))
+      do k = 1, size(cards%keywords)
+         associate (card => cards%keywords(k))
+            if (.not. generates(card)) then
+               call add_keyword(all, card)
+               do j = card%first_data, card%last_data
+                  call note_given(card%name, cards%data(j), all%keyword_count, given)
+                  call add_data(all, cards%data(j)%fields, cards%data(j)%end)
+               end do
+            else if (card%name == 'NGEN') then
+               do j = card%first_data, card%last_data
+                  call generate_nodes(card, cards%data(j), given, report, all)
+               end do
+            else
+               do j = card%first_data, card%last_data
+                  call generate_elements(card, cards%data(j), given, report, all)
+               end do
+            end if
+         end associate
+      end do
+      call move_alloc(all%keywords, cards%keywords)
+      call move_alloc(all%data, cards%data)
+      cards%keyword_count = all%keyword_count
+      cards%data_count = all%data_count
+      call trim_cards(cards)
+   end subroutine generate_cards
+
+   !> Whether a card generates something; without data it is reported elsewhere.
+   pure logical function generates(card)
+      type(keyword_card_type), intent(in) :: card
+
+      generates = (card%name == 'NGEN' .or. card%name == 'ELGEN') .and. &
+         card%last_data >= card%first_data
+   end function generates
+
+   !> Remembers a node or an element; fields that are no numbers are reported elsewhere.
+   subroutine note_given(keyword, data, position, given)
+      character(*), intent(in) :: keyword
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position               ! of the keyword card
+      type(given_type), intent(inout) :: given
+      real(dp) :: place(2)
+      integer :: number, corners(most_nodes), i
+      logical :: valid
+
+      call read_integer(field_text(data, 1), number, valid)
+      if (.not. valid) return
+      if (keyword == 'NODE') then
+         do i = 1, 2
+            call read_real(field_text(data, i + 1), place(i), valid)
+            if (.not. valid) place(i) = 0.0_dp
+         end do
+         call keep_node(number, place, given)
+      else if (keyword == 'ELEMENT') then
+         corners = 0
+         do i = 1, min(most_nodes, size(data%fields) - 1)
+            call read_integer(field_text(data, i + 1), corners(i), valid)
+            if (.not. valid) corners(i) = 0
+         end do
+         call keep_element(number, corners, position, given)
+      end if
+   end subroutine note_given
+
+   subroutine keep_node(number, place, given)
+      integer, intent(in) :: number
+      real(dp), intent(in) :: place(2)
+      type(given_type), intent(inout) :: given
+      integer :: n
+
+      n = given%nodes
+      if (n == size(given%node)) then
+         given%node = [given%node, spread(0, 1, n + 64)]
+         given%place = reshape(given%place, [2, 2*n + 64], pad=[0.0_dp])
+      end if
+      given%node(n + 1) = number
+      given%place(:, n + 1) = place
+      given%nodes = n + 1
+   end subroutine keep_node
+
+   subroutine keep_element(number, corners, position, given)
+      integer, intent(in) :: number, corners(most_nodes), position
+      type(given_type), intent(inout) :: given
+      integer :: n
+
+      n = given%elements
+      if (n == size(given%element)) then
+         given%element = [given%element, spread(0, 1, n + 64)]
+         given%keyword = [given%keyword, spread(0, 1, n + 64)]
+         given%corners = reshape(given%corners, [most_nodes, 2*n + 64], pad=[0])
+      end if
+      given%element(n + 1) = number
+      given%corners(:, n + 1) = corners
+      given%keyword(n + 1) = position
+      given%elements = n + 1
+   end subroutine keep_element
+
+   !> First and last node, increment: the nodes between the two, at equal distances on a line.
+   subroutine generate_nodes(card, data, given, report, all)
+      type(keyword_card_type), intent(in) :: card
+      type(data_card_type), intent(in) :: data
+      type(given_type), intent(inout) :: given
+      type(deck_report_type), intent(inout) :: report
+      type(cards_type), intent(inout) :: all
+      type(string_type) :: words(3)
+      real(dp) :: place(2)
+      integer :: ends(2), at(2), step, i, n
+      logical :: valid
+
+      valid = .true.
+      step = 1
+      call need_field(data, 1, 'first node', report, ends(1), valid)
+      call need_field(data, 2, 'last node', report, ends(2), valid)
+      call take_field(data, 3, 'increment', report, step, valid)
+      call check_extra(data, 3, 'first node, last node, increment', report)
+      do i = 1, 2
+         if (.not. valid) exit
+         at(i) = position_of(ends(i), given%node(:given%nodes))
+         if (at(i) > 0) cycle
+         call report%error(field_place(data, i), 'no *NODE before this card has node '// &
+            to_text(ends(i)))
+         valid = .false.
+      end do
+      if (valid) call check_range(data, ends, step, report, valid)
+      if (.not. valid) then
+         call report%lose('node')
+         return
+      end if
+      call add_set(card, 'NSET', data, ends, all)
+      n = (ends(2) - ends(1))/step
+      if (n > 1) call add_generated(card, 'NODE', '', all)
+      do i = 1, n - 1
+         place = given%place(:, at(1)) + (given%place(:, at(2)) - given%place(:, at(1)))*i/n
+         call keep_node(ends(1) + i*step, place, given)
+         words(1)%value = to_text(ends(1) + i*step)
+         words(2)%value = exact_text(place(1))
+         words(3)%value = exact_text(place(2))
+         call add_fields(data, words, all)
+      end do
+   end subroutine generate_nodes
+
+   !> The increment leads from the first number to the last.
+   subroutine check_range(data, ends, step, report, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: ends(2), step
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+
+      valid = step > 0 .and. ends(2) > ends(1)
+      if (valid) valid = mod(ends(2) - ends(1), step) == 0
+      if (.not. valid) then
+         call report%error(field_place(data, 3), 'increments of '//to_text(step)// &
+            ' do not lead from '//to_text(ends(1))//' to '//to_text(ends(2)))
+      else if ((ends(2) - ends(1))/step > most_generated) then
+         call report%error(field_place(data, 2), too_many())
+         valid = .false.
+      end if
+   end subroutine check_range
+
+   !> Master element; then for the elements of a row, and for the rows, their number and the
+   !> increments of their nodes and of their own numbers.
+   subroutine generate_elements(card, data, given, report, all)
+      type(keyword_card_type), intent(in) :: card
+      type(data_card_type), intent(in) :: data
+      type(given_type), intent(in) :: given
+      type(deck_report_type), intent(inout) :: report
+      type(cards_type), intent(inout) :: all
+      integer :: master, at, counts(2), steps(2, 2), i, j
+      logical :: valid
+
+      valid = .true.
+      call need_field(data, 1, 'master element', report, master, valid)
+      call read_rows(data, counts, steps, report, valid)
+      at = 0
+      if (valid) at = position_of(master, given%element(:given%elements))
+      if (valid .and. at == 0) call report%error(field_place(data, 1), &
+         'no *ELEMENT before this card has element '//to_text(master))
+      if (at == 0) then
+         call report%lose('element')
+         return
+      end if
+      call add_set(card, 'ELSET', data, [master], all)
+      if (product(counts) > 1) call add_generated(card, 'ELEMENT', &
+         parameter_text(all%keywords(given%keyword(at)), 'TYPE'), all)
+      do j = 0, counts(2) - 1
+         do i = 0, counts(1) - 1
+            if (i + j > 0) call add_element(data, master + i*steps(2, 1) + j*steps(2, 2), &
+               given%corners(:, at), i*steps(1, 1) + j*steps(1, 2), all)
+         end do
+      end do
+   end subroutine generate_elements
+
+   subroutine read_rows(data, counts, steps, report, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(out) :: counts(2)      ! elements of a row, and rows
+      integer, intent(out) :: steps(2, 2)    ! increments of nodes and elements, of both
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      character(*), parameter :: nouns(2) = [character(8) :: 'elements', 'rows']
+      integer :: i
+
+      counts = 1
+      steps = 1
+      do i = 1, 2
+         call take_field(data, 3*i - 1, 'number of '//trim(nouns(i)), report, counts(i), valid)
+         call take_field(data, 3*i, 'increment of nodes', report, steps(1, i), valid)
+         call take_field(data, 3*i + 1, 'increment of elements', report, steps(2, i), valid)
+         if (.not. valid .or. counts(i) > 0) cycle
+         call report%error(field_place(data, 3*i - 1), 'the number of '//trim(nouns(i))// &
+            ' must be positive')
+         valid = .false.
+      end do
+      call check_extra(data, 7, 'master element, elements of a row, increments of nodes and '// &
+         'elements, rows, increments of nodes and elements', report)
+      if (.not. valid .or. real(counts(1), dp)*counts(2) <= most_generated) return
+      call report%error(field_place(data, 2), too_many())
+      valid = .false.
+   end subroutine read_rows
+
+   subroutine add_element(data, number, corners, shift, all)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: number, corners(:), shift
+      type(cards_type), intent(inout) :: all
+      type(string_type) :: words(1 + count(corners > 0))
+      integer :: i
+
+      words(1)%value = to_text(number)
+      do i = 2, size(words)
+         words(i)%value = to_text(corners(i - 1) + shift)
+      end do
+      call add_fields(data, words, all)
+   end subroutine add_element
+
+   !> Puts what the generating card names itself into its set.
+   subroutine add_set(card, keyword, data, numbers, all)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: keyword     ! NSET or ELSET, which is also the parameter
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: numbers(:)
+      type(cards_type), intent(inout) :: all
+      type(string_type) :: words(size(numbers))
+      integer :: i
+
+      if (.not. has_parameter(card, keyword)) return
+      call add_generated(card, keyword, '', all)
+      do i = 1, size(numbers)
+         words(i)%value = to_text(numbers(i))
+      end do
+      call add_fields(data, words, all)
+   end subroutine add_set
+
+   !> Adds a keyword card in the place of the generating one, and with its set.
+   subroutine add_generated(card, keyword, element_type, all)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: keyword
+      character(*), intent(in) :: element_type    ! TYPE=, or empty
+      type(cards_type), intent(inout) :: all
+      type(keyword_card_type) :: generated
+      integer :: i, n
+
+      generated%name = keyword
+      generated%meant = ''
+      generated%known = find_keyword(keyword)
+      generated%place = card%place
+      n = size(card%parameters)
+      allocate(generated%parameters(n + min(1, len(element_type))))
+      do i = 1, n
+         generated%parameters(i) = card%parameters(i)
+      end do
+      if (len(element_type) > 0) then
+         generated%parameters(n + 1)%name = 'TYPE'
+         generated%parameters(n + 1)%text = element_type
+         generated%parameters(n + 1)%place = card%place
+         generated%parameters(n + 1)%value_place = card%place
+      end if
+      call add_keyword(all, generated)
+   end subroutine add_generated
+
+   subroutine add_fields(data, words, all)
+      type(data_card_type), intent(in) :: data
+      type(string_type), intent(in) :: words(:)
+      type(cards_type), intent(inout) :: all
+      type(field_type), allocatable :: fields(:)
+      integer :: i
+
+      allocate(fields(size(words)))
+      do i = 1, size(words)
+         fields(i)%text = words(i)%value
+         fields(i)%place = field_place(data, 1)
+      end do
+      call add_data(all, fields, data%end)
+   end subroutine add_fields
+
+   !> Position of a number in a list; 0 where it is not.
+   pure integer function position_of(number, list)
+      integer, intent(in) :: number, list(:)
+
+      do position_of = size(list), 1, -1
+         if (list(position_of) == number) return
+      end do
+   end function position_of
+
+   !> A number with all of its digits.
+   function exact_text(value) result(string)
+      real(dp), intent(in) :: value
+      character(:), allocatable :: string
+      character(32) :: buffer
+
+      write (buffer, '(es24.16e3)') value
+      string = trim(adjustl(buffer))
+   end function exact_text
+
+   pure function too_many() result(message)
+      character(:), allocatable :: message
+
+      message = 'a card generates at most '//to_text(most_generated)//' nodes or elements'
+   end function too_many
+
+end module generated_cards
