@@ -68,6 +68,7 @@ module steps
       integer :: max_increments = 100                !! INC=
       logical :: ramped = .true.                     !! loads ramp over the step; else whole at once
       logical :: direct = .false.                    !! DIRECT
+      logical :: nlgeom = .false.                    !! large displacements are asked for
       real(dp) :: first_increment = 1.0_dp           !! size of the increments [time]
       real(dp) :: period = 1.0_dp                    !! length of the step [time]
       real(dp) :: smallest_increment = 1.0e-5_dp     !! >= least_increment of the period [time]

@@ -1,5 +1,5 @@
 !> What only a whole run shows of a deck that may not be meant so: contact that never closes, no
-!> load that acts, large strains.
+!> load that acts, large strains and rotations.
 module run_judgement
    use contact_points, only: contact_points_type, past_end
    use contact_states, only: contact_open
@@ -8,14 +8,15 @@ module run_judgement
    use model, only: model_type
    use records, only: contact_record_type, increment_record_type
    use steps, only: solves_heat, solves_mechanics
-   use strains, only: largest_strain
+   use strains, only: largest_deformation, of_strain
    use warning_summary, only: warning_summary_type
    use text, only: append, string_type, to_text
    implicit none
    private
    public :: run_judgement_type
 
-   real(dp), parameter :: small_strain = 0.1_dp    !! largest for which small strains hold
+   !> Largest strain and rotation for which the linear theory holds, and where a deck asks for another
+   real(dp), parameter :: small = 0.1_dp, small_with_nlgeom = 0.05_dp
    real(dp), parameter :: unmoved = 1.0e-12_dp     !! part of the extent that is no displacement
    real(dp), parameter :: unheated = 1.0e-12_dp    !! part of a temperature that is no change
 
@@ -28,9 +29,9 @@ module run_judgement
       real(dp), allocatable :: smallest_gap(:)     !! (interfaces) [length]
       !> (first or last contact point, interfaces) farthest past the master's end so far [length]
       real(dp), allocatable :: past(:, :)
-      real(dp) :: strain = 0.0_dp                  !! largest so far [-]
-      integer :: element = 0                       !! element that has it
-      integer :: increment = 0                     !! increment that has it
+      real(dp) :: largest(2) = 0.0_dp              !! strain and rotation so far [-], [radian]
+      integer :: element(2) = 0                    !! elements that have them
+      integer :: increment(2) = 0                  !! increments that have them
       logical :: ended_early = .false.             !! whether the run failed
       type(warning_summary_type) :: repeated       !! warnings of its increments
    contains
@@ -47,8 +48,8 @@ contains
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
-      real(dp) :: strain
-      integer :: element, i
+      real(dp) :: largest(2)
+      integer :: element(2), i
 
       if (.not. allocated(self%closes)) then
          allocate (self%closes(size(interfaces)), source=.false.)
@@ -70,11 +71,12 @@ contains
             call follow_ends(record%contacts(i), interfaces(i), self%past(:, i))
          end do
          if (.not. allocated(fields%stress)) return
-         call largest_strain(model%mesh, fields%displacement, strain, element)
-         if (strain <= self%strain) return
-         self%strain = strain
-         self%element = element
-         self%increment = record%increment
+         call largest_deformation(model%mesh, fields%displacement, largest, element)
+         where (largest > self%largest)
+            self%largest = largest
+            self%element = element
+            self%increment = record%increment
+         end where
       end associate
    end subroutine take
 
@@ -106,15 +108,21 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), allocatable :: lines(:)          !! one a warning
+      real(dp) :: limit
       integer :: i, last
 
       lines = self%repeated%lines()
       if (.not. allocated(self%closes)) return
-      if (self%strain > small_strain) call append(lines, 'increment '// &
-         to_text(self%increment)//': the strain of element '// &
-         to_text(model%mesh%element_number(self%element))//' is '//percent(self%strain)// &
-         '; strains and displacements are taken as small, which fails above '// &
-         percent(small_strain))
+      limit = small
+      if (any(model%steps%nlgeom)) limit = small_with_nlgeom
+      do i = 1, size(self%largest)
+         if (self%largest(i) <= limit) cycle
+         call append(lines, 'increment '//to_text(self%increment(i))//': the '// &
+            trim(merge('strain  ', 'rotation', i == of_strain))//' of element '// &
+            to_text(model%mesh%element_number(self%element(i)))//' is '// &
+            amount(i, self%largest(i))//'; strains and displacements are taken as small, which '// &
+            'fails above '//amount(i, limit))
+      end do
       do i = 1, size(interfaces)
          associate (points => interfaces(i))
             do last = 1, 2
@@ -141,6 +149,16 @@ contains
       if (any(solves_heat(model%steps%analysis)) .and. .not. self%warms) call append(lines, &
          'no heat is loaded: all temperatures keep their initial values in all increments')
    end function warnings
+
+   !> A strain in percent, a rotation in radian.
+   pure function amount(i, value) result(words)
+      integer, intent(in) :: i            ! of_strain or of_rotation
+      real(dp), intent(in) :: value
+      character(:), allocatable :: words
+
+      words = percent(value)
+      if (i /= of_strain) words = words//' of a radian'
+   end function amount
 
    pure function percent(part) result(words)
       real(dp), intent(in) :: part

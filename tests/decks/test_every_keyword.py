@@ -17,7 +17,6 @@ ONE_VALUE = {
     "INITIAL CONDITIONS, TYPE": "TEMPERATURE is the only one",
     "AMPLITUDE, VALUE": "RELATIVE is the only one",
     "BOUNDARY, TYPE": "DISPLACEMENT is the only one",
-    "STEP, NLGEOM": "NO is the only one",
     "NSET, ELSET": "stands in the section of both",
     "ELSET, NSET": "stands in the section of both",
     "ELSET, SURFACE": "stands in the section of both",

@@ -4,6 +4,7 @@ import re
 
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
+from changes import note_changes
 from deck_runs import run
 from physics import nodes_of
 
@@ -365,13 +366,29 @@ def test_loads_that_never_act(tmp_path):
     assert [message.split(":")[0] for message in cold] == ["no load acts"]
 
 
-@pytest.mark.parametrize("nlgeom", ["", ", NLGEOM=NO"])
-@pytest.mark.parametrize(("strain", "told"), [(0.099, False), (0.101, True)])
-def test_large_strains(tmp_path, strain, told, nlgeom):
-    """A block that is stretched uniformly, nu = 0; half of it in the first increment."""
+@pytest.mark.changes("STEP, NLGEOM")
+@pytest.mark.parametrize(("nlgeom", "limit"), [("", 10), (", NLGEOM=NO", 10), (", NLGEOM", 5)])
+@pytest.mark.parametrize("told", [False, True])
+def test_large_strains(tmp_path, told, nlgeom, limit):
+    """A block that is stretched uniformly, nu = 0; half of it in the first increment. NLGEOM itself
+    is warned of at its place in the deck."""
+    note_changes(["*STEP"], ["*STEP, NLGEOM"])
+    strain = limit / 100 + (0.001 if told else -0.001)
     stretched = [f"*STEP{nlgeom}", "*STATIC", "0.5, 1.", "*BOUNDARY", "A.BOTTOM, 1, 2",
                  f"A.TOP, 2, 2, {2 * strain!r}", "A.TOP, 1", "A.LEFT, 1", "A.RIGHT, 1", "*END STEP"]
     found = warnings_of_run(tmp_path, conducting(stretched))
     assert len(found) == told
     if told:
-        assert re.match(r"increment 2: the strain of element \d+ is 10.1 %; strains and ", found[0])
+        assert re.match(rf"increment 2: the strain of element \d+ is {limit}.1 %; strains and ",
+                        found[0])
+        assert found[0].endswith(f"fails above {limit} %")
+
+
+def test_nlgeom_is_warned_of_once_and_not_in_steps_of_heat(tmp_path):
+    heat = ["*STEP, NLGEOM", "*HEAT TRANSFER, STEADY STATE", "*BOUNDARY", "A.BOTTOM, 11",
+            "A.TOP, 11, 11, 5.", "*END STEP"]
+    pressed = ["*STATIC", "*BOUNDARY", "A.BOTTOM, 1, 2", "*END STEP"]
+    asked = conducting([*heat, *2 * ["*STEP, NLGEOM=YES", *pressed]])
+    message = one(warnings(tmp_path, asked), "*STEP, NLGEOM=YES")
+    assert message == "NLGEOM is not modelled: displacements and strains stay small"
+    assert warnings(tmp_path, conducting([*heat, "*STEP", *pressed])) == []

@@ -13,13 +13,12 @@ module deck_builder_steps
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: card_count
-   use keywords, only: refusal
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
    use steps, only: analysis_coupled, analysis_heat, analysis_static, solves_heat, &
-      step_type
-   use text, only: to_text, to_upper
+      solves_mechanics, step_type
+   use text, only: to_text
    implicit none
    private
    public :: build_steps, increment_rounding
@@ -103,7 +102,27 @@ contains
             end select
          end associate
       end do
+      call warn_of_nlgeom(cards, report, model%steps)
    end subroutine build_steps
+
+   !> NLGEOM means nothing where no displacements are solved, and is warned of once elsewhere.
+   subroutine warn_of_nlgeom(cards, report, steps)
+      type(cards_type), intent(in) :: cards
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: steps(:)
+      integer :: k, n
+
+      steps%nlgeom = steps%nlgeom .and. solves_mechanics(steps%analysis)
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'STEP') cycle
+         n = n + 1
+         if (.not. steps(n)%nlgeom) cycle
+         call report%warning(parameter_place(cards%keywords(k), 'NLGEOM'), &
+            'NLGEOM is not modelled: displacements and strains stay small')
+         return
+      end do
+   end subroutine warn_of_nlgeom
 
    pure subroutine set_controls(controls, step)
       type(lasting_controls_type), intent(in) :: controls
@@ -149,7 +168,7 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
-      character(:), allocatable :: history
+      character(:), allocatable :: history, nlgeom
 
       call take_parameter(card, 'INC', report, step%max_increments)
       if (step%max_increments < 1) then
@@ -165,9 +184,12 @@ contains
       step%contact_print_frequency = before%contact_print_frequency
       if (allocated(before%node_prints)) step%node_prints = before%node_prints
       if (allocated(before%element_prints)) step%element_prints = before%element_prints
-      if (.not. has_parameter(card, 'NLGEOM')) return
-      if (to_upper(parameter_text(card, 'NLGEOM')) /= 'NO') call report%error( &
-         parameter_place(card, 'NLGEOM'), 'NLGEOM is refused on *STEP: '//refusal('STEP', 'NLGEOM'))
+      nlgeom = 'NO'
+      if (has_parameter(card, 'NLGEOM')) nlgeom = 'YES'
+      if (len(parameter_text(card, 'NLGEOM')) > 0) then
+         call choose(card, 'NLGEOM', 'YES/NO', report, nlgeom)
+      end if
+      step%nlgeom = nlgeom == 'YES'
    end subroutine begin_step
 
    !> Takes *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.

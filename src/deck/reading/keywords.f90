@@ -153,7 +153,7 @@ module keywords
    type(known_keyword_type), parameter :: known_keywords(63) = &
       [model_keywords, control_keywords, step_keywords]
 
-   type(refusal_type), parameter :: refusals(29) = [ &
+   type(refusal_type), parameter :: refusals(28) = [ &
       refusal_type('TRANSFORM', '', 'displacements and forces are along x and y; give them so'), &
       refusal_type('EQUATION', '', 'bodies are held by *BOUNDARY and by contact only'), &
       refusal_type('MPC', '', 'bodies are held by *BOUNDARY and by contact only'), &
@@ -182,8 +182,7 @@ module keywords
       refusal_type('AMPLITUDE', 'SHIFTX', 'add the shift to the times'), &
       refusal_type('AMPLITUDE', 'SHIFTY', 'add the shift to the factors'), &
       refusal_type('RESTART', 'READ', 'a run begins with the first step'), &
-      refusal_type('STEP', 'PERTURBATION', 'steps go on from the one before; leave it out'), &
-      refusal_type('STEP', 'NLGEOM', 'displacements and strains are small; leave it out')]
+      refusal_type('STEP', 'PERTURBATION', 'steps go on from the one before; leave it out')]
 
 contains
 
