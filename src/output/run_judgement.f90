@@ -15,7 +15,7 @@ module run_judgement
    private
    public :: run_judgement_type
 
-   !> Largest strain and rotation for which the linear theory holds, and where a deck asks for another
+   !> Largest strain and rotation for which the linear theory holds, and where NLGEOM is asked for
    real(dp), parameter :: small = 0.1_dp, small_with_nlgeom = 0.05_dp
    real(dp), parameter :: unmoved = 1.0e-12_dp     !! part of the extent that is no displacement
    real(dp), parameter :: unheated = 1.0e-12_dp    !! part of a temperature that is no change
