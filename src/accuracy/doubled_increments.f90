@@ -15,7 +15,7 @@ module doubled_increments
    use reduced_bodies, only: reduced_bodies_type
    use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
-   use steps, only: solves_heat, solves_mechanics, step_type
+   use steps, only: planned_increments, solves_heat, solves_mechanics, step_type
    implicit none
    private
    public :: doubled_increments_type
@@ -71,7 +71,7 @@ contains
 
       if (.not. self%is_led .or. self%is_lost) return
       if (record%step /= self%step) self%waiting = &
-         modulo(planned_increments(model%steps(record%step)), 2)
+         modulo(ceiling(planned_increments(model%steps(record%step)) - almost_none), 2)
       self%step = record%step
       self%waiting = self%waiting + 1
       if (self%waiting < 2 .and. .not. record%last_of_step) return
@@ -106,12 +106,5 @@ contains
       self%time = record%time
       self%waiting = 0
    end subroutine follow
-
-   !> Increments of a step without cut-backs and landings.
-   pure integer function planned_increments(step)
-      type(step_type), intent(in) :: step
-
-      planned_increments = ceiling(step%period/step%first_increment - almost_none)
-   end function planned_increments
 
 end module doubled_increments

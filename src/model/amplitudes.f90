@@ -10,10 +10,10 @@ module amplitudes
    type :: amplitude_type
       character(:), allocatable :: name      !! name in upper case
       logical :: total_time = .false.        !! abscissa is total time, not step time
-      !> Between two points a polynomial of fifth order that is level at both, without curvature
-      logical :: smooth = .false.
       real(dp), allocatable :: times(:)      !! (points) ascending [time]
       real(dp), allocatable :: values(:)     !! (points) factors [-]
+      !> Between two points a polynomial of fifth order that is level at both, without curvature
+      logical :: smooth = .false.
    end type amplitude_type
 
 contains

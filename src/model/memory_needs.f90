@@ -12,7 +12,7 @@ module memory_needs
    use model, only: model_type
    use ordering, only: adjacency, permuted_lower, profile_length, profile_order
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
-   use steps, only: solves_heat, solves_mechanics
+   use steps, only: planned_increments, solves_heat, solves_mechanics
    implicit none
    private
    public :: memory_needed
@@ -45,7 +45,7 @@ contains
       nodes = size(model%mesh%node_number)*4.0_dp**levels
       points = contact_point_count(model)*2.0_dp**levels
       entries = entries_of(kinds, heat, mechanics)*4.0_dp**levels
-      increments = sum(min(model%steps%period/model%steps%first_increment, &
+      increments = sum(min(planned_increments(model%steps), &
          real(model%steps%max_increments, dp)))
       bytes = base + per_entry*entries + min(waiting, real_bytes*field_values*nodes*increments) + &
          dense_matrices*real_bytes*(3*points)**2

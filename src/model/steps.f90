@@ -11,7 +11,7 @@ module steps
    public :: load_centrifugal, centrifugal_round, load_nodal_heat, load_face_heat, load_body_heat
    public :: load_film_coefficient, load_film_sink, load_temperature
    public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
-   public :: solves_heat, solves_mechanics, least_increment
+   public :: solves_heat, solves_mechanics, least_increment, increment_growth, planned_increments
 
    integer, parameter :: analysis_static = 1    !! *STATIC: mechanics at given temperatures
    integer, parameter :: analysis_coupled = 2   !! *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
@@ -42,6 +42,9 @@ module steps
    !> Least increment as a part of the period; shorter ones are lost in the rounding of the times.
    real(dp), parameter :: least_increment = 1.0e-9_dp
 
+   real(dp), parameter :: increment_growth = 1.5_dp   !! of increments that grow, as in CalculiX
+   real(dp), parameter :: remainder = 1.0e-6_dp       !! of an increment: belongs to the one before
+
    !> A load on one location, valid from this step on. The loads of a step on one location are added
    !> up.
    type :: load_type
@@ -68,6 +71,7 @@ module steps
       integer :: max_increments = 100                !! INC=
       logical :: ramped = .true.                     !! loads ramp over the step; else whole at once
       logical :: direct = .false.                    !! DIRECT
+      logical :: grows = .false.                     !! increments grow up to the largest
       logical :: nlgeom = .false.                    !! large displacements are asked for
       real(dp) :: first_increment = 1.0_dp           !! size of the increments [time]
       real(dp) :: period = 1.0_dp                    !! length of the step [time]
@@ -88,6 +92,25 @@ module steps
    end type step_type
 
 contains
+
+   !> Number of increments of a step that is neither cut back nor lands on an instant.
+   elemental function planned_increments(step) result(planned)
+      type(step_type), intent(in) :: step
+      real(dp) :: planned                   !! not rounded where the increments are fixed
+      real(dp) :: time, increment
+
+      planned = step%period/step%first_increment
+      if (.not. step%grows) return
+      planned = 0.0_dp
+      time = 0.0_dp
+      increment = step%first_increment
+      do while (increment < step%largest_increment .and. time < step%period - remainder*increment)
+         planned = planned + 1.0_dp
+         time = time + increment
+         increment = min(increment_growth*increment, step%largest_increment)
+      end do
+      planned = planned + ceiling(max((step%period - time)/increment - remainder, 0.0_dp))
+   end function planned_increments
 
    !> Whether an analysis solves heat.
    elemental function solves_heat(analysis) result(heat)

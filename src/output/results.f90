@@ -24,7 +24,7 @@ module results
    use run_summaries, only: or_blank, run_summary_type
    use solution_report, only: iteration_record_type
    use status_files, only: status_file_type
-   use steps, only: solves_heat, solves_mechanics
+   use steps, only: planned_increments, solves_heat, solves_mechanics
    use clock, only: wall_seconds
    use text, only: string_type
    use working_files, only: working_file_type
@@ -206,7 +206,7 @@ contains
       integer :: expected
       real(dp) :: total
 
-      total = sum(min(model%steps%period/model%steps%first_increment, &
+      total = sum(min(planned_increments(model%steps), &
          real(model%steps%max_increments, dp)))
       expected = max(1, nint(min(total, 1.0e6_dp)))
    end function expected_increments

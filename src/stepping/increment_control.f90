@@ -5,7 +5,7 @@ module increment_control
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use model, only: model_type
-   use steps, only: step_type
+   use steps, only: increment_growth, planned_increments, step_type
    use text, only: to_text
    implicit none
    private
@@ -86,8 +86,8 @@ contains
       type(step_clock_type) :: clock                      !! the instant
 
       associate (step => model%steps(self%step))
-         clock%step_time = next_end(self%step_time, self%largest, step%first_increment, &
-            step%period, self%landings)
+         clock%step_time = next_end(self%step_time, self%largest, &
+            merge(step%period, step%first_increment, step%grows), step%period, self%landings)
          clock%period = step%period
          clock%total_time = self%step_start + clock%step_time
          clock%ramped = step%ramped
@@ -102,12 +102,23 @@ contains
       real(dp), parameter :: rounding = 1.0e-6_dp
       real(dp) :: left(size(model%steps))
 
-      left = model%steps%period/model%steps%first_increment
-      left(:self%step) = 0.0_dp
-      if (self%step > 0) left(self%step) = (model%steps(self%step)%period - self%step_time)/ &
-         model%steps(self%step)%first_increment
+      left = planned_increments(model%steps)
+      left(:self%step - 1) = 0.0_dp
+      if (self%step > 0) left(self%step) = remaining(self, model%steps(self%step), left(self%step))
       planned = self%increments + sum(ceiling(min(left - rounding, 1.0e6_dp)))
    end function planned
+
+   !> Increments that are left of the present step.
+   pure function remaining(self, step, planned) result(left)
+      type(increment_control_type), intent(in) :: self
+      type(step_type), intent(in) :: step
+      real(dp), intent(in) :: planned      ! of the whole step
+      real(dp) :: left
+
+      left = (step%period - self%step_time)/step%first_increment
+      if (step%grows) left = merge(0.0_dp, max(planned - self%increments_of_step, 1.0_dp), &
+         self%step_time >= step%period)
+   end function remaining
 
    !> Goes on behind an increment that converged.
    pure subroutine accept(self, model, clock)
@@ -118,9 +129,15 @@ contains
       self%step_time = clock%step_time
       self%increments = self%increments + 1
       self%increments_of_step = self%increments_of_step + 1
-      if (self%cut_backs == 0) then
-         self%largest = grown_size(self%largest, model%steps(self%step)%first_increment)
-      end if
+      associate (step => model%steps(self%step))
+         if (self%cut_backs > 0) then
+            continue
+         else if (step%grows) then
+            self%largest = min(increment_growth*self%largest, step%largest_increment)
+         else
+            self%largest = grown_size(self%largest, step%first_increment)
+         end if
+      end associate
       self%cut_backs = 0
    end subroutine accept
 

@@ -16,7 +16,7 @@ contains
    !> Instants that every row meets: ends of the longest increments, which all halves of these meet
    !> too, every n-th of them where a step has many, and the end of the step. The first one is the
    !> coarsest part of a path and left out, unless there are few. Increments that are not fixed
-   !> also land on corners of amplitudes and times of *VERIFY.
+   !> also land on corners of amplitudes and times of *VERIFY; those that grow meet nothing else.
    pure function common_instants(model, longest) result(times)
       type(model_type), intent(in) :: model      !! the model as the deck is written
       real(dp), intent(in) :: longest            !! largest factor on the increments
@@ -32,6 +32,7 @@ contains
          associate (step => model%steps(s))
             increment = varied_increment(step%first_increment, step%period, longest)
             count = floor(step%period/increment + same)
+            if (step%grows) count = 0
             do i = merge(2, 1, count >= few), count, 1 + (count - 1)/most
                call add(i*increment, times)
             end do

@@ -3,6 +3,8 @@
 The forms are those of cgx, PrePoMax and FreeCAD; the decks are written for these tests.
 """
 
+import h5py
+import numpy as np
 import pytest
 from blocks import write
 from calculix import DIGITS, assert_within, calculix, compared, differences, thercon
@@ -383,18 +385,21 @@ def test_a_set_of_the_nodes_of_a_surface_or_of_elements(tmp_path):
     follows(tmp_path, make, "TOP", "BOTTOM")
 
 
-def test_more_increments_than_inc_are_lengthened(tmp_path):
-    """As CalculiX lengthens those that converge, up to the largest; with DIRECT they are an error."""
-    cards = [*mesh("BODY", [0.0, 1.0], [0.0, 1.0]), *material("BODY"), "*STEP, INC=8", "*STATIC",
+def test_more_increments_than_inc_grow(tmp_path):
+    """As in CalculiX: each half as long again, up to the largest; with DIRECT they are an error."""
+    cards = [*mesh("BODY", [0.0, 1.0], [0.0, 1.0]), *material("BODY"), "*STEP, INC=10", "*STATIC",
              "0.01, 1., 1.E-5, 0.5", "*BOUNDARY", "BODY.BOTTOM, 1, 2", "*CLOAD", "BODY.TOP, 2, 1.", "*END STEP"]
     deck = write(tmp_path / "deck.inp", cards)
     process = run("run", "--quiet", deck, "--out", tmp_path)
     assert process.returncode == 0
-    assert "the first one is lengthened to 0.125" in process.stderr
-    assert len([row for row in deck.with_suffix(".sta").read_text().splitlines()
-                if row[:1].isdigit()]) == 8
+    assert "INC=" not in process.stderr
+    assert "*STATIC: INC=10 does not hold for increments of 1E-2; they grow, each to 1.5 of the one " \
+        "before, up to 0.5" in " ".join(deck.with_suffix(".lst").read_text().split())
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        times = file["history/time"][()]
+    np.testing.assert_allclose(times, [*(0.02 * (1.5**n - 1.0) for n in range(1, 10)), 1.0])
     direct = write(tmp_path / "direct.inp", [card.replace("*STATIC", "*STATIC, DIRECT")
                                              for card in cards])
     process = run("check", direct)
     assert process.returncode == 1
-    assert "the step takes 100 increments of 1E-2, more than the 8 of INC=; give INC=100 or a first increment of 0.125" in process.stderr
+    assert "the step takes 100 increments of 1E-2, more than the 10 of INC=; give INC=100 or a first increment of 0.1" in process.stderr

@@ -116,8 +116,6 @@ contains
       end if
       if (.not. has_field(data, 3)) call context%note('smallest increment not given: '// &
          to_text(step%smallest_increment))
-      if (has_field(data, 4)) call context%note( &
-         'largest increment not needed: no increment is longer than the first')
    end subroutine note_increments
 
 end module deck_builder_increments

@@ -2,7 +2,7 @@
 module deck_builder_steps
    use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &
       parameter_text, take_parameter
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: cards_type, has_field, keyword_card_type
    use controls, only: fixed_point_type, implicit_scheme, start_type, thermal_scheme_type
    use deck_builder_controls, only: build_fixed_point, build_thermal_scheme
    use deck_builder_start, only: build_start
@@ -16,8 +16,8 @@ module deck_builder_steps
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use steps, only: analysis_coupled, analysis_heat, analysis_static, solves_heat, &
-      solves_mechanics, step_type
+   use steps, only: analysis_coupled, analysis_heat, analysis_static, increment_growth, &
+      planned_increments, solves_heat, solves_mechanics, step_type
    use text, only: to_text
    implicit none
    private
@@ -232,36 +232,51 @@ contains
       if (card%flawed .or. report%error_count() > errors) then
          context%analyses_sound = .false.
       else
-         call fit_increments(context%step_place(n), report, step)
+         call fit_increments(cards, card, n, context, report, step)
       end if
    end subroutine build_analysis
 
-   !> INC= holds for increments that are all as long as the first; CalculiX lengthens those behind
-   !> it, up to the largest. Where the card gives that, the first may be longer.
-   subroutine fit_increments(place, report, step)
-      type(place_type), intent(in) :: place   ! of *STEP, where INC= stands
+   !> Increments are all as long as the first, unless INC= does not hold for these: then they grow
+   !> as in CalculiX, up to the largest.
+   subroutine fit_increments(cards, card, n, context, report, step)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: n                ! of the step
+      type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
-      character(:), allocatable :: number, too_many
-      real(dp) :: needed
+      character(:), allocatable :: number
+      logical :: has_largest
 
       if (step%max_increments < 1) return
-      needed = step%period/(step%max_increments + increment_rounding)
-      if (needed <= step%first_increment) return
-      number = to_text(ceiling(min(step%period/step%first_increment - increment_rounding, &
-         most_counted)))
-      too_many = 'the step takes '//number//' increments of '//to_text(step%first_increment)// &
-         ', more than the '//to_text(step%max_increments)//' of INC=; '
-      needed = step%period/step%max_increments
-      if (step%direct .or. needed > step%largest_increment) then
-         call report%error(place, too_many//'give INC='//number//' or a first increment of '// &
-            to_text(needed))
-      else
-         step%first_increment = needed
-         call report%warning(place, too_many//'the first one is lengthened to '// &
-            to_text(needed)//', as CalculiX lengthens those behind it')
+      has_largest = .false.
+      if (card%last_data >= card%first_data) has_largest = has_field(cards%data(card%first_data), 4)
+      if (too_many(step)) then
+         number = to_text(ceiling(min(planned_increments(step) - increment_rounding, most_counted)))
+         step%grows = .not. step%direct
+         if (.not. has_largest) step%largest_increment = step%period
+         if (too_many(step)) then
+            call report%error(context%step_place(n), 'the step takes '//number// &
+               ' increments of '//to_text(step%first_increment)//', more than the '// &
+               to_text(step%max_increments)//' of INC=; give INC='//number// &
+               ' or a first increment of '//to_text(step%period/step%max_increments))
+         else
+            call context%note('*'//card%name//': INC='//to_text(step%max_increments)// &
+               ' does not hold for increments of '//to_text(step%first_increment)// &
+               '; they grow, each to '//to_text(increment_growth)//' of the one before, up to '// &
+               to_text(step%largest_increment))
+         end if
+      else if (has_largest .and. .not. step%direct) then
+         call context%note('largest increment not needed: no increment is longer than the first')
       end if
    end subroutine fit_increments
+
+   !> Whether a step would take more increments than INC= allows.
+   pure logical function too_many(step)
+      type(step_type), intent(in) :: step
+
+      too_many = planned_increments(step) > step%max_increments + increment_rounding
+   end function too_many
 
    !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0
    !> leaves its last increment.
