@@ -288,9 +288,14 @@ def test_direct_increments_land_on_nothing_else(tmp_path, analysis):
     note_changes(free, direct)
 
 
+def direct(cards):
+    """Return a deck whose increments stay as they are given."""
+    return ["*STATIC, DIRECT" if card == "*STATIC" else card for card in cards]
+
+
 @pytest.mark.changes("STEP, INC")
-def test_a_step_with_more_increments_than_inc_is_refused(tmp_path):
-    decks = [block(*static("*DLOAD", *DOWN, first=f"*STEP, INC={n}", times="0.25, 1."))
+def test_a_direct_step_with_more_increments_than_inc_is_refused(tmp_path):
+    decks = [direct(block(*static("*DLOAD", *DOWN, first=f"*STEP, INC={n}", times="0.25, 1.")))
              for n in (4, 3)]
     judge(tmp_path, decks[0], [("S22", "BODY", "LAST", -5.0, SMALL)])
     judge(tmp_path, decks[1], [("S22", "BODY", "LAST", -5.0, SMALL)], status=1)
@@ -298,8 +303,9 @@ def test_a_step_with_more_increments_than_inc_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(("increments", "status"), [(100, 0), (101, 1)])
-def test_a_step_has_a_hundred_increments_without_inc(tmp_path, increments, status):
-    judge(tmp_path, block(*static("*DSLOAD", "BODY.TOP, P, 5.", times=f"1., {increments}.")),
+def test_a_direct_step_has_a_hundred_increments_without_inc(tmp_path, increments, status):
+    judge(tmp_path, direct(block(*static("*DSLOAD", "BODY.TOP, P, 5.",
+                                         times=f"1., {increments}."))),
           stressed([0.0, -5.0, 0.0]), status=status)
 
 
