@@ -30,7 +30,7 @@ module mortar_segments
    real(dp), parameter :: two_pi = 6.283185307179586477_dp
    real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
    real(dp), parameter :: beside = 1.0e-9_dp        !! of a side's coordinate beyond its end
-   integer, parameter :: most_steps = 60            !! halvings or Newton steps
+   integer, parameter :: most_steps = 60            !! of an iteration
 
    !> The line of nodes of one face.
    type :: face_line_type
@@ -222,28 +222,31 @@ contains
       end associate
    end function beside_normal
 
-   !> Coordinate of a side whose normal meets a point, by the rule of false position with halvings.
+   !> Coordinate of a side whose normal meets a point, by the Illinois method: false position, in
+   !> which an end that stays counts half as much each time.
    pure function opposite_coordinate(side, x, at_ends) result(xi)
       type(side_type), intent(in) :: side
       real(dp), intent(in) :: x(2), at_ends(2)
       real(dp) :: xi
-      real(dp) :: ends(2), value, values(2)
+      real(dp) :: before, ends(2), value, values(2)
       integer :: step
 
       ends = [-1.0_dp, 1.0_dp]
       values = at_ends
+      xi = 2.0_dp
       do step = 1, most_steps
-         xi = ends(1) - values(1)*(ends(2) - ends(1))/(values(2) - values(1))
-         if (modulo(step, 3) == 0) xi = 0.5_dp*(ends(1) + ends(2))
+         before = xi
+         xi = (ends(1)*values(2) - ends(2)*values(1))/(values(2) - values(1))
          value = beside_normal(side, xi, x)
-         if (value*values(1) > 0.0_dp) then
-            ends(1) = xi
-            values(1) = value
+         if (abs(value) <= 0.0_dp .or. abs(xi - before) <= epsilon(xi)) exit
+         if (value*values(2) < 0.0_dp) then
+            ends(1) = ends(2)
+            values(1) = values(2)
          else
-            ends(2) = xi
-            values(2) = value
+            values(1) = 0.5_dp*values(1)
          end if
-         if (abs(value) <= 0.0_dp .or. ends(2) - ends(1) <= epsilon(xi)) exit
+         ends(2) = xi
+         values(2) = value
       end do
    end function opposite_coordinate
 
