@@ -7,7 +7,7 @@ module chain_geometry
    implicit none
    private
    public :: arc_lengths, edge_lengths, tributary_lengths, swept_areas, chain_tangents
-   public :: at_tips, side_positions, side_total
+   public :: at_tips, length_between, side_positions, side_total
 
    real(dp), parameter :: two_pi = 6.283185307179586477_dp
    !> Slope of a side at its end, over the chord, that counts as 0. The side turns away from such a
@@ -34,9 +34,10 @@ contains
       position = [(mod((side - 1)*(side_nodes - 1) + q, nodes) + 1, q=0, side_nodes - 1)]
    end function side_positions
 
-   !> Length of a side between two of its points.
+   !> Length of a side between two of its points, negative against its direction.
    pure function length_between(x, from, to) result(length)
-      real(dp), intent(in) :: x(:, :), from, to
+      real(dp), intent(in) :: x(:, :)     !! (2, nodes) the side [length]
+      real(dp), intent(in) :: from, to    !! coordinates, from -1 to 1
       real(dp) :: length
       integer :: g
 

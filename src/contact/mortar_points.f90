@@ -16,10 +16,11 @@ module mortar_points
    private
    public :: set_mortar_points
 
-   !> Part of a hat function that the master must cover to make its corner a contact point of its
-   !> own. With less, the corner's integrals hardly differ from its neighbour's: they go to it,
-   !> which keeps what the hats sum to.
-   real(dp), parameter :: least_cover = 1.0e-2_dp
+   !> Part of its sides that the master must cover to make a corner a contact point of its own, over
+   !> the part of its neighbour's. With less, a sliver of the face would have a multiplier: it goes
+   !> to the neighbour, which keeps what the hats sum to. Sides ten times finer than those opposite
+   !> are known to be stable.
+   real(dp), parameter :: least_cover = 0.1_dp
 
 contains
 
@@ -48,10 +49,10 @@ contains
       points%corners = size(corner)
       points%open_corners = count(owner == 0)
       points%slave_node = corner(kept)
-      points%position = mesh%coordinates(:, points%slave_node)
+      points%position = integrals%position(:, kept)
       associate (x => mesh%coordinates(:, slave%nodes), n => slave%side_nodes)
          associate (s => arc_lengths(x, n, slave%closed), edge => edge_lengths(x, n, slave%closed))
-            points%arc_length = s((n - 1)*(kept - 1) + 1)
+            points%arc_length = s((n - 1)*(kept - 1) + 1) + integrals%beyond(kept)
             points%edge = edge((n - 1)*(kept - 1) + 1)
          end associate
       end associate
@@ -96,15 +97,17 @@ contains
       integer :: beside(2), c, n
 
       n = size(is_tip)
-      cover = integrals%weight/integrals%whole
+      cover = 0.0_dp
+      where (integrals%weight > 0.0_dp) cover = integrals%weight/integrals%whole
       where (is_tip) cover = 0.5_dp*least_cover*cover
       owner = [(c, c=1, n)]
       where (cover <= 0.0_dp) owner = 0
       do c = 1, n
-         if (owner(c) /= c .or. cover(c) >= least_cover) cycle
+         if (owner(c) /= c) cycle
          beside = modulo([c - 2, c], n) + 1
          if (.not. closed) beside = min(max([c - 1, c + 1], 1), n)
          if (cover(beside(1)) >= cover(beside(2))) beside = beside([2, 1])
+         if (cover(c) >= least_cover*cover(beside(2))) cycle
          if (owner(beside(2)) == beside(2) .and. beside(2) /= c) owner(c) = beside(2)
       end do
    end function owners

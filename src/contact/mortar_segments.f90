@@ -2,8 +2,10 @@
 !>
 !> The multipliers of the contact are piecewise linear on the slave face: hat function phi_c of
 !> corner c is 1 there and falls linearly in the side's own coordinate xi to 0 at the next corners,
-!> also on sides with midside nodes. A point xi of the slave lies opposite the point of the master
-!> that its normal meets; normals are interpolated between the averaged ones of the slave's nodes.
+!> also on sides with midside nodes. On a side that the master covers in part the two hats span the
+!> covered part alone: spanning the whole side, the hat of a corner far from the master would be
+!> small wherever it counts, and its multiplier as large as it likes. A point xi of the slave lies
+!> opposite the point of the master that its normal meets; normals are interpolated between the averaged ones of the slave's nodes.
 !> The contact conditions of a corner act along the normal midway between those of both faces there.
 !> Along the slave's own normal, part of the normal force would count as friction, and exchanging
 !> slave and master would change it.
@@ -17,7 +19,7 @@
 !> B. I. Wohlmuth, Acta Numerica 20 (2011) 569; A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM
 !> J. Sci. Comput. 34 (2012) B421 (linear multipliers on quadratic sides).
 module mortar_segments
-   use chain_geometry, only: chain_tangents, side_positions, side_total
+   use chain_geometry, only: chain_tangents, length_between, side_positions, side_total
    use kinds, only: dp
    use quadrature, only: gauss_point_10, gauss_weight_10
    use shape_functions, only: side_shape, side_slope
@@ -43,7 +45,11 @@ module mortar_segments
    !> The integrals. Corners of the slave are counted along its line.
    type :: mortar_integrals_type
       real(dp), allocatable :: weight(:)   !! (corners) w_c [length^2]
-      real(dp), allocatable :: whole(:)    !! (corners) w_c if the master reached everywhere
+      !> (corners) w_c if the master covered the whole of the sides that it does cover in part
+      real(dp), allocatable :: whole(:)
+      !> (2, corners) where the hat function is 1: the corner, or the end of what is covered [length]
+      real(dp), allocatable :: position(:, :)
+      real(dp), allocatable :: beyond(:)   !! (corners) how far along the line it lies from there
       !> (2, corners) unit normal midway between those of both faces, outward from the slave
       real(dp), allocatable :: normal(:, :)
       type(sparse_matrix_type) :: slave    !! (corners, nodes of the slave) D [length^2]
@@ -57,13 +63,17 @@ module mortar_segments
       real(dp), allocatable :: x(:, :)        !! (2, nodes) [length]
       real(dp), allocatable :: normal(:, :)   !! (2, nodes)
       real(dp), allocatable :: kinks(:)       !! its coordinates where segments end, ascending
+      integer, allocatable :: opposite(:)     !! (segments) side of the master, 0 for none
+      real(dp) :: covered(2) = [1.0_dp, -1.0_dp] !! its coordinates where the covered part ends
    end type side_type
 
    !> What has been summed.
    type :: segment_sums_type
       real(dp), allocatable :: weight(:), whole(:)
-      real(dp), allocatable :: facing(:, :)   !! (2, corners) the master's normal nearest to each
-      real(dp), allocatable :: apart(:)       !! (corners) how near that is, in a side's coordinate
+      real(dp), allocatable :: apart(:)       !! (corners) from the covered part, as a coordinate
+      real(dp), allocatable :: position(:, :), beyond(:)   !! of mortar_integrals_type
+      !> (2, corners) normals of slave and master there
+      real(dp), allocatable :: normal(:, :), facing(:, :)
       type(triplet_list_type) :: slave, master
    end type segment_sums_type
 
@@ -83,9 +93,12 @@ contains
 
       side = sides_of(slave)
       corners = size(side) + merge(0, 1, slave%closed)
-      allocate (sums%weight(corners), sums%whole(corners), sums%facing(2, corners), source=0.0_dp)
+      allocate (sums%weight(corners), sums%whole(corners), sums%beyond(corners), source=0.0_dp)
       allocate (sums%apart(corners), source=huge(1.0_dp))
       normal = outward_normals(slave)
+      sums%normal = normal(:, ::slave%side_nodes - 1)
+      sums%position = slave%x(:, ::slave%side_nodes - 1)
+      allocate (sums%facing, source=0.0_dp*sums%normal)
       master_normal = outward_normals(master)
       allocate (segments(size(side)))
       do s = 1, size(side)
@@ -97,15 +110,14 @@ contains
       section = merge(0.0_dp, thickness, about_axis)
       do s = 1, size(side)
          do k = 1, segments(s)
-            associate (ends => side(s)%kinks(k:k + 1))
-               if (ends(2) - ends(1) > no_segment) call add_segment(side(s), ends, master, &
-                  master_normal, section, sums)
-            end associate
+            call add_segment(side(s), k, master, master_normal, section, sums)
          end do
       end do
       integrals%weight = sums%weight
       integrals%whole = sums%whole
-      integrals%normal = normal(:, ::slave%side_nodes - 1) - sums%facing
+      integrals%position = sums%position
+      integrals%beyond = sums%beyond
+      integrals%normal = sums%normal - sums%facing
       do k = 1, corners
          integrals%normal(:, k) = integrals%normal(:, k)/norm2(integrals%normal(:, k))
       end do
@@ -132,56 +144,77 @@ contains
    end function sides_of
 
    !> Adds the integrals over one segment; without a master opposite, the area of the hats alone.
-   pure subroutine add_segment(side, ends, master, master_normal, section, sums)
+   pure subroutine add_segment(side, segment, master, master_normal, section, sums)
       type(side_type), intent(in) :: side
-      real(dp), intent(in) :: ends(2)         ! in the side's coordinate
+      integer, intent(in) :: segment
       type(face_line_type), intent(in) :: master
       real(dp), intent(in) :: master_normal(:, :)  ! (2, nodes)
       real(dp), intent(in) :: section         ! thickness, 0 about an axis [length]
       type(segment_sums_type), intent(inout) :: sums
-      real(dp) :: area, eta, hat(2), radius, xi
+      real(dp) :: area, ends(2), eta, hat(2), radius, xi
       real(dp) :: psi(size(side%nodes)), psi_master(master%side_nodes)
       real(dp) :: of_slave(2, size(psi)), of_master(2, size(psi_master))
-      integer :: c, facing(master%side_nodes), g, opposite
+      integer :: facing(master%side_nodes), g
 
-      opposite = side_opposite(side, 0.5_dp*(ends(1) + ends(2)), master)
-      facing = side_positions(max(opposite, 1), master%side_nodes, size(master%x, 2))
+      if (side%covered(1) > side%covered(2)) return
+      ends = side%kinks(segment:segment + 1)
+      facing = side_positions(max(side%opposite(segment), 1), master%side_nodes, size(master%x, 2))
       eta = 0.0_dp
       of_slave = 0.0_dp
       of_master = 0.0_dp
       do g = 1, size(gauss_point_10)
          xi = 0.5_dp*(ends(1) + ends(2) + (ends(2) - ends(1))*gauss_point_10(g))
-         hat = 0.5_dp*[1.0_dp - xi, 1.0_dp + xi]
          psi = side_shape(size(psi), xi)
          area = 0.5_dp*(ends(2) - ends(1))*gauss_weight_10(g)* &
             norm2(matmul(side%x, side_slope(size(psi), xi)))
          radius = dot_product(psi, side%x(1, :))
-         if (opposite > 0) then
+         if (side%opposite(segment) > 0) then
             call project(side, xi, master%x(:, facing), eta)
             psi_master = side_shape(size(psi_master), eta)
             radius = 0.5_dp*(radius + dot_product(psi_master, master%x(1, facing)))
          end if
          area = area*merge(section, two_pi*abs(radius), section > 0.0_dp)
-         sums%whole(side%corners) = sums%whole(side%corners) + area*hat
-         if (opposite == 0) cycle
+         sums%whole(side%corners) = sums%whole(side%corners) + area*0.5_dp*[1.0_dp - xi, &
+            1.0_dp + xi]
+         if (side%opposite(segment) == 0) cycle
+         hat = [side%covered(2) - xi, xi - side%covered(1)]/(side%covered(2) - side%covered(1))
          sums%weight(side%corners) = sums%weight(side%corners) + area*hat
          of_slave = of_slave + matmul(reshape(area*hat, [2, 1]), reshape(psi, [1, size(psi)]))
          of_master = of_master + matmul(reshape(area*hat, [2, 1]), &
             reshape(psi_master, [1, size(psi_master)]))
       end do
-      if (opposite == 0) return
-      do c = 1, 2
-         associate (corner => side%corners(c), apart => abs(ends(c) - (2*c - 3)))
-            if (apart >= sums%apart(corner)) cycle
-            sums%apart(corner) = apart
-            call project(side, ends(c), master%x(:, facing), eta)
-            sums%facing(:, corner) = matmul(master_normal(:, facing), side_shape( &
-               size(psi_master), eta))
-         end associate
-      end do
+      if (side%opposite(segment) == 0) return
       call sums%slave%add_block(side%corners, side%nodes, of_slave)
       call sums%master%add_block(side%corners, facing, of_master)
+      call find_positions(side, segment, master%x(:, facing), master_normal(:, facing), sums)
    end subroutine add_segment
+
+   !> Where the hats of a side's corners are 1, and the normals there, if this segment lies nearer to
+   !> the corner than those before.
+   pure subroutine find_positions(side, segment, x, master_normal, sums)
+      type(side_type), intent(in) :: side
+      integer, intent(in) :: segment
+      real(dp), intent(in) :: x(:, :), master_normal(:, :)  ! (2, nodes) of the side opposite
+      type(segment_sums_type), intent(inout) :: sums
+      real(dp) :: eta, from, normal(2), xi
+      integer :: c
+
+      do c = 1, 2
+         xi = side%kinks(segment + c - 1)
+         from = 2*c - 3.0_dp
+         associate (corner => side%corners(c), psi => side_shape(size(side%nodes), xi))
+            if (abs(xi - from) >= sums%apart(corner)) cycle
+            sums%apart(corner) = abs(xi - from)
+            sums%position(:, corner) = matmul(side%x, psi)
+            sums%beyond(corner) = length_between(side%x, from, xi)
+            normal = matmul(side%normal, psi)
+            sums%normal(:, corner) = normal/norm2(normal)
+            eta = 0.0_dp
+            call project(side, xi, x, eta)
+            sums%facing(:, corner) = matmul(master_normal, side_shape(size(x, 2), eta))
+         end associate
+      end do
+   end subroutine find_positions
 
    !> Outward unit normals at the nodes of a line; at a corner midway between those of its sides.
    pure function outward_normals(line) result(normal)
@@ -194,8 +227,8 @@ contains
       normal(2, :) = -line%outward*tangent(1, :)
    end function outward_normals
 
-   !> Finds where the segments of a slave's side end: its own ends, and where corners of the master
-   !> lie opposite.
+   !> Finds where the segments of a slave's side end, its own ends and where corners of the master
+   !> lie opposite, and what lies opposite them.
    pure subroutine find_kinks(side, master)
       type(side_type), intent(inout) :: side
       type(face_line_type), intent(in) :: master
@@ -209,6 +242,14 @@ contains
          if (ends(1)*ends(2) >= 0.0_dp) cycle
          xi = opposite_coordinate(side, master%x(:, j), ends)
          side%kinks = [pack(side%kinks, side%kinks <= xi), xi, pack(side%kinks, side%kinks > xi)]
+      end do
+      allocate (side%opposite(size(side%kinks) - 1), source=0)
+      do j = 1, size(side%opposite)
+         ends = side%kinks(j:j + 1)
+         if (ends(2) - ends(1) <= no_segment) cycle
+         side%opposite(j) = side_opposite(side, 0.5_dp*(ends(1) + ends(2)), master)
+         if (side%opposite(j) == 0) cycle
+         side%covered = [min(side%covered(1), ends(1)), max(side%covered(2), ends(2))]
       end do
    end subroutine find_kinks
 
