@@ -24,6 +24,9 @@ module all_contact_points
       integer, allocatable :: slave(:), master(:)             !! (m) node indexes
       !> (m, nodes) slave's value less master's, as the mean that the contact point takes of each
       type(sum_list_type) :: difference
+      !> (m, nodes) the same of displacements, as in contact_points_type; no sums where no normal of
+      !> any contact point turns
+      type(sum_list_type) :: along, across
       real(dp), allocatable :: weight(:)                      !! (m) tributary areas [length^2]
       real(dp), allocatable :: initial_gap(:)                 !! (m) h [length]
       real(dp), allocatable :: friction(:)                    !! (m) mu [-]
@@ -39,6 +42,7 @@ module all_contact_points
       procedure :: add_heat
       procedure :: add_forces
       procedure :: nodes_of
+      procedure :: turns
    end type all_contact_points_type
 
 contains
@@ -98,6 +102,10 @@ contains
          row%normal(2, m), row%tangent(2, m), row%law(m))
       allocate (row%held_axis(m), source=0)
       call row%difference%reserve(m, 2*m)
+      if (any([(interfaces(i)%across%count > 0, i=1, size(interfaces))])) then
+         call row%along%reserve(m, 2*m)
+         call row%across%reserve(m, 2*m)
+      end if
       do i = 1, size(interfaces)
          first = row%interface_start(i)
          last = row%interface_start(i + 1) - 1
@@ -109,13 +117,38 @@ contains
          row%tangent(:, first:last) = interfaces(i)%tangent
          row%friction(first:last) = model%interactions(model%contacts(i)%interaction)%friction
          row%law(first:last) = model%interactions(model%contacts(i)%interaction)%law
-         do k = 1, last - first + 1
-            call row%difference%add(interfaces(i)%difference%values_of(k), &
-               interfaces(i)%difference%coefficients_of(k))
-         end do
+         call append(interfaces(i)%difference, row%difference)
+         if (.not. row%turns()) cycle
+         if (interfaces(i)%across%count > 0) then
+            call append(interfaces(i)%along, row%along)
+            call append(interfaces(i)%across, row%across)
+         else
+            call append(interfaces(i)%difference, row%along)
+            do k = first, last
+               call row%across%add([integer ::], [real(dp) ::])
+            end do
+         end if
       end do
       row%ties = joined_ties(model%mesh, model%ties, of_ties)
    end function joined_points
+
+   !> Adds the sums of a list to another one.
+   pure subroutine append(sums, list)
+      type(sum_list_type), intent(in) :: sums
+      type(sum_list_type), intent(inout) :: list
+      integer :: k
+
+      do k = 1, sums%count
+         call list%add(sums%values_of(k), sums%coefficients_of(k))
+      end do
+   end subroutine append
+
+   !> Whether the normal turns along the face of some contact point.
+   pure logical function turns(self)
+      class(all_contact_points_type), intent(in) :: self
+
+      turns = allocated(self%across%start)
+   end function turns
 
    !> Slave's value less master's of a field, at every contact point.
    pure function jumps(self, field)
@@ -127,14 +160,25 @@ contains
       call self%difference%add_totals(field, jumps)
    end function jumps
 
-   !> Slave's displacement less master's, at every contact point.
+   !> Slave's displacement less master's, at every contact point, in the directions of its normal:
+   !> the mean of displacements that are turned with the face.
    pure function relative(self, displacement)
       class(all_contact_points_type), intent(in) :: self
       real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
       real(dp) :: relative(2, size(self%slave))    !! (2, m) [length]
 
+      real(dp) :: across(2, size(self%slave))
+
       relative(1, :) = self%jumps(displacement(1::2))
       relative(2, :) = self%jumps(displacement(2::2))
+      if (.not. self%turns()) return
+      relative = 0.0_dp
+      across = 0.0_dp
+      call self%along%add_totals(displacement(1::2), relative(1, :))
+      call self%along%add_totals(displacement(2::2), relative(2, :))
+      call self%across%add_totals(displacement(1::2), across(1, :))
+      call self%across%add_totals(displacement(2::2), across(2, :))
+      relative = relative + reshape([across(2, :), -across(1, :)], shape(across), order=[2, 1])
    end function relative
 
    !> Adds what leaves the slave's nodes through the contact points, and enters the master's.
@@ -153,8 +197,15 @@ contains
       real(dp), intent(in) :: on_slave(:, :)       !! (2, m) [force]
       real(dp), intent(inout) :: forces(:)         !! (2 nodes) [force]
 
-      call self%difference%add_shares(on_slave(1, :), forces(1::2))
-      call self%difference%add_shares(on_slave(2, :), forces(2::2))
+      if (.not. self%turns()) then
+         call self%difference%add_shares(on_slave(1, :), forces(1::2))
+         call self%difference%add_shares(on_slave(2, :), forces(2::2))
+         return
+      end if
+      call self%along%add_shares(on_slave(1, :), forces(1::2))
+      call self%along%add_shares(on_slave(2, :), forces(2::2))
+      call self%across%add_shares(on_slave(1, :), forces(2::2))
+      call self%across%add_shares(-on_slave(2, :), forces(1::2))
    end subroutine add_forces
 
    !> The nodes whose values a contact point takes.
@@ -209,6 +260,8 @@ contains
       associate (nodes => points%nodes_of(k))
          all_held = [all(held(2*nodes - 1)), all(held(2*nodes))]
       end associate
+      if (.not. points%turns()) return
+      if (size(points%across%values_of(k)) > 0) all_held = all(all_held)
    end function on_all_nodes
 
    !> Axes along which both nodes of a contact point are held.

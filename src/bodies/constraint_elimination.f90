@@ -145,49 +145,52 @@ contains
       end associate
    end function largest
 
-   !> A sum by the values that nothing writes, each once.
+   !> A sum by the values that nothing writes, each once. What writes a value has no values that
+   !> were written before, so those written first are replaced first, and each of them once.
    pure subroutine resolve(found, sums, i, value, coefficient)
       type(elimination_type), intent(in) :: found
       class(sum_list_type), intent(in) :: sums
       integer, intent(in) :: i
       integer, allocatable, intent(out) :: value(:)
       real(dp), allocatable, intent(out) :: coefficient(:)
-      integer :: k, n, entry
-      real(dp) :: scale
+      integer :: k, writer
+      real(dp) :: factor, scale
 
       value = sums%value(sums%start(i):sums%start(i + 1) - 1)
       coefficient = sums%coefficient(sums%start(i):sums%start(i + 1) - 1)
       if (all(found%writer(value) == 0)) return
       scale = maxval(abs(coefficient))
       do
-         k = findloc(found%writer(value) > 0, .true., dim=1)
+         k = minloc(found%writer(value), mask=found%writer(value) > 0, dim=1)
          if (k == 0) exit
-         if (abs(coefficient(k)) <= dropped*scale) then
-            coefficient = [coefficient(:k - 1), coefficient(k + 1:)]
-            value = [value(:k - 1), value(k + 1:)]
-            cycle
-         end if
-         associate (first => found%sums%start(found%writer(value(k))), &
-            last => found%sums%start(found%writer(value(k)) + 1) - 1)
-            coefficient = [coefficient(:k - 1), coefficient(k)*found%sums%coefficient(first:last), &
-               coefficient(k + 1:)]
-            value = [value(:k - 1), found%sums%value(first:last), value(k + 1:)]
+         writer = found%writer(value(k))
+         factor = coefficient(k)
+         coefficient = [coefficient(:k - 1), coefficient(k + 1:)]
+         value = [value(:k - 1), value(k + 1:)]
+         if (abs(factor) <= dropped*scale) cycle
+         associate (first => found%sums%start(writer), last => found%sums%start(writer + 1) - 1)
+            call add_terms(found%sums%value(first:last), &
+               factor*found%sums%coefficient(first:last), value, coefficient)
          end associate
       end do
-      n = 0
-      do k = 1, size(value)
-         entry = findloc(value(:n), value(k), dim=1)
-         if (entry > 0) then
-            coefficient(entry) = coefficient(entry) + coefficient(k)
-         else
-            n = n + 1
-            value(n) = value(k)
-            coefficient(n) = coefficient(k)
-         end if
-      end do
-      value = value(:n)
-      coefficient = coefficient(:n)
    end subroutine resolve
+
+   !> Adds terms to a sum, each value of it once.
+   pure subroutine add_terms(more, factor, value, coefficient)
+      integer, intent(in) :: more(:)
+      real(dp), intent(in) :: factor(:)
+      integer, allocatable, intent(inout) :: value(:)
+      real(dp), allocatable, intent(inout) :: coefficient(:)
+      integer :: i
+      integer :: entry(size(more))
+
+      entry = [(findloc(value, more(i), dim=1), i=1, size(more))]
+      do i = 1, size(more)
+         if (entry(i) > 0) coefficient(entry(i)) = coefficient(entry(i)) + factor(i)
+      end do
+      value = [value, pack(more, entry == 0)]
+      coefficient = [coefficient, pack(factor, entry == 0)]
+   end subroutine add_terms
 
    !> Numbers the unknowns: degrees of freedom, introduced values off the tail, then the tail. On it
    !> the forces of the links stand behind the values that stiffness holds and before those that

@@ -101,7 +101,7 @@ contains
       most = count(held) + most_rows(points%ties, components) + introduced
       allocate (rows%on_tail(introduced), rows%constraint(most), rows%choice(most))
       call rows%reserve(most, 2*count(held) + components*(introduced + &
-         size(points%difference%value)))
+         size(points%difference%value)*merge(2, 1, points%turns())))
       do dof = 1, size(held)
          if (.not. held(dof)) cycle
          call rows%add([dof, size(held) + introduced + dof], [1.0_dp, -1.0_dp])
@@ -119,7 +119,7 @@ contains
       logical, intent(in) :: slave_leads(:)
       real(dp), intent(in) :: direction(:)
       type(constraint_rows_type), intent(inout) :: rows
-      integer, allocatable :: nodes(:)
+      integer, allocatable :: nodes(:), dofs(:)
       real(dp), allocatable :: share(:)
       integer :: i
 
@@ -129,8 +129,15 @@ contains
          nodes = nodes([2, 1])
          share = share([2, 1])
       end if
-      call rows%add([rows%components*(nodes - 1) + component, &
-         (rows%dofs + rows%components*(k - 1) + i, i=1, size(direction))], [-share, direction])
+      dofs = rows%components*(nodes - 1) + component
+      if (rows%components == 2 .and. points%turns()) then
+         dofs = [2*(points%along%values_of(k) - 1) + component, &
+            2*(points%across%values_of(k) - 1) + 3 - component]
+         share = [points%along%coefficients_of(k), &
+            (3 - 2*component)*points%across%coefficients_of(k)]
+      end if
+      call rows%add([dofs, (rows%dofs + rows%components*(k - 1) + i, i=1, size(direction))], &
+         [-share, direction])
       rows%constraint(rows%count) = rows%dofs + k
       rows%choice(rows%count) = rows%components*(nodes(1) - 1) + component
    end subroutine relate

@@ -19,12 +19,10 @@ module rigid_motions
    real(dp), parameter :: nothing = 1.0e-6_dp        !! component of a motion that counts as none
    real(dp), parameter :: unit(2, 2) = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
 
-   !> What a contact point or a tie holds: along a direction, a sum of displacements of nodes is
-   !> zero.
+   !> What a contact point or a tie holds: a sum of displacements of nodes is zero.
    type :: joint_type
       integer, allocatable :: nodes(:)          !! (n) node indexes
-      real(dp), allocatable :: share(:)         !! (n) their coefficients, the master's negative
-      real(dp) :: direction(2) = 0.0_dp         !! unit vector
+      real(dp), allocatable :: share(:, :)      !! (2, n) coefficients of their components
    end type joint_type
 
    !> A motion that nothing hinders.
@@ -141,8 +139,8 @@ contains
       do i = 1, size(joints)
          n = n + 1
          do k = 1, size(joints(i)%nodes)
-            rows(n, :) = rows(n, :) + joints(i)%share(k)*displacement_row(mesh, bodies, &
-               joints(i)%nodes(k), joints(i)%direction)
+            rows(n, :) = rows(n, :) + displacement_row(mesh, bodies, joints(i)%nodes(k), &
+               joints(i)%share(:, k))
          end do
       end do
    end function conditions

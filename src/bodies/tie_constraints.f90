@@ -160,8 +160,8 @@ contains
          do c = 1, 2
             associate (joint => joints(2*(k - 1) + c))
                joint%nodes = ties%difference%values_of(k)
-               joint%share = ties%difference%coefficients_of(k)
-               joint%direction(c) = 1.0_dp
+               allocate (joint%share(2, size(joint%nodes)), source=0.0_dp)
+               joint%share(c, :) = ties%difference%coefficients_of(k)
             end associate
          end do
       end do

@@ -100,9 +100,26 @@ contains
       real(dp), intent(in) :: direction(2)
       type(joint_type) :: joint
 
-      joint%nodes = points%nodes_of(k)
-      joint%share = points%difference%coefficients_of(k)
-      joint%direction = direction
+      if (points%turns()) then
+         joint%nodes = [points%along%values_of(k), points%across%values_of(k)]
+         joint%share = reshape([parts(points%along%coefficients_of(k), direction), &
+            parts(points%across%coefficients_of(k), [-direction(2), direction(1)])], &
+            [2, size(joint%nodes)])
+      else
+         joint%nodes = points%nodes_of(k)
+         joint%share = reshape(parts(points%difference%coefficients_of(k), direction), &
+            [2, size(joint%nodes)])
+      end if
+
+   contains
+      !> Multiples of a vector, one after another.
+      pure function parts(factor, vector)
+         real(dp), intent(in) :: factor(:), vector(2)
+         real(dp) :: parts(2*size(factor))
+         integer :: i
+
+         parts = [(factor(i)*vector, i=1, size(factor))]
+      end function parts
    end function joint_of
 
    !> Bodies whose temperature nothing can ever determine: contact points count as conducting where

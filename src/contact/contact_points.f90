@@ -23,6 +23,10 @@ module contact_points
       integer, allocatable :: master_node(:)   !! (m) the one opposite, or the nearest one
       !> (m, nodes) slave's value of a field less master's
       type(sum_list_type) :: difference
+      !> (m, nodes) the same of displacements where the normal turns along the face of a contact
+      !> point: displacements turned back by the angle a from its own normal, cos a and sin a of the
+      !> means; without terms where no normal turns
+      type(sum_list_type) :: along, across
       type(sum_list_type) :: slave_mean        !! (m, nodes) slave's value of a field
       type(sum_list_type) :: master_mean       !! (m, nodes) master's
       integer, allocatable :: face_node(:)     !! (n) nodes of both faces in the covered part

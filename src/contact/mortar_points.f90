@@ -22,6 +22,9 @@ module mortar_points
    !> are known to be stable.
    real(dp), parameter :: least_cover = 0.1_dp
 
+   !> Sine of an angle between normals that is rounding of coordinates.
+   real(dp), parameter :: no_turn = 1.0e-12_dp
+
 contains
 
    !> The contact points of two lines of nodes; none where no face of the master is opposite.
@@ -63,9 +66,7 @@ contains
       call set_means(slave, master, integrals, owner, kept, points)
       call set_face_nodes(line_of(slave, outward(1)), line_of(master, outward(2)), &
          [slave%nodes, master%nodes], owner, kept, points)
-      points%initial_gap = -sum(points%normal*reshape([ &
-         means(points, mesh%coordinates(1, :)), means(points, mesh%coordinates(2, :))], &
-         shape(points%normal), order=[2, 1]), dim=1)
+      points%initial_gap = initial_gaps(points, mesh%coordinates)
       allocate (points%master_node, mold=points%slave_node)
       if (size(kept) > 0 .and. .not. master%closed) points%to_end = ends_beyond(mesh%coordinates( &
          :, master%nodes([1, size(master%nodes)])), points)
@@ -118,36 +119,55 @@ contains
       type(mortar_integrals_type), intent(in) :: integrals
       integer, intent(in) :: owner(:), kept(:)
       type(contact_points_type), intent(inout) :: points
-      integer, allocatable :: nodes(:), of_slave(:), of_master(:)
-      real(dp), allocatable :: share(:), share_slave(:), share_master(:)
-      integer :: c, k
+      integer :: k
 
-      allocate (points%weight(size(kept)))
-      associate (terms => size(kept)*2*(slave%side_nodes + master%side_nodes))
-         call points%difference%reserve(size(kept), terms)
-         call points%slave_mean%reserve(size(kept), terms)
-         call points%master_mean%reserve(size(kept), terms)
+      points%weight = [(sum(integrals%weight, mask=owner == kept(k)), k=1, size(kept))]
+      associate (one => reshape([(1.0_dp, k=1, size(kept))], [1, size(kept)]))
+         points%difference = means([integrals%slave], [integrals%master], one, [1, -1], 0.0_dp)
+         points%slave_mean = means([integrals%slave], [integrals%master], one, [1, 0], 0.0_dp)
+         points%master_mean = means([integrals%slave], [integrals%master], one, [0, 1], 0.0_dp)
       end associate
-      do k = 1, size(kept)
-         ! The corner's own node comes first.
-         nodes = points%slave_node(k:k)
-         share = [0.0_dp]
-         of_slave = nodes
-         share_slave = share
-         allocate (of_master(0), share_master(0))
-         do c = 1, size(owner)
-            if (owner(c) /= kept(k)) cycle
-            call add_row(integrals%slave, c, slave%nodes, 1.0_dp, nodes, share)
-            call add_row(integrals%master, c, master%nodes, -1.0_dp, nodes, share)
-            call add_row(integrals%slave, c, slave%nodes, 1.0_dp, of_slave, share_slave)
-            call add_row(integrals%master, c, master%nodes, 1.0_dp, of_master, share_master)
+      associate (n => points%normal, of_slave => integrals%slave_normal, &
+         of_master => integrals%master_normal)
+         points%across = means(of_slave, of_master, reshape([-n(2, :), n(1, :)], shape(n), &
+            order=[2, 1]), [1, -1], no_turn)
+         if (points%across%start(size(kept) + 1) > 1) then
+            points%along = means(of_slave, of_master, n, [1, -1], 0.0_dp)
+         else
+            points%across = sum_list_type()
+         end if
+      end associate
+
+   contains
+      !> Means over slave and master, each with a sign or left out, in one sum; of several integrals
+      !> the sum with a factor for each contact point.
+      pure function means(of_slave, of_master, factor, signs, least) result(sums)
+         type(sparse_matrix_type), intent(in) :: of_slave(:), of_master(:)
+         real(dp), intent(in) :: factor(:, :)          ! (several, contact points)
+         integer, intent(in) :: signs(2)               ! of slave and master: 1, 0 or -1
+         real(dp), intent(in) :: least                 ! coefficient that is not rounding
+         type(sum_list_type) :: sums
+         integer, allocatable :: nodes(:)
+         real(dp), allocatable :: share(:)
+         integer :: c, i, k
+
+         call sums%reserve(size(kept), size(kept)*2*(slave%side_nodes + master%side_nodes))
+         do k = 1, size(kept)
+            ! The corner's own node comes first.
+            nodes = points%slave_node(k:k)
+            share = [0.0_dp]
+            do c = 1, size(owner)
+               if (owner(c) /= kept(k)) cycle
+               do i = 1, size(of_slave)
+                  call add_row(of_slave(i), c, slave%nodes, signs(1)*factor(i, k), nodes, share)
+                  call add_row(of_master(i), c, master%nodes, signs(2)*factor(i, k), nodes, share)
+               end do
+            end do
+            share = share/points%weight(k)
+            where (abs(share) <= least) share = 0.0_dp
+            call sums%add(nodes, share)
          end do
-         points%weight(k) = sum(integrals%weight, mask=owner == kept(k))
-         call points%difference%add(nodes, share/points%weight(k))
-         call points%slave_mean%add(of_slave, share_slave/points%weight(k))
-         call points%master_mean%add(of_master, share_master/points%weight(k))
-         deallocate (of_master, share_master)
-      end do
+      end function means
    end subroutine set_means
 
    !> The nodes of both faces that carry contact quantities.
@@ -189,11 +209,34 @@ contains
          ends(:, 1)), dot_product(points%tangent(:, m), ends(:, 2) - points%position(:, m))])
    end function ends_beyond
 
-   !> Adds a row of a matrix to a sum of nodal values.
-   pure subroutine add_row(matrix, row, node, sign, nodes, share)
+   !> Mean distance of master and slave along the normals.
+   pure function initial_gaps(points, x) result(gap)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: x(:, :)                  ! (2, nodes) [length]
+      real(dp) :: gap(size(points%weight))
+      real(dp), dimension(size(points%weight)) :: across_x, across_y, mean_x, mean_y
+
+      mean_x = 0.0_dp
+      mean_y = 0.0_dp
+      across_x = 0.0_dp
+      across_y = 0.0_dp
+      if (points%across%count > 0) then
+         call points%along%add_totals(x(1, :), mean_x)
+         call points%along%add_totals(x(2, :), mean_y)
+         call points%across%add_totals(x(1, :), across_x)
+         call points%across%add_totals(x(2, :), across_y)
+      else
+         call points%difference%add_totals(x(1, :), mean_x)
+         call points%difference%add_totals(x(2, :), mean_y)
+      end if
+      gap = -points%normal(1, :)*(mean_x + across_y) - points%normal(2, :)*(mean_y - across_x)
+   end function initial_gaps
+
+   !> Adds a multiple of a row of a matrix to a sum of nodal values.
+   pure subroutine add_row(matrix, row, node, factor, nodes, share)
       type(sparse_matrix_type), intent(in) :: matrix
       integer, intent(in) :: row, node(:)
-      real(dp), intent(in) :: sign
+      real(dp), intent(in) :: factor
       integer, allocatable, intent(inout) :: nodes(:)
       real(dp), allocatable, intent(inout) :: share(:)
       integer :: i, k
@@ -205,18 +248,8 @@ contains
             share = [share, 0.0_dp]
             i = size(nodes)
          end if
-         share(i) = share(i) + sign*matrix%value(k)
+         share(i) = share(i) + factor*matrix%value(k)
       end do
    end subroutine add_row
-
-   !> Slave's value less master's of a field at the contact points.
-   pure function means(points, field)
-      type(contact_points_type), intent(in) :: points
-      real(dp), intent(in) :: field(:)
-      real(dp) :: means(size(points%slave_node))
-
-      means = 0.0_dp
-      call points%difference%add_totals(field, means)
-   end function means
 
 end module mortar_points
