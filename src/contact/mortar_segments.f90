@@ -35,6 +35,7 @@ module mortar_segments
 
    real(dp), parameter :: two_pi = 6.283185307179586477_dp
    real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
+   integer, parameter :: curved_parts = 4           !! of a segment between sides that are not plain
    real(dp), parameter :: beside = 1.0e-9_dp        !! of a side's coordinate beyond its end
    integer, parameter :: most_steps = 60            !! of an iteration
 
@@ -268,7 +269,45 @@ contains
          if (side%opposite(j) == 0) cycle
          side%covered = [min(side%covered(1), ends(1)), max(side%covered(2), ends(2))]
       end do
+      call divide_segments(side, master)
    end subroutine find_kinks
+
+   !> Divides the segments between sides of which one is curved or has its midside node off the
+   !> middle: there the integrand is no polynomial.
+   pure subroutine divide_segments(side, master)
+      type(side_type), intent(inout) :: side
+      type(face_line_type), intent(in) :: master
+      real(dp), allocatable :: kinks(:)
+      integer, allocatable :: opposite(:)
+      integer :: j, parts, q
+
+      kinks = side%kinks(:1)
+      allocate (opposite(0))
+      do j = 1, size(side%opposite)
+         parts = curved_parts
+         associate (facing => side_positions(max(side%opposite(j), 1), master%side_nodes, &
+            size(master%x, 2)))
+            if (side%opposite(j) == 0 .or. (is_plain(side%x) .and. &
+               is_plain(master%x(:, facing)))) parts = 1
+         end associate
+         do q = 1, parts - 1
+            kinks = [kinks, side%kinks(j) + q*(side%kinks(j + 1) - side%kinks(j))/parts]
+         end do
+         kinks = [kinks, side%kinks(j + 1)]
+         opposite = [opposite, spread(side%opposite(j), 1, parts)]
+      end do
+      side%kinks = kinks
+      side%opposite = opposite
+   end subroutine divide_segments
+
+   !> Whether a side is straight, with any midside node at its middle.
+   pure logical function is_plain(x)
+      real(dp), intent(in) :: x(:, :)
+
+      is_plain = size(x, 2) == 2
+      if (is_plain) return
+      is_plain = norm2(2*x(:, 2) - x(:, 1) - x(:, 3)) <= beside*norm2(x(:, 3) - x(:, 1))
+   end function is_plain
 
    !> How far a point lies beside the normal at a point of a side.
    pure real(dp) function beside_normal(side, xi, x)

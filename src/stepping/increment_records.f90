@@ -209,7 +209,8 @@ contains
       logical :: along_x
 
       least = least_displacement(model, next%temperature)
-      scales%length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp))
+      scales%length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp), &
+         bodies%contact%least_length/noise)
       if (size(bodies%points%initial_gap) > 0) then
          scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
       end if

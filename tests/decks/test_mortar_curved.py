@@ -1,0 +1,134 @@
+"""Curved faces whose nodes do not match: rings in closed form, Hertz."""
+
+import importlib.util
+import math
+
+import h5py
+import numpy as np
+import pytest
+from blocks import without_unused_surfaces, write
+from deck_runs import HERTZ, solve
+from physics import material, mesh, nodes_of
+
+import lame
+
+
+def script(path):
+    """Return a script that writes decks, as a module of its own."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+INNER, FACE, OUTER, OVERLAP = 1.0, 2.0, 3.0, 0.01
+HUB, RIM = (1000.0, 0.3), (500.0, 0.25)
+EXACT = lame.press_fit(INNER, FACE, OUTER, HUB, RIM, OVERLAP, "stress")
+
+
+def arc(name, radii, count, first, angle=math.pi / 2, closed=False, start=0.0, kind="CPS8"):
+    """Return the cards of a ring or a part of one, with `count` elements around it."""
+    ends = [-angle + angle * k / count for k in range(count + 1)]
+    return mesh(name, ends, radii, kind, first, closed=closed,
+                to=lambda x, y: (y * math.cos(start - x), y * math.sin(start - x)))
+
+
+def fit(hub, rim, slave, supports, path, refine=()):
+    """Solve a press fit by *CLEARANCE and return the contact."""
+    pair = ["IN.TOP", "OUT.BOTTOM"] if slave == "IN" else ["OUT.BOTTOM", "IN.TOP"]
+    deck = write(path, ["*OPTIONS, WIDTH=200"], without_unused_surfaces(
+        [*hub, *rim, *material("IN", HUB), *material("OUT", RIM), "*SURFACE INTERACTION, NAME=I",
+         "*CONTACT PAIR, INTERACTION=I, NAME=C, PAIRING=SURFACES", ", ".join(pair),
+         f"*CLEARANCE, MASTER={pair[1]}, SLAVE={pair[0]}, VALUE={-OVERLAP}", *refine,
+         "*STEP", "*STATIC, DIRECT", "1., 1.", "*BOUNDARY", *supports, "*END STEP"]))
+    with h5py.File(solve(deck)) as file:
+        assert file["history/force_imbalance"][-1] < 1e-10
+        face = file["contact/C"]
+        return face["weight"][()], face["pressure"][-1]
+
+
+@pytest.mark.parametrize("slave", ["IN", "OUT"])
+@pytest.mark.parametrize(("kind", "order", "mean", "worst"),
+                         [("CPS8", 3.5, 3e-4, 1e-2), ("CPS4", 1.8, 4e-2, 0.2)])
+def test_press_fit_of_quarter_rings_converges_with_the_order_of_the_element(
+        tmp_path, kind, order, mean, worst, slave):
+    """3 sides against 4, and twice that. With one normal a contact point the mean pressure of
+    eight-node elements would err by h^2/6, 0.05 on the coarser mesh."""
+    errors = []
+    for level in (1, 2):
+        weight, pressure = fit(arc("IN", [1.0, 1.5, 2.0] if level == 1 else [1.0, 1.25, 1.5, 1.75, 2.0],
+                                   3 * level, 1, kind=kind),
+                               arc("OUT", [2.0, 2.5, 3.0] if level == 1 else [2.0, 2.25, 2.5, 2.75, 3.0],
+                                   4 * level, 5001, kind=kind), slave,
+                               ["IN.LEFT, 1", "OUT.LEFT, 1", "IN.RIGHT, 2", "OUT.RIGHT, 2"],
+                               tmp_path / "fit.inp")
+        errors.append(abs(weight @ pressure / weight.sum() / EXACT - 1.0))
+        assert np.abs(pressure / EXACT - 1.0).max() < worst
+    assert errors[0] < mean
+    assert errors[1] < errors[0] / 2**order + 1e-6
+
+
+@pytest.mark.parametrize("slave", ["IN", "OUT"])
+def test_closed_ring_in_a_ring_that_is_turned(tmp_path, slave):
+    """12 sides in 16 whose corners lie elsewhere: no side is the first or the last one."""
+    turn = 2 * math.pi / 32
+    hub = arc("IN", [1.0, 1.5, 2.0], 12, 1, 2 * math.pi, closed=True)
+    rim = arc("OUT", [2.0, 2.5, 3.0], 16, 5001, 2 * math.pi, closed=True, start=turn)
+    supports = []
+    for cards, radius in ((hub, INNER), (rim, OUTER)):
+        for angle, dof in ((0.0, 2), (math.pi, 2), (math.pi / 2, 1)):
+            at = radius * math.cos(angle), radius * math.sin(angle)
+            node, place = min(nodes_of(cards).items(), key=lambda item: math.dist(item[1], at))
+            assert math.dist(place, at) < 1e-9
+            supports.append(f"{node}, {dof}")
+    weight, pressure = fit(hub, rim, slave, supports, tmp_path / "rings.inp")
+    assert len(pressure) == (12 if slave == "IN" else 16)
+    np.testing.assert_allclose(pressure, EXACT, rtol=2e-3)
+    assert weight.sum() == pytest.approx(4 * math.pi, rel=1e-4)
+
+
+def hertz(upper, lower, slave):
+    """Return the cards of the Hertz contact with `upper` and `lower` elements from 0 to 1.2."""
+    deck = script(HERTZ.parent / "make_deck.py")
+    deck.INNER, deck.RINGS = 1.2, 8
+    deck.ACROSS = upper
+    above = deck.make_body(lambda x, y: (x, y + (1 - y / deck.SIZE) * x**2 / (2 * deck.RADIUS)))
+    deck.ACROSS = lower
+    below, elements = deck.make_body(lambda x, y: (x, 0.0 - y))
+    mirrored = [[e[k] + 100000 for k in (1, 0, 3, 2, 4, 7, 6, 5)] for e in elements]
+    bodies = above, ({n + 100000: p for n, p in below.items()}, mirrored)
+    cards = []
+    for (nodes, around), name, first in zip(bodies, ("CYLINDER", "BLOCK"), (1, 100001), strict=True):
+        cards += [f"*NODE, NSET={name}", *(f"{n}, {x!r}, {y!r}" for n, (x, y) in nodes.items()),
+                  f"*ELEMENT, TYPE=CPE8, ELSET={name}",
+                  *(", ".join(map(str, [first + k, *e])) for k, e in enumerate(around))]
+    (high, over), (deep, under) = bodies
+    nodes = {**high, **deep}
+    curved = {n for n, (x, y) in high.items() if abs(y - x**2 / 200.0) < 1e-8 and x <= deck.SIZE}
+    cards += ["*ELSET, ELSET=LOADED",
+              *(str(k + 1) for k, e in enumerate(over) if all(high[e[c]][1] == deck.SIZE for c in (1, 2))),
+              "*NSET, NSET=BOTTOM", *(str(n) for n, p in nodes.items() if p[1] == -deck.SIZE),
+              "*NSET, NSET=AXIS", *(str(n) for n, p in nodes.items() if p[0] == 0.0),
+              "*SURFACE, NAME=CURVED",
+              *(f"{k + 1}, S1" for k, e in enumerate(over) if {e[0], e[1], e[4]} <= curved),
+              "*SURFACE, NAME=FLAT",
+              *(f"{k + 100001}, S1" for k, e in enumerate(under) if deep[e[0]][1] == deep[e[1]][1] == 0.0)]
+    surfaces = "CURVED, FLAT" if slave == "CURVED" else "FLAT, CURVED"
+    model = deck.MODEL.replace("*REFINE, LEVELS=1\n", "").replace("0.25, 1.", "1., 1.").replace(
+        "NAME=FACE\nCURVED, FLAT", f"NAME=FACE, PAIRING=SURFACES\n{surfaces}")
+    return [*cards, *model.splitlines()], deck.theory()
+
+
+@pytest.mark.parametrize(("upper", "lower", "slave"), [(23, 15, "CURVED"), (15, 23, "FLAT"),
+                                                       (23, 6, "CURVED"), (6, 23, "FLAT")])
+def test_hertz_with_sizes_2_to_3_and_1_to_4(tmp_path, upper, lower, slave):
+    """The slave has 20 elements along the contact."""
+    cards, (half_width, peak, force) = hertz(upper, lower, slave)
+    with h5py.File(solve(write(tmp_path / "hertz.inp", ["*OPTIONS, WIDTH=200"], cards))) as file:
+        face = file["contact/FACE"]
+        assert np.count_nonzero(face["pressure"][-1]) == 20
+        assert face["pressure"][-1][0] == pytest.approx(peak, rel=0.01)
+        assert face["pressure"][-1].max() == pytest.approx(peak, rel=0.01)
+        assert face["edge_contact"][-1] == pytest.approx(half_width, rel=0.011)
+        assert face["normal_force"][-1] == pytest.approx(force, rel=2e-5)
+
