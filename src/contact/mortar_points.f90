@@ -18,9 +18,9 @@ module mortar_points
 
    !> Part of its sides that the master must cover to make a corner a contact point of its own, over
    !> the part of its neighbour's. With less, a sliver of the face would have a multiplier: it goes
-   !> to the neighbour, which keeps what the hats sum to. Sides ten times finer than those opposite
-   !> are known to be stable.
-   real(dp), parameter :: least_cover = 0.1_dp
+   !> to the neighbour, which keeps what the hats sum to. Of a neighbour beside a sliver half is
+   !> covered, so the sliver is a tenth of a side: so much finer sides are known to be stable.
+   real(dp), parameter :: least_cover = 0.2_dp
 
    !> Sine of an angle between normals that is rounding of coordinates.
    real(dp), parameter :: no_turn = 1.0e-12_dp
