@@ -4,8 +4,8 @@
 module face_interpolation
    use chain_geometry, only: side_positions
    use kinds, only: dp
-   use mortar_segments, only: beside_normal, face_line_type, opposite_coordinate, side_opposite, &
-      side_type, sides_of
+   use mortar_segments, only: beside_normal, face_line_type, hats, opposite_coordinate, &
+      side_opposite, side_type, sides_of
    use sum_lists, only: sum_list_type
    implicit none
    private
@@ -29,7 +29,7 @@ contains
       real(dp) :: xi
       integer :: corner, k, per_side, s
 
-      side = sides_of(slave)
+      side = sides_of(slave, master)
       per_side = slave%side_nodes - 1
       call on_slave%reserve(size(slave%x, 2), 2*size(slave%x, 2))
       do k = 1, size(slave%x, 2)
@@ -81,6 +81,9 @@ contains
       points = 0
       if (s > 0) points = point_of(side(s)%corners)
       hat = 0.5_dp*[1.0_dp - xi, 1.0_dp + xi]
+      if (s > 0) then
+         if (side(s)%covered(1) < side(s)%covered(2)) hat = hats(side(s), xi)
+      end if
       if (s == 0 .or. any(points == 0 .and. abs(hat) > 0.0_dp)) then
          call sums%add([integer ::], [real(dp) ::])
       else if (points(1) == points(2)) then

@@ -31,7 +31,7 @@ module mortar_segments
    implicit none
    private
    public :: face_line_type, mortar_integrals_type, integrate_segments, cross
-   public :: beside_normal, opposite_coordinate, side_opposite, side_type, sides_of
+   public :: beside_normal, hats, opposite_coordinate, side_opposite, side_type, sides_of
 
    real(dp), parameter :: two_pi = 6.283185307179586477_dp
    real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
@@ -98,7 +98,7 @@ contains
       type(segment_sums_type) :: sums
       type(side_type), allocatable :: side(:)
 
-      side = sides_of(slave)
+      side = sides_of(slave, master)
       corners = size(side) + merge(0, 1, slave%closed)
       allocate (sums%weight(corners), sums%whole(corners), sums%beyond(corners), source=0.0_dp)
       allocate (sums%apart(corners), source=huge(1.0_dp))
@@ -109,7 +109,6 @@ contains
       master_normal = outward_normals(master)
       allocate (segments(size(side)))
       do s = 1, size(side)
-         call find_kinks(side(s), master)
          segments(s) = size(side(s)%kinks) - 1
       end do
       do k = 0, 2
@@ -138,9 +137,9 @@ contains
       end do
    end subroutine integrate_segments
 
-   !> The sides of the slave, with the normals of their nodes.
-   pure function sides_of(slave) result(side)
-      type(face_line_type), intent(in) :: slave
+   !> The sides of the slave, with the normals of their nodes and their segments.
+   pure function sides_of(slave, master) result(side)
+      type(face_line_type), intent(in) :: slave, master
       type(side_type), allocatable :: side(:)
       real(dp) :: normal(2, size(slave%x, 2))
       integer :: corners, s
@@ -153,6 +152,7 @@ contains
          side(s)%corners = [s, modulo(s, corners) + 1]
          side(s)%x = slave%x(:, side(s)%nodes)
          side(s)%normal = normal(:, side(s)%nodes)
+         call find_kinks(side(s), master)
       end do
    end function sides_of
 
@@ -190,7 +190,7 @@ contains
          sums%whole(side%corners) = sums%whole(side%corners) + area*0.5_dp*[1.0_dp - xi, &
             1.0_dp + xi]
          if (side%opposite(segment) == 0) cycle
-         hat = [side%covered(2) - xi, xi - side%covered(1)]/(side%covered(2) - side%covered(1))
+         hat = hats(side, xi)
          sums%weight(side%corners) = sums%weight(side%corners) + area*hat
          factor = [1.0_dp, midway(matmul(side%normal, psi), &
             matmul(master_normal(:, facing), psi_master))]
@@ -206,6 +206,18 @@ contains
       end do
       call find_positions(side, segment, master%x(:, facing), master_normal(:, facing), sums)
    end subroutine add_segment
+
+   !> Hat functions of the corners of a side that the master covers at least in part; outside the
+   !> covered part their values at its end.
+   pure function hats(side, xi)
+      type(side_type), intent(in) :: side
+      real(dp), intent(in) :: xi              !! coordinate of the side
+      real(dp) :: hats(2)
+
+      associate (ends => side%covered, at => min(max(xi, side%covered(1)), side%covered(2)))
+         hats = [ends(2) - at, at - ends(1)]/(ends(2) - ends(1))
+      end associate
+   end function hats
 
    !> Where the hats of a side's corners are 1, and the normals there, if this segment lies nearer to
    !> the corner than those before.
