@@ -1,4 +1,4 @@
-"""Curved faces whose nodes do not match: rings in closed form, Hertz."""
+"""Curved faces whose nodes do not match: rings in closed form, Hertz, the published cylinder."""
 
 import importlib.util
 import math
@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 from blocks import without_unused_surfaces, write
-from deck_runs import HERTZ, solve
+from deck_runs import CYLINDER, HERTZ, solve
 from physics import material, mesh, nodes_of
 
 import lame
@@ -132,10 +132,54 @@ def test_peak_pressure_of_hertz_with_sizes_2_to_3_and_1_to_4(tmp_path, upper, lo
         assert face["normal_force"][-1] == pytest.approx(force, rel=2e-5)
 
 
-@pytest.mark.xfail(reason="zone edges take gaps of mortar points for values at their corners: 2.6 %")
-@pytest.mark.parametrize(("upper", "lower", "slave"), [(23, 15, "CURVED"), (6, 23, "FLAT")])
+COARSE = pytest.mark.xfail(strict=True, reason="1.08 %: sides of the master are four times as wide")
+
+
+@pytest.mark.parametrize(("upper", "lower", "slave"),
+                         [(23, 15, "CURVED"), (6, 23, "FLAT"),
+                          pytest.param(23, 6, "CURVED", marks=COARSE)])
 def test_half_width_of_hertz_with_sizes_2_to_3_and_1_to_4(tmp_path, upper, lower, slave):
     cards, (half_width, *_) = hertz(upper, lower, slave)
     with h5py.File(solve(write(tmp_path / "hertz.inp", ["*OPTIONS, WIDTH=200"], cards))) as file:
         edge = file["contact/FACE/edge_contact"][-1]
     assert edge == pytest.approx(half_width, rel=0.01)
+
+
+def cylinder(count, base_count, slave):
+    """Return the published cylinder on its base with these numbers of sides from 0 to 10."""
+    script_of_deck = script(CYLINDER.parent / "make_decks.py")
+    heights = [0.0, 0.35, 0.8, 1.5, 2.6, 4.2, 6.5, 10.0, 16.0, 28.0, 60.0]
+    cards = []
+    for name, sides, ys, first, to in (
+            ("CYLINDER", count, heights, 1, lambda x, y: (x, y + (1 - y / 60) * x**2 / 200)),
+            ("BASE", base_count, [-y for y in reversed(heights)], 100001, None)):
+        xs = [10 * k / sides for k in range(sides + 1)] + [12.0, 15.0, 20.0, 30.0]
+        cards += mesh(name, xs, ys, "CPE8", first, to=to)
+    nodes = nodes_of(cards)
+    for name, axis, value in (("TOP", 1, 60.0), ("BOTTOM", 1, -60.0), ("AXIS", 0, 0.0)):
+        cards += [f"*NSET, NSET={name}"]
+        cards += [str(n) for n, place in nodes.items() if abs(place[axis] - value) < 1e-9]
+    model = script_of_deck.MODEL.format(base_expansion="1.2E-5", method="NEWTON", poisson=(0.4, 0.2),
+                                        ends="").splitlines()
+    at = next(k for k, card in enumerate(model) if card.startswith("*CONTACT PAIR"))
+    faces = ["CYLINDER.BOTTOM", "BASE.TOP"]
+    model[at:at + 2] = ["*CONTACT PAIR, INTERACTION=FACES, NAME=FACE, PAIRING=SURFACES",
+                        ", ".join(faces if slave == "CYLINDER" else faces[::-1])]
+    return without_unused_surfaces([*cards, *model])
+
+
+def test_cylinder_with_30_sides_on_22_is_the_converged_one_whichever_is_the_slave(tmp_path):
+    """Converged values at 540 and 900 C of tests/reference/cylinder_reference.py."""
+    reference = {26: (1363.74, 17.265, 316.19), 44: (2486.96, 30.80, 428.78)}
+    found = {}
+    for slave in ("CYLINDER", "BASE"):
+        cards = cylinder(30, 22, slave)
+        with h5py.File(solve(write(tmp_path / "cylinder.inp", ["*OPTIONS, WIDTH=200"], cards))) as file:
+            face = file["contact/FACE"]
+            for row in reference:
+                found[slave, row] = (face["normal_force"][row], abs(face["heat_rate"][row]),
+                                     face["pressure"][row].max())
+    for row, exact in reference.items():
+        one, other = np.array(found["CYLINDER", row]), np.array(found["BASE", row])
+        assert np.all(np.abs(one / exact - 1.0) < [1e-3, 8e-3, 3e-3])
+        assert np.all(np.abs(one / other - 1.0)[:2] < [2e-3, 8e-3])
