@@ -5,7 +5,8 @@
 !> also on sides with midside nodes. On a side that the master covers in part the two hats span the
 !> covered part alone: spanning the whole side, the hat of a corner far from the master would be
 !> small wherever it counts, and its multiplier as large as it likes. A point xi of the slave lies
-!> opposite the point of the master that its normal meets; normals are interpolated between the averaged ones of the slave's nodes.
+!> opposite the point of the master that its normal meets; normals are interpolated between the
+!> averaged ones of the slave's nodes.
 !> The contact conditions of a corner act along the normal midway between those of both faces there.
 !> Along the slave's own normal, part of the normal force would count as friction, and exchanging
 !> slave and master would change it.
@@ -52,7 +53,7 @@ module mortar_segments
       real(dp), allocatable :: weight(:)   !! (corners) w_c [length^2]
       !> (corners) w_c if the master covered the whole of the sides that it does cover in part
       real(dp), allocatable :: whole(:)
-      !> (2, corners) where the hat function is 1: the corner, or the end of what is covered [length]
+      !> (2, corners) where the hat function is 1: the corner, or the end of what is covered
       real(dp), allocatable :: position(:, :)
       real(dp), allocatable :: beyond(:)   !! (corners) how far along the line it lies from there
       !> (2, corners) unit normal midway between those of both faces, outward from the slave
@@ -219,8 +220,8 @@ contains
       end associate
    end function hats
 
-   !> Where the hats of a side's corners are 1, and the normals there, if this segment lies nearer to
-   !> the corner than those before.
+   !> Where the hats of a side's corners are 1, and the normals there, if this segment lies nearer
+   !> to the corner than those before.
    pure subroutine find_positions(side, segment, x, master_normal, sums)
       type(side_type), intent(in) :: side
       integer, intent(in) :: segment
