@@ -9,7 +9,7 @@ program=$build/release/thercon
 
 build_packages=(gcc libc6-dev gfortran cmake ninja-build libopenblas-serial-dev libmumps-seq-dev
    libmetis-dev libhdf5-dev python3 python3-venv)
-test_packages=(valgrind calculix-ccx flang-19)
+test_packages=(valgrind calculix-ccx flang-19 chromium chromium-driver)
 bench_packages=(calculix-ccx)
 requirements=("$root/post/requirements.txt" "$root/tests/requirements.txt")
 sweep_requirements=("$root/input/sweep/requirements.txt")
@@ -18,12 +18,15 @@ usage() {
    cat <<USAGE
 usage: ./setup.sh COMMAND
 
-   cylinder    install what is missing, build, solve the published cylinder, draw its figures
+   cylinder    install what is missing, build, solve the published cylinder, draw its figures and page
    test        install what is missing, build, check the sources, run every test
    build       install what is missing, build build/release/thercon
    lint        check the sources: fortitude, findent, shellcheck; with --fix mend what can be mended
    coverage    install what is missing, build with gcov, run every test, report the lines executed
-   bench       run thercon and CalculiX at equal error again, against the figures on record
+   verify      run the verification manual again, write docs/verification.md
+   bench       run thercon and CalculiX at equal error again, against the figures on record;
+               bench performance [PART...]: measure docs/performance.md anew, all of it or the
+               parts skyline, tail, levels, paper
 
 What is installed: Debian packages with apt-get, as root or with sudo; without either, the command
 that is needed is printed. Python packages live in build/venv, those of Snakemake
@@ -160,6 +163,7 @@ draw_cylinder() {
       draw "$picture" "$result" --out "$1"
    done
    draw profiles "$result" --load 540 --out "$1"
+   "$venv/bin/python" "$root/post/report" "$result" --out "$1" >/dev/null
    touch "$1/.drawn"
 }
 
@@ -259,9 +263,23 @@ run_coverage() {
    say "lines that no test executes are listed in build/coverage/lines.txt"
 }
 
-# Half an hour, most of it CalculiX.
+# Writes docs/performance.md anew, or the sections named. Nothing waits for a disk where temporary
+# files are in memory.
+run_performance() {
+   [[ ! -w /dev/shm ]] || local -x TMPDIR=/dev/shm
+   install_packages valgrind
+   say "measuring, which takes some ten minutes for all parts"
+   THERCON=$program "$venv/bin/python" "$root/tests/bench/report.py" "$@"
+   say "docs/performance.md is written"
+}
+
+# Without an argument half an hour, most of it CalculiX.
 run_bench() {
    run_build
+   if [[ ${1-} == performance ]]; then
+      run_performance "${@:2}"
+      return
+   fi
    install_packages "${bench_packages[@]}"
    say "runs on record, again"
    mkdir -p "$build/bench"
@@ -269,10 +287,19 @@ run_bench() {
    say "what came out is in build/bench/runs.csv, what was on record in tests/bench/runs.csv"
 }
 
+# A few minutes. It fails where a row of the manual does.
+run_verify() {
+   run_build
+   say "running the verification manual"
+   THERCON=$program "$venv/bin/python" "$root/tests/verification/manual.py"
+   say "the manual is docs/verification.md"
+}
+
 command=${1-}
 (($# == 0)) || shift
 case $command in
-   cylinder | test | build | coverage | bench) (($# == 0)) || fail "$command takes no argument: $1" ;;
+   bench) [[ $# == 0 || $1 == performance ]] || fail "$command takes performance or nothing: $*" ;;
+   cylinder | test | build | coverage | verify) (($# == 0)) || fail "$command takes no argument: $1" ;;
    lint) [[ $# == 0 || $* == --fix ]] || fail "lint takes --fix or nothing: $*" ;;
 esac
 case $command in
@@ -281,7 +308,8 @@ case $command in
    build) run_build ;;
    lint) run_lint "$@" ;;
    coverage) run_coverage ;;
-   bench) run_bench ;;
+   verify) run_verify ;;
+   bench) run_bench "$@" ;;
    help | --help | -h) usage ;;
    *)
       usage >&2

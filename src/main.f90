@@ -84,6 +84,7 @@ contains
       deck_status = outcome%status
       if (.not. command%quiet .and. deck_status /= status_deck) call outcome%print( &
          command%folder//'/'//base_name(path))
+      call outcome%print_failed_checks()
    end subroutine run_one
 
 end program thercon

@@ -72,9 +72,31 @@ class Cells:
         return np.unique(np.concatenate(found), axis=0, return_counts=True)
 
     def boundary(self):
-        """Return the edges that only one element has."""
+        """Return the edges that only one element has, without those where two sizes meet."""
         edges, uses = self.edges()
-        return edges[uses == 1]
+        edges = edges[uses == 1]
+        return edges[~self.between_sizes(edges)]
+
+    def between_sizes(self, edges):
+        """Return which edges, each of one element, are a large element's or of two halves of it."""
+        index = {frozenset(ends): i for i, ends in enumerate(edges[:, :2].tolist())}
+        joined = {}
+        for first, last in edges[:, :2].tolist():
+            joined.setdefault(first, set()).add(last)
+            joined.setdefault(last, set()).add(first)
+        found = np.zeros(len(edges), dtype=bool)
+        for i, (first, last, middle) in enumerate(edges.tolist()):
+            for node in joined[first] & joined[last]:
+                if middle >= 0:
+                    is_middle = node == middle
+                else:
+                    a, b, m = self.points[[first, last, node]]
+                    is_middle = np.allclose(m, 0.5 * (a + b), rtol=0.0,
+                                            atol=1e-6 * np.linalg.norm(b - a))
+                if is_middle:
+                    halves = index[frozenset((first, node))], index[frozenset((node, last))]
+                    found[[i, *halves]] = True
+        return found
 
     def face(self, node_ids):
         """Return the boundary edges all of whose points carry one of the deck's node numbers."""

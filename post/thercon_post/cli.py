@@ -4,7 +4,7 @@ import argparse
 import sys
 from contextlib import ExitStack
 
-from . import convergence, fields, mesh, profiles, style, trade, zones
+from . import accuracy, convergence, fields, mesh, profiles, style, trade, zones
 from .errors import UserError
 from .result import FIELD_SOURCES, Result
 
@@ -39,8 +39,9 @@ def parser():
     one = {
         "mesh": ("undeformed mesh, with a close-up of the contact", None),
         "profiles": ("pressure, friction, mu p and heat flux along the contact", WITH_PROFILES),
-        "zones": ("gap, slip and stick against the load", WITH_ZONES),
+        "zones": ("open, slip and stick against the load", WITH_ZONES),
         "fields": ("temperature and stress on the deformed mesh", None),
+        "accuracy": ("bounds of a requested accuracy against the cost of its rounds", None),
     }
     added = {}
     for name, (help_, epilog) in one.items():
@@ -95,7 +96,7 @@ def add_loads(picture):
 def add_contact(picture):
     """Add the choice of contact and axis, and digitised figures."""
     picture.add_argument(
-        "--contact", metavar="NAME", help="contact pair (default: all, a picture each)"
+        "--contact", metavar="NAME", help="interface (default: all, a picture each)"
     )
     picture.add_argument(
         "--along",
@@ -127,7 +128,8 @@ def add_fields(picture):
         type=float,
         default=1.0,
         metavar="FACTOR",
-        help="magnify displacements (default 1; above it closed faces are drawn overlapping)",
+        help="magnify displacements (default 1); initial gaps are not magnified, so that above 1 "
+        "bodies that touch seem to overlap",
     )
     picture.add_argument(
         "--region",
@@ -176,6 +178,7 @@ def run(arguments):
         if options.picture == "convergence":
             return convergence.draw(results, options)
         picture = {"mesh": mesh, "profiles": profiles, "zones": zones, "fields": fields}
+        picture["accuracy"] = accuracy
         return picture[options.picture].draw(results[0], options)
 
 

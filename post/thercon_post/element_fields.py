@@ -16,6 +16,14 @@ def centres(cells, points):
     return found
 
 
+def of_elements(cells, parts):
+    """Return {element type: values} as one array over all elements, in the file's order."""
+    found = np.empty(cells.count, dtype=next(iter(parts.values())).dtype)
+    for kind, members in cells.members.items():
+        found[members] = parts[kind]
+    return found
+
+
 def in_window(cells, points, window):
     """Tell which elements have a corner in the window."""
     inside = np.all((points >= window[0]) & (points <= window[1]), axis=1)
@@ -44,9 +52,7 @@ def fill(axes, cells, points, values, levels, colours, extend):
 
 def table(cells, moved, fields):
     """Return the drawn fields as columns: one row for each element."""
-    number, body = np.empty(cells.count, dtype=int), np.empty(cells.count, dtype=int)
-    for kind, members in cells.members.items():
-        number[members], body[members] = cells.element_ids[kind], cells.bodies[kind]
+    number, body = (of_elements(cells, parts) for parts in (cells.element_ids, cells.bodies))
     x, y = centres(cells, cells.points).T
     x_drawn, y_drawn = centres(cells, moved).T
     columns = {"element": number, "body": body, "x": x, "y": y}

@@ -2,18 +2,26 @@
 
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
 from . import element_fields, mesh, style
 from .cells import curves
 from .errors import UserError
+from .field_colours import (
+    ROUNDING,
+    WIDE,
+    colour_map,
+    draw_bar,
+    limits,
+    overflow,
+    scale_groups,
+    settle,
+)
 from .fine_mesh import refine
-from .result import CELL_FIELDS, FIELD_SOURCES
+from .result import CELL_FIELDS, FIELD_SOURCES, OPEN
 from .style import plt
 
 DEFAULT_QUANTITIES = ("temperature", "von_mises", "yy")
-SIGNED = ("xx", "yy", "zz", "xy", "flux_x", "flux_y")
 TITLES = {
     "temperature": ("Temperature $T$", "temperature"),
     "von_mises": (r"von Mises stress $\sigma_\mathrm{M}$", "stress"),
@@ -21,13 +29,17 @@ TITLES = {
     "yy": (r"Stress $\sigma_{yy}$", "stress"),
     "zz": (r"Stress $\sigma_{zz}$", "stress"),
     "xy": (r"Stress $\sigma_{xy}$", "stress"),
+    "principal_1": (r"Principal stress $\sigma_1$", "stress"),
+    "principal_2": (r"Principal stress $\sigma_2$", "stress"),
+    "principal_3": (r"Principal stress $\sigma_3$", "stress"),
+    "radial": (r"Radial stress $\sigma_r$", "stress"),
+    "hoop": (r"Hoop stress $\sigma_\theta$", "stress"),
     "flux_x": ("Heat flux $q_x$", "flux"),
     "flux_y": ("Heat flux $q_y$", "flux"),
     "stress_error": ("Estimated error of stress", "stress"),
     "heat_flux_error": ("Estimated error of heat flux", "flux"),
 }
 FINE_CELLS = 60000  # about as many parts as a page can show
-ROUNDING = 1e-9  # values that differ by this part of the largest magnitude are the same
 
 
 def draw(result, options):
@@ -59,27 +71,50 @@ def draw_row(result, row, options):
         mesh.frame(axes, window, result.units, cut=options.region == "contact")
         scale = magnitude(result, quantity, step)
         if quantity in CELL_FIELDS:
-            near = given[element_fields.in_window(result.cells, moved, window)]
-            levels = limits(near, quantity, scale)
-            draw_elements(axes, result.cells, moved, given, quantity, levels)
+            draw_elements(axes, result.cells, moved, given, quantity, scale, window)
         else:
             values = fine.values(given.astype(float))
             if quantity == "von_mises":
                 values = np.maximum(values, 0.0)  # quadratic interpolation can undershoot
-            levels = limits(values[inside], quantity, scale)
-            draw_points(axes, grid, values, quantity, levels, scale)
+            draw_points(axes, grid, fine, values, quantity, scale, inside)
         draw_lines(axes, result.cells, moved)
         title = result.units.label(*TITLES[quantity])
         style.panel_title(axes, title, letter if len(fields) > 1 else "")
     share_labels(panels)
-    load = float(result.history["load"][row])
-    figure.supxlabel(result.units.load_value(result.load_label, load), fontsize=8.5)
+    figure.supxlabel(words_below(result, row, options.scale), fontsize=8.5)
     return style.write(
         figure,
         table(result, moved, displacement, fields),
         options.out,
         name_of(result, row, options),
     )
+
+
+def words_below(result, row, factor):
+    """Return load, time and what a magnification does."""
+    words = result.load_words(row)
+    if factor == 1.0:
+        return words
+    words += f"; displacements $\\times$ {factor:g}"
+    if factor > 1.0 and touches_after_a_gap(result):
+        words += ",\ninitial gaps are not magnified:\nbodies that touch seem to overlap"
+    return words
+
+
+def touches_after_a_gap(result):
+    """Whether points close that are apart in the mesh: magnified, they are drawn beyond each
+    other. Of faces whose nodes do not match this is taken for granted."""
+    cells = result.cells
+    point = dict(zip(cells.node_id.tolist(), cells.points))
+    for contact in result.contacts() if result.contact_names else ():
+        closed = (contact["status"] != OPEN).any(axis=0)
+        if contact.pairing != "NODES" and closed.any():
+            return True
+        sides = [[point[n] for n in contact[key][closed].tolist()]
+                 for key in ("slave_node", "master_node")]
+        if sides[0] and np.ptp(sides, axis=0).max() > 1e-6 * np.ptp(cells.points, axis=0).max():
+            return True
+    return False
 
 
 def name_of(result, row, options):
@@ -132,7 +167,7 @@ def magnitude(result, quantity, step):
 def layout(count, window):
     """Return a figure and its axes: panels side by side, one below the other for wide models."""
     width, height = np.ptp(window, axis=0)
-    if width > 1.8 * height:
+    if width > WIDE * height:
         size = (
             style.DOUBLE_COLUMN * 0.75,
             count * (style.DOUBLE_COLUMN * 0.6 * height / width + 0.6),
@@ -159,89 +194,44 @@ def share_labels(panels):
             axes.tick_params(labelbottom=False)
 
 
-def limits(values, quantity, scale):
-    """Return levels for the colours: round numbers that cover the values of the window.
-
-    Values that differ by rounding only, measured by the magnitude `scale`, have levels about them.
-
-    Stress peaks in re-entrant and clamped corners grow with every refinement and would leave one
-    colour for the rest: beyond the middle 99 % stresses share the colours at the ends.
-    """
-    values = values[np.isfinite(values)]
-    if quantity == "temperature":
-        low, high = values.min(), values.max()
-    else:
-        low, high = np.percentile(values, (0.5, 99.5))
-    if high - low <= ROUNDING * scale:
-        room = 0.05 * scale or 0.5
-        low, high = low - room, high + room
-    elif quantity in SIGNED and low < 0.0 < high and min(-low, high) > 0.15 * max(-low, high):
-        high = max(-low, high)
-        low = -high
-    return MaxNLocator(nbins=14, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+def draw_elements(axes, cells, moved, values, quantity, scale, window):
+    """Fill one panel element by element, with a colour bar for each group of bodies."""
+    bodies = element_fields.of_elements(cells, cells.bodies)
+    inside = element_fields.in_window(cells, moved, window)
+    near = {body: values[inside & (bodies == body)] for body in np.unique(bodies)}
+    groups = scale_groups(near)
+    for number, group in enumerate(groups):
+        own = np.where(np.isin(bodies, group), values, np.nan)
+        levels = limits(own[inside], quantity, scale)
+        extend = overflow(own[np.isfinite(own)], levels)
+        colours = colour_map(quantity, levels)
+        filled = element_fields.fill(axes, cells, moved, own, levels, colours, extend)
+        draw_bar(axes, filled, levels, group, (number, len(groups)))
 
 
-def settle(values, levels, scale):
-    """Return values with those that are at a level but for rounding put onto it."""
-    nearest = levels[np.argmin(np.abs(values[:, None] - levels), axis=1)]
-    return np.where(np.abs(values - nearest) <= ROUNDING * scale, nearest, values)
-
-
-def draw_elements(axes, cells, moved, values, quantity, levels):
-    """Fill one panel element by element, with a colour bar."""
-    extend = overflow(values[np.isfinite(values)], levels)
-    colours = colour_map(quantity, levels)
-    filled = element_fields.fill(axes, cells, moved, values, levels, colours, extend)
-    draw_bar(axes, filled, levels)
-
-
-def draw_points(axes, grid, values, quantity, levels, scale):
-    """Fill one panel with colours between thin lines of equal value, with a colour bar."""
+def draw_points(axes, grid, fine, values, quantity, scale, inside):
+    """Fill one panel with colours between thin lines of equal value, with a colour bar for each
+    group of bodies. `inside` are the fine points in the window."""
     broken = ~np.isfinite(values)
-    grid.set_mask(broken[grid.triangles].any(axis=1) if broken.any() else None)
-    values = settle(np.where(broken, levels[0], values), levels, scale)
-    extend = overflow(values, levels)
-    colours = colour_map(quantity, levels)
-    filled = axes.tricontourf(grid, values, levels=levels, cmap=colours, extend=extend)
-    filled.set_edgecolor("face")  # no light seams between the bands of an SVG
-    filled.set_linewidth(0.15)
-    lines = {"colors": "black", "linewidths": 0.15, "linestyles": "solid"}
-    axes.tricontour(grid, values, levels=levels[1:-1], **lines)
-    draw_bar(axes, filled, levels)
-
-
-def draw_bar(axes, filled, levels):
-    """Draw the colour bar of a panel."""
-    bar = axes.figure.colorbar(filled, cax=axes.inset_axes(bar_place(axes)))
-    bar.ax.tick_params(direction="out", width=0.4, length=2)
-    bar.outline.set_linewidth(0.4)
-    every = 2 if len(levels) > 8 else 1
-    number = np.rint(levels / (levels[1] - levels[0])).astype(int)
-    bar.set_ticks(levels[number % every == 0])
-
-
-def bar_place(axes):
-    """Return the colour bar's place in fractions of the axes: beside them and as high."""
-    width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
-    thick = 0.03 * max(width, height) / width
-    return [1.0 + thick, 0.0, thick, 1.0]
-
-
-def colour_map(quantity, levels):
-    """Return colours that the colour-blind can tell apart: about zero where values have both signs,
-    else dark where the magnitude is small."""
-    if quantity == "temperature":
-        return "inferno"
-    if abs(levels[0] + levels[-1]) <= 1e-9 * abs(levels[-1]):
-        return "RdBu_r"
-    return "viridis" if levels[-1] > -levels[0] else "viridis_r"
-
-
-def overflow(values, levels):
-    """Return which ends of the colour bar values run past."""
-    slack = 1e-6 * (levels[-1] - levels[0])
-    below, above = values.min() < levels[0] - slack, values.max() > levels[-1] + slack
-    return [["neither", "max"], ["min", "both"]][int(below)][int(above)]
+    members = {body: fine.triangles[fine.bodies == body] for body in np.unique(fine.bodies)}
+    members = {body: np.unique(triangles) for body, triangles in members.items()}
+    near = {body: values[points[inside[points]]] for body, points in members.items()}
+    groups = scale_groups(near)
+    for number, group in enumerate(groups):
+        levels = limits(np.concatenate([near[body] for body in group]), quantity, scale)
+        settled = settle(np.where(broken, levels[0], values), levels, scale)
+        hidden = ~np.isin(fine.bodies, group) | broken[grid.triangles].any(axis=1)
+        if hidden.all():
+            continue
+        grid.set_mask(hidden)
+        extend = overflow(settled[np.unique(grid.triangles[~hidden])], levels)
+        colours = colour_map(quantity, levels)
+        filled = axes.tricontourf(grid, settled, levels=levels, cmap=colours, extend=extend)
+        filled.set_edgecolor("face")  # no light seams between the bands of an SVG
+        filled.set_linewidth(0.15)
+        lines = {"colors": "black", "linewidths": 0.15, "linestyles": "solid"}
+        axes.tricontour(grid, settled, levels=levels[1:-1], **lines)
+        draw_bar(axes, filled, levels, group, (number, len(groups)))
 
 
 def draw_lines(axes, cells, moved):

@@ -33,7 +33,7 @@ def shape_functions(kind, r, s):
 
 @dataclass
 class FineMesh:
-    """Triangles (k, 3) over `count` fine points.
+    """Triangles (k, 3), each of a body, over `count` fine points.
 
     `sources` holds, for each element type, connectivity (m, nodes), shape functions (p, nodes)
     and the numbers (m, p) of the fine points. Elements share fine points only where they share
@@ -41,6 +41,7 @@ class FineMesh:
     """
 
     triangles: np.ndarray
+    bodies: np.ndarray
     sources: list
     count: int
 
@@ -64,7 +65,7 @@ def refine(cells, pieces):
     edges, _ = cells.edges()
     keys = np.unique(edge_keys(*edges.T, nodes))
     count = nodes + len(keys) * (pieces - 1)
-    sources, triangles = [], []
+    sources, triangles, bodies = [], [], []
     for kind, group in cells.groups.items():
         corners = CORNERS[kind]
         grid = local_grid(corners, pieces)
@@ -83,11 +84,12 @@ def refine(cells, pieces):
         count += inner.size
         sources.append((group, shape_functions(kind, *grid.coordinates), numbers))
         triangles.append(numbers[:, grid.triangles].reshape(-1, 3))
+        bodies.append(np.repeat(cells.bodies[kind], len(grid.triangles)))
     used, triangles = np.unique(np.concatenate(triangles), return_inverse=True)
     place = np.full(count, -1)
     place[used] = np.arange(len(used))
     sources = [(group, shape, place[numbers]) for group, shape, numbers in sources]
-    return FineMesh(triangles.reshape(-1, 3), sources, len(used))
+    return FineMesh(triangles.reshape(-1, 3), np.concatenate(bodies), sources, len(used))
 
 
 @dataclass

@@ -27,9 +27,7 @@ def add(picture, panels, kinds, overlays):
         if axes is panels[-1] and several:
             handles += edge_handles(picture)
         if handles:
-            legend = axes.legend(handles=handles, loc="best", frameon=True, edgecolor="none")
-            if axes is panels[0] and not several:
-                legend.set_title(load_texts(picture)[0])
+            axes.legend(handles=handles, loc="best", frameon=True, edgecolor="none")
         if len(kinds) > 1:
             place = {"xytext": (-30, 4), "textcoords": "offset points"}
             axes.annotate(f"({letter})", (0, 1), xycoords="axes fraction", **place)
@@ -65,10 +63,12 @@ def load_handles(picture):
 
 
 def load_texts(picture):
-    """Return the loads of a picture in few words."""
-    result = picture.result
-    loads = result.history["load"][picture.rows]
-    return [result.units.short_load(result.load_label, load) for load in loads]
+    """Return the loads of a picture in few words, with their times where these are other numbers."""
+    result, found = picture.result, []
+    for load, time in zip(*(result.history[key][picture.rows] for key in ("load", "time"))):
+        words = result.units.short_load(result.load_label, load)
+        found.append(words if result.load_label == "time" else f"{words}, time {time:g}")
+    return found
 
 
 def edge_handles(picture):
@@ -87,9 +87,9 @@ def name_zones(picture, axes):
         return
     low, high = picture.window
     limits = [low, *stick, *contact, high]
-    names = ["stick", "slip", "gap"] if len(stick) else ["slip", "gap"]
+    names = ["stick", "slip", "open"] if len(stick) else ["slip", "open"]
     if picture.contact.friction == 0.0 or picture.contact.get("shear") is None:
-        names = ["contact", "gap"]
+        names = ["contact", "open"]
     for name, left, right in zip(names, limits, limits[1:]):
         if right - left > 0.09 * (high - low):
             at = {"xytext": (0, 2.5), "textcoords": "offset points"}

@@ -78,6 +78,8 @@ class Picture:
         panels[-1].set_xlabel(self.result.units.label(f"${self.along}$", "length"))
         room = 0.02 * (self.window[1] - self.window[0])
         panels[-1].set_xlim(self.window[0] - room, self.window[1] + room)
+        if len(self.rows) == 1:
+            figure.supxlabel(self.result.load_words(self.rows[0]), fontsize=8.5)
         return figure
 
     def panel_kinds(self):

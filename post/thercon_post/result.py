@@ -7,6 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from . import stresses
 from .cells import Cells
 from .errors import UserError, nearest_name
 from .units import UNIT_NAMES, Units
@@ -23,6 +24,11 @@ FIELD_SOURCES = {
     "yy": ("stress", 1),
     "zz": ("stress", 2),
     "xy": ("stress", 3),
+    "principal_1": ("principal_stress", 0),
+    "principal_2": ("principal_stress", 1),
+    "principal_3": ("principal_stress", 2),
+    "radial": ("radial_stress", None),
+    "hoop": ("hoop_stress", None),
     "flux_x": ("heat_flux", 0),
     "flux_y": ("heat_flux", 1),
     "stress_error": ("stress_error", None),
@@ -45,11 +51,6 @@ class Contact:
     def get(self, key):
         """Return the dataset `key`, or None where the deck does not model it."""
         return self.data.get(key)
-
-    @property
-    def point_word(self):
-        """What legends call a contact point."""
-        return "pair" if self.pairing == "NODES" else "point"
 
     def axis(self, along):
         """Return (name, coordinate of the pairs): x where it grows along the face, else s.
@@ -127,6 +128,16 @@ class Result:
         return {key: item[()] for key, item in group.items()}
 
     @cached_property
+    def deck(self):
+        """Card images of the deck."""
+        return [text(card) for card in self.file["deck"][()]] if "deck" in self.file else []
+
+    @cached_property
+    def is_axisymmetric(self):
+        """Whether the model is axisymmetric."""
+        return stresses.is_axisymmetric(self.deck)
+
+    @cached_property
     def contact_names(self):
         """Names of the contact pairs, in the file's order."""
         return list(self.file["contact"]) if "contact" in self.file else []
@@ -161,6 +172,13 @@ class Result:
                 )
             rows.append(number - 1)
         return rows or [self.increments - 1]
+
+    def load_words(self, row):
+        """Return load and time of a row of /history in words."""
+        words = self.units.load_value(self.load_label, float(self.history["load"][row]))
+        if self.load_label == "time":
+            return words
+        return f"{words}, time {float(self.history['time'][row]):g}"
 
     def row_words(self, row):
         """Return what stands in a file name for a row of /history: its load, and its increment
@@ -226,8 +244,22 @@ class Result:
     def source(self, quantity, step):
         """Return the array that a picture quantity is of, with all components; None where it is
         absent."""
-        read = self.cell_data if quantity in CELL_FIELDS else self.point_data
-        return read(FIELD_SOURCES[quantity][0], step)
+        name = FIELD_SOURCES[quantity][0]
+        if quantity in CELL_FIELDS:
+            return self.cell_data(name, step)
+        values = self.point_data(name, step)
+        return self.stress_of(name, step) if values is None else values
+
+    def stress_of(self, name, step):
+        """Return principal, radial or hoop stress computed from the stress, where the file has the
+        stress alone; None for other names."""
+        stress = self.point_data("stress", step)
+        if stress is None:
+            return None
+        if name == "principal_stress":
+            return stresses.principal(stress)
+        turned = {"radial_stress": stresses.radial, "hoop_stress": stresses.hoop}.get(name)
+        return turned and turned(stress, self.cells.points, self.is_axisymmetric)
 
     def field(self, quantity, step):
         """Return a picture quantity over points or elements at a time step; None where it is

@@ -10,6 +10,7 @@ from .tables import write_table
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402  the backend is chosen first
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter  # noqa: E402
 
 SINGLE_COLUMN, DOUBLE_COLUMN = 3.39, 7.01  # inches: 86 and 178 mm
 
@@ -103,6 +104,29 @@ def shades(count):
     if count == 1:
         return [BLACK]
     return [matplotlib.colormaps["viridis"](t) for t in np.linspace(0.72, 0.0, count)]
+
+
+def log_ticks(axis, low, high):
+    """Label a logarithmic axis from `low` to `high`: decades, or 1, 2 and 5 of each where these are
+    few."""
+    first, last = int(np.floor(np.log10(low))), int(np.ceil(np.log10(high)))
+    decades = [10.0**k for k in range(first, last + 1) if low <= 10.0**k <= high]
+    every = -(-len(decades) // 6)
+    ticks = decades[::every] if every else []
+    if len(decades) < 3:
+        ticks = [m * 10.0**k for k in range(first, last + 1) for m in (1, 2, 5)]
+    axis.set_major_locator(FixedLocator([tick for tick in ticks if low <= tick <= high]))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: number_words(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def number_words(value):
+    """Return a number as a label: plain where that is short, else a power of ten."""
+    if 1e-3 <= value < 1e5:
+        return f"{value:g}"
+    power = int(np.floor(np.log10(value) + 1e-9))
+    factor = round(value / 10.0**power)
+    return f"$10^{{{power}}}$" if factor == 1 else rf"${factor}\times10^{{{power}}}$"
 
 
 def panel_title(axes, words, letter=""):

@@ -19,10 +19,12 @@ PANELS = {
     "error_edge_stick": "edge of stick",
     "error_temperature": "temperatures",
 }
-NEEDED = ["row", "default", "elements", "level", "increment_factor", "varied", "status", "pareto"]
-NEEDED += ["cpu_seconds", *PANELS]
+NEEDED = ["row", "default", "elements", "level", "contact_level", "increment_factor", "varied"]
+NEEDED += ["status", "pareto", "cpu_seconds", *PANELS]
 SHAPES = {"Q8": "o", "Q4": "s"}
+LOCAL = "D"  # meshes that are finer at the contact
 SMALLEST = 1e-6  # percent: errors below it are drawn here
+BEYOND = 3.0
 COLUMNS = 3
 
 
@@ -71,9 +73,13 @@ def figure_of(trade):
         style.panel_title(panel, PANELS[name], "abcdefg"[number])
     for panel in axes.flat[len(panels) :]:
         panel.set_axis_off()
-    for panel in axes.flat[max(len(panels) - COLUMNS, 0) : len(panels)]:
+    times = decade([float(row["cpu_seconds"]) for row in trade.rows])
+    for number, panel in enumerate(axes.flat[: len(panels)]):
+        panel.set_xlim(*times)
+        style.log_ticks(panel.xaxis, *times)
         panel.tick_params(labelbottom=True)
-        panel.set_xlabel("CPU time, s")
+        if number >= len(panels) - COLUMNS:
+            panel.set_xlabel("CPU time, s")
     for line in axes:
         line[0].set_ylabel("error, %")
     figure.legend(handles=legend(trade), loc="outside lower center", ncols=5)
@@ -81,19 +87,21 @@ def figure_of(trade):
 
 
 def draw_panel(axes, trade, name):
-    """Draw the errors of one quantity."""
+    """Draw the errors of one quantity; other methods far above the rest are marked at the frame."""
     levels = sorted({int(row["level"]) for row in trade.rows})
     colours = dict(zip(levels, style.shades(max(len(levels), 2)), strict=False))
+    low, high = ordinates(trade, name)
     for row in trade.rows:
         if not row[name]:
             continue
         at = float(row["cpu_seconds"]), percent(row[name])
         if row["varied"]:
-            axes.plot(*at, "x", color=style.GREY, ms=3, zorder=2)
+            mark, at = ("x", at) if at[1] <= high else ("^", (at[0], high))
+            axes.plot(*at, mark, color=style.GREY, ms=3, zorder=2, clip_on=mark == "x")
             continue
         factor = float(row["increment_factor"])
         axes.plot(
-            *at, SHAPES.get(row["elements"], "o"), color=colours[int(row["level"])],
+            *at, shape(row), color=colours[int(row["level"])],
             ms=3.2 - 0.5 * np.log2(factor), mfc="none" if factor > 1 else None, zorder=3,
         )  # fmt: skip
         if row["default"] == "1":
@@ -109,9 +117,43 @@ def draw_panel(axes, trade, name):
         axes.axhline(percent(trade.uncertainty[name]), color=style.GREY, lw=0.7, ls="--", zorder=1)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    low, high = axes.get_ylim()
-    if high / low < 10:  # a decade at least, so that equal errors look equal
-        axes.set_ylim(low / 4, high * 4)
+    axes.set_ylim(low, high)
+    style.log_ticks(axes.yaxis, low, high)
+
+
+def ordinates(trade, name):
+    """Return the range of a panel.
+
+    A method whose error is more than BEYOND times that of every mesh and increment does not stretch
+    it.
+    """
+    values = {True: [], False: []}
+    for row in trade.rows:
+        if row[name]:
+            values[bool(row["varied"])].append(percent(row[name]))
+    usual = values[False] or values[True]
+    shown = usual + [value for value in values[True] if value <= BEYOND * max(usual)]
+    if trade.uncertainty.get(name):
+        shown.append(percent(trade.uncertainty[name]))
+    return decade(shown)
+
+
+def decade(values):
+    """Return a range about values: a decade at least, so that what is equal looks equal."""
+    low, high = 0.7 * min(values), 1.4 * max(values)
+    short = max(1.0, 10.0 * low / high) ** 0.5
+    return low / short, high * short
+
+
+def is_beyond(trade, name):
+    """Whether the panel of a quantity leaves out another method."""
+    _, high = ordinates(trade, name)
+    return any(row["varied"] and row[name] and percent(row[name]) > high for row in trade.rows)
+
+
+def shape(row):
+    """Return the marker of a row of the grid."""
+    return SHAPES.get(row["elements"], "o") if row["contact_level"] == "0" else LOCAL
 
 
 def percent(text):
@@ -132,10 +174,14 @@ def legend(trade):
         for kind, shape in SHAPES.items()
         if any(row["elements"] == kind for row in trade.rows)
     ]
+    if any(row["contact_level"] != "0" for row in trade.rows):
+        handles.append(handle("finer at the contact", marker=LOCAL))
     handles += [handle(f"mesh / {2**k}", marker="o", color=colours[k]) for k in levels]
     handles.append(handle("longer increments", marker="o", mfc="none"))
     if any(row["varied"] for row in trade.rows):
         handles.append(handle("other method", marker="x", color=style.GREY))
+        if any(is_beyond(trade, name) for name in trade.panels()):
+            handles.append(handle("off the scale", marker="^", color=style.GREY))
     handles.append(handle("deck as written", marker="o", ms=8, mfc="none", color=style.VERMILION))
     handles.append(handle("none beats it", ls="-", color=style.BLUE))
     if trade.uncertainty:

@@ -1,8 +1,9 @@
-"""The zone diagram (Fig. 3 of the paper): gap, slip and stick against the load."""
+"""The zone diagram (Fig. 3 of the paper): open, slip and stick against the load."""
 
 from pathlib import Path
 
 import numpy as np
+from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.lines import Line2D
 
 from . import style
@@ -11,17 +12,15 @@ from .overlay import axis_words, file_parts, read_overlays
 from .result import OPEN, SLIP, STICK
 from .style import plt
 from .tables import write_table
+from .zone_names import CURVES, name_regions
 
-CURVES = ("edge_contact", "edge_stick")
 PASSED_OVER = ("increment", "time", "s_edge_contact", "s_edge_stick")
-NAMES = {OPEN: ("I", "gap"), SLIP: ("II", "slip"), STICK: ("III", "stick")}
+NAMES = {OPEN: ("I", "open"), SLIP: ("II", "slip"), STICK: ("III", "stick")}
 CURVE_NAMES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
 LINES = {"edge_contact": "solid", "edge_stick": (0, (5, 2))}
 FURTHER = {"color": style.GREY, "lw": 0.9, "marker": "d", "ms": 2.8, "mew": 0.6}
 FURTHER_FILLS = {"edge_contact": style.GREY, "edge_stick": "white"}
-NO_STATE = -1  # outside the loads and pairs of the result
-LABEL_GRID = (60, 48)  # where region names may stand: loads x places
-LABEL_ROOM = 0.08  # room that a name needs around its middle, in parts of the axes
+TINTS = ("#FFFFFF", "#DCE8F2", "#FBE9C8")  # of open, slip, stick
 
 
 def draw(result, options):
@@ -74,6 +73,7 @@ class Picture:
             raise UserError(
                 f"{self.result.path}: the load turns: no digitised figure fits over time"
             )
+        self.draw_zones(axes)
         self.draw_states(axes)
         for key in CURVES:
             self.draw_edges(axes, key)
@@ -83,8 +83,10 @@ class Picture:
         axes.set_xlabel(self.abscissa_label)
         axes.set_ylabel(self.result.units.label(f"${self.along}$", "length"))
         axes.set_xlim(self.limits(self.abscissa))
+        if len(self.abscissa) == 1:
+            axes.set_xticks(self.abscissa)
         axes.set_ylim(self.window(np.concatenate([[], *drawn])))
-        self.name_regions(axes)
+        name_regions(self, axes)
         figure.legend(
             handles=self.legend_handles(overlays),
             loc="outside lower center",
@@ -114,6 +116,23 @@ class Picture:
         room = 0.025 * (high - low)
         return low - room, high + room
 
+    def draw_zones(self, axes):
+        """Tint the increments at which all points are closed alike: no edge inside shows these."""
+        alike = (self.status == self.status[:, :1]).all(axis=1) & (self.status[:, 0] != OPEN)
+        if not alike.any():
+            return
+        load, place = (between(values) for values in (self.abscissa, self.coordinate))
+        axes.pcolormesh(
+            load,
+            place[[0, -1]],
+            np.where(alike, self.status[:, 0], OPEN)[None, :],
+            cmap=ListedColormap(TINTS),
+            norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3),
+            edgecolors="face",  # no light seams
+            linewidth=0.15,
+            zorder=0,
+        )
+
     def draw_states(self, axes):
         """Draw the raw state of every pair as a small mark behind the curves."""
         load, place = np.meshgrid(self.abscissa, self.coordinate, indexing="ij")
@@ -140,64 +159,8 @@ class Picture:
                     self.further[key] = self.further.get(key, False) or line
                     axes.plot(self.abscissa[piece], column[piece], zorder=2, **looks)
 
-    def name_regions(self, axes):
-        """Write I, II and III where each region has most room around it.
-
-        A region too narrow for its name has it outside, with a line, so that no curve is covered.
-        """
-        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-        u, v = (np.linspace(0.0, 1.0, n) for n in LABEL_GRID)
-        states = self.states_at(left + u * (right - left), low + v * (high - low)).ravel()
-        points = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
-        room = np.where(states == NO_STATE, 0.0, room_around(points, states))
-        middles = {
-            state: np.flatnonzero(states == state)[np.argmax(room[states == state])]
-            for state in self.names
-            if np.any(states == state)
-        }
-        taken = []
-        for state, at in sorted(middles.items(), key=lambda item: -room[item[1]]):
-            place = at
-            if room[at] < LABEL_ROOM:
-                place = free_place(points, room, points[at], points[taken])
-            taken.append(place)
-            axes.annotate(
-                "\n".join(self.names[state]),
-                xy=points[at],
-                xytext=points[place],
-                xycoords="axes fraction",
-                textcoords="axes fraction",
-                ha="center",
-                va="center",
-                linespacing=0.95,
-                zorder=5,
-                fontsize=9,
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 2.0},
-                arrowprops=None if place == at else {"arrowstyle": "-", "lw": 0.6, "shrinkB": 0},
-            )
-
-    def states_at(self, loads, places):
-        """Return the states (loads, places) of the nearest increments and pairs.
-
-        They are NO_STATE on the main curves, before the first increment and pair, and behind the
-        last.
-        """
-        row = np.argmin(np.abs(loads[:, None] - self.abscissa[None, :]), axis=1)
-        pair = np.argmin(np.abs(places[:, None] - self.coordinate[None, :]), axis=1)
-        states = self.status[np.ix_(row, pair)].astype(int)
-        states[:, is_outside(places, self.coordinate)] = NO_STATE
-        if len(self.abscissa) == 1:  # its names stand beside its marks
-            return states
-        states[is_outside(loads, self.abscissa)] = NO_STATE
-        order, near = np.argsort(self.abscissa), np.ptp(places) / len(places)
-        for key in CURVES:
-            edge = np.interp(loads, self.abscissa[order], self.edges(key)[order])
-            states[np.abs(places - edge[:, None]) < near] = NO_STATE
-        return states
-
     def legend_handles(self, overlays):
         """Return the legend's entries: curves, pair states, digitised figures."""
-        word = self.contact.point_word
         shown = [key for key in CURVES if not np.isnan(self.contact[key]).all()]
         handles = [
             Line2D([], [], color="black", ls=LINES[key], lw=1.2, label=CURVE_NAMES[key])
@@ -205,7 +168,7 @@ class Picture:
         ]
         handles += [
             Line2D(
-                [], [], ls="none", marker=marker, label=f"{word} in {self.names[state][1]}", **options
+                [], [], ls="none", marker=marker, label=self.point_words(state), **options
             )
             for state, marker, options in state_marks()
             if np.any(self.status == state)
@@ -216,6 +179,12 @@ class Picture:
         for overlay in overlays:
             handles += overlay.handles(CURVE_NAMES, LINES)
         return handles
+
+    def point_words(self, state):
+        """Return the legend's words for a contact point in a state."""
+        words = {"open": "open", "contact": "closed"}
+        name = self.names[state][1]
+        return f"contact point {words.get(name, 'in ' + name)}"
 
     def table(self):
         """Return the curves as columns: edges on the axis of the picture, and as arc length."""
@@ -241,6 +210,15 @@ class Picture:
         }
 
 
+def between(values):
+    """Return the limits half-way between values that rise or fall, and as far beyond both ends."""
+    if len(values) == 1:
+        return np.array([values[0] - 0.5, values[0] + 0.5])
+    middles = 0.5 * (values[1:] + values[:-1])
+    ends = 2.0 * values[[0, -1]] - middles[[0, -1]]
+    return np.concatenate((ends[:1], middles, ends[1:]))
+
+
 def state_marks():
     """Return (state, marker, looks) of the raw pair states."""
     return [
@@ -248,30 +226,6 @@ def state_marks():
         (SLIP, "o", {"mfc": "white", "mec": style.BLUE, "ms": 2.5, "mew": 0.45}),
         (STICK, "s", {"mfc": style.ORANGE, "mec": style.ORANGE, "ms": 2.0, "mew": 0.3}),
     ]
-
-
-def is_outside(values, of):
-    """Return where values are below the least of others or above the largest."""
-    return (values < np.min(of)) | (values > np.max(of))
-
-
-def room_around(points, states):
-    """Return how far each point (k, 2) of the axes is from other states and from the frame."""
-    room = np.min(np.hstack([points, 1.0 - points]), axis=1)
-    for state in np.unique(states):
-        mine, others = states == state, points[states != state]
-        if len(others):
-            away = points[mine][:, None, :] - others[None, :, :]
-            room[mine] = np.minimum(room[mine], np.sqrt(np.min(np.sum(away**2, axis=2), axis=1)))
-    return room
-
-
-def free_place(points, room, target, taken):
-    """Return the number of the point near `target` that has room for a name, clear of others."""
-    clear = np.linalg.norm(points - target, axis=1)
-    for other in taken:
-        room = np.minimum(room, 0.5 * np.linalg.norm(points - other, axis=1))
-    return int(np.argmin(np.where(room >= min(LABEL_ROOM, room.max()), clear, np.inf)))
 
 
 def is_lonely(values):

@@ -3,6 +3,7 @@
 !> increments in a step it takes the first alone, for the last one tells most.
 module doubled_increments
    use companion_steps, only: companion_step
+   use contact_changes, only: brings_friction
    use errors, only: error_type
    use films, only: left_films
    use increment_data, only: increment_workspace_type
@@ -47,8 +48,9 @@ contains
       type(solution_state_type), intent(in) :: state             !! state before the first increment
       integer :: s
 
-      self%is_led = any(bodies%points%friction > 0.0_dp)
+      self%is_led = any(model%interactions%friction%coefficient > 0.0_dp)
       do s = 1, size(model%steps)
+         self%is_led = self%is_led .or. brings_friction(model%steps(s)%changes)
          self%is_led = self%is_led .or. (solves_heat(model%steps(s)%analysis) .and. &
             has_memory(model%steps(s)%scheme) .and. size(bodies%points%slave) > 0)
       end do

@@ -18,7 +18,7 @@ module error_estimator
    use text, only: append
    implicit none
    private
-   public :: error_estimator_type
+   public :: error_estimator_type, of_halved_elements
 
    !> Error of a mesh in the change that halving its elements makes: errors that fall with h are
    !> twice the change, those that fall with h^4 are 1.07 of it.
@@ -61,6 +61,8 @@ contains
       if (any(simulation%bodies%interfaces%pairing == pairing_surfaces)) self%why_not = &
          'it relaxes node pairs, and there are faces whose nodes do not match'
       if (size(model%ties) > 0) self%why_not = 'it relaxes nodes that are free, and there are ties'
+      if (size(model%equations) > 0) self%why_not = &
+         'it relaxes nodes that are free, and there are equations'
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 

@@ -6,13 +6,14 @@ module interface_quantities
    use contact_states, only: contact_open
    use controls, only: thermal_scheme_type
    use increment_records, only: measure_contact
+   use friction_laws, only: friction_law_type
    use kinds, only: dp
    use records, only: contact_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: carrying_conductance, solution_state_type
    implicit none
    private
-   public :: contact_of, quantities_of, quantities_of_state, edge_resolution
+   public :: closed_length, contact_of, quantities_of, quantities_of_state, edge_resolution
 
 contains
 
@@ -21,7 +22,7 @@ contains
    pure function contact_of(points, friction, contact_state, gap, force, shear_force, &
       heat) result(contact)
       type(contact_points_type), intent(in) :: points !! the contact points of the interface
-      real(dp), intent(in) :: friction                !! mu [-]
+      type(friction_law_type), intent(in) :: friction !! the law of all of them
       integer, intent(in) :: contact_state(:)         !! (m) open, slip or stick
       real(dp), intent(in) :: gap(:)                  !! (m) [length]
       real(dp), intent(in) :: force(:)                !! (m) nodal, positive in compression [force]
@@ -85,6 +86,19 @@ contains
             spacing_at(points%arc_length, values(q))
       end do
    end function edge_resolution
+
+   !> Length of the interface that is closed.
+   pure real(dp) function closed_length(contact, s) result(length)
+      type(contact_record_type), intent(in) :: contact    !! state of the interface
+      real(dp), intent(in) :: s(:)                         !! (m) arc length [length]
+      integer :: k
+
+      length = 0.0_dp
+      do k = 1, size(s)
+         if (contact%contact_state(k) == contact_open) cycle
+         length = length + 0.5_dp*(s(min(k + 1, size(s))) - s(max(k - 1, 1)))
+      end do
+   end function closed_length
 
    !> Distance of the contact points on both sides of a position; 0 at or beyond the last contact
    !> point.

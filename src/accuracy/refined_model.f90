@@ -4,6 +4,7 @@ module refined_model
    use bodies, only: find_bodies
    use contact_points, only: contact_points_type
    use errors, only: error_type
+   use hanging_nodes, only: at_level_changes
    use kinds, only: dp
    use loads, only: loads_type
    use mesh, only: mesh_type
@@ -13,7 +14,7 @@ module refined_model
    use all_contact_points, only: all_contact_points_type, match_surfaces, joined_points
    use refinement, only: refine
    use sparse_matrix, only: linear_combination, sparse_matrix_type
-   use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
+   use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
    implicit none
    private
@@ -33,6 +34,7 @@ module refined_model
       type(loads_type) :: loads                 !! its loads
       type(sparse_matrix_type) :: stiffness     !! (2 nodes, 2 nodes) [force/length]
       type(sparse_matrix_type) :: thermal_load  !! (2 nodes, nodes) [force/temperature]
+      real(dp), allocatable :: initial_force(:) !! (2 nodes) of initial stresses, or none [force]
       type(sparse_matrix_type) :: conduction    !! (nodes, nodes) [power/temperature]
    contains
       procedure :: prepare
@@ -41,6 +43,7 @@ module refined_model
       procedure :: prolong_points
       procedure :: restrict
       procedure :: prolong_set
+      procedure :: hangs
       procedure :: conduction_with
    end type refined_model_type
 
@@ -57,7 +60,7 @@ contains
       integer :: i
 
       self%coarse = model%mesh
-      self%division = divide(model%mesh)
+      self%division = divide(model%mesh, [(.true., i=1, size(model%mesh%element_number))])
       self%model = model
       call refine(self%model, 1)
       call find_bodies(self%model%mesh)
@@ -118,6 +121,8 @@ contains
          if (with_mechanics .and. .not. allocated(self%stiffness%value)) then
             self%stiffness = assemble_stiffness(model%mesh, model%sections, model%materials, &
                model%orientations)
+            if (allocated(model%mesh%initial_stress)) self%initial_force = &
+               assemble_initial_force(model%mesh, model%sections)
          end if
          if (with_strain .and. .not. allocated(self%thermal_load%value)) then
             self%thermal_load = assemble_thermal_load(model%mesh, model%sections, &
@@ -180,6 +185,18 @@ contains
             member(c::components))
       end do
    end function prolong_set
+
+   !> Which degrees of freedom of the new mesh are on sides where elements of two sizes meet.
+   pure function hangs(self, components)
+      class(refined_model_type), intent(in) :: self
+      integer, intent(in) :: components               !! degrees of freedom of a node
+      logical :: hangs(components*self%division%nodes_after)
+      integer :: c
+
+      do c = 1, components
+         hangs(c::components) = at_level_changes(self%model%mesh)
+      end do
+   end function hangs
 
    !> Conduction of the bodies and their films.
    pure function conduction_with(self, film) result(matrix)

@@ -1,8 +1,10 @@
 !> What happens on the contact points that a division of the elements adds: what keeps them closed
 !> or stuck, and the states that follow from their forces and gaps.
 module refined_points
-   use conductance_laws, only: conductance
-   use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
+   use conductance_laws, only: conductance, conductance_law_type
+   use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick, &
+      slip_force
+   use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    use all_contact_points, only: all_contact_points_type
    use refined_model, only: refined_model_type
@@ -14,7 +16,7 @@ module refined_points
    !> State of all contact points of a refined model; those of old ones are taken from the old mesh.
    type :: refined_points_type
       integer, allocatable :: contact_state(:) !! (m) open, slip or stick
-      integer, allocatable :: direction(:)     !! (m) sign of friction on the slave in slip
+      integer, allocatable :: direction(:)     !! (m) as in contact_state_type
       real(dp), allocatable :: gap(:)          !! (m) [length]
       real(dp), allocatable :: force(:)        !! (m) nodal, positive in compression [force]
       real(dp), allocatable :: shear_force(:)  !! (m) on the slave [force]
@@ -44,7 +46,7 @@ contains
          self%direction = contact%direction(one)
          where (self%direction == 0) self%direction = contact%direction(other)
          where (self%contact_state == contact_slip .and. self%direction == 0 .and. &
-            refined%points%friction > 0.0_dp) self%contact_state = contact_stick
+            refined%points%has_friction()) self%contact_state = contact_stick
       end associate
       self%gap = refined%prolong_points(contact%gap)
       self%force = 0.0_dp*self%gap
@@ -120,9 +122,10 @@ contains
       type(refined_model_type), intent(in) :: refined
       real(dp), intent(in) :: displacement(:) !! (2 nodes) field of the old mesh [length]
       type(joint_type), allocatable, intent(out) :: joints(:)
-      real(dp) :: relative(2)
+      real(dp) :: relative(2), gap(size(self%contact_state))
       integer :: k, n
 
+      gap = refined%loads%present_gaps(refined%points)
       allocate (joints(count(self%contact_state /= contact_open .and. refined%old_point == 0)))
       n = 0
       do k = 1, size(self%contact_state)
@@ -133,8 +136,8 @@ contains
             joint%dof = [slave_dof - 1, slave_dof, master_dof - 1, master_dof]
             joint%is_rigid = .true.
             joint%direction = reshape([points%normal(:, k), -points%normal(:, k)], [4, 1])
-            joint%rest = [points%initial_gap(k)]
-            if (self%contact_state(k) == contact_slip .or. points%held_axis(k) > 0) cycle
+            joint%rest = [gap(k)]
+            if (self%contact_state(k) == contact_slip .or. points%is_held(k)) cycle
             relative = displacement(slave_dof - 1:slave_dof) - &
                displacement(master_dof - 1:master_dof)
             joint%direction = reshape([joint%direction, points%tangent(:, k), &
@@ -167,9 +170,12 @@ contains
       type(refined_model_type), intent(in) :: refined
       real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
       real(dp), intent(in) :: load(:) !! (2 nodes) forces that the contact points must hold [force]
-      real(dp) :: relative(2), on_slave(2)
-      integer :: free, k
+      real(dp) :: relative(2), on_slave(2), free(2)
+      real(dp), dimension(size(self%contact_state)) :: gap, largest
+      integer :: k
 
+      gap = refined%loads%present_gaps(refined%points)
+      largest = refined%points%largest_friction()
       do k = 1, size(self%contact_state)
          if (refined%old_point(k) > 0) cycle
          associate (points => refined%points, slave_dof => 2*refined%points%slave(k), &
@@ -177,66 +183,75 @@ contains
             if (self%contact_state(k) == contact_open) then
                relative = displacement(slave_dof - 1:slave_dof) - &
                   displacement(master_dof - 1:master_dof)
-               self%gap(k) = points%initial_gap(k) - dot_product(points%normal(:, k), relative)
+               self%gap(k) = gap(k) - dot_product(points%normal(:, k), relative)
                self%force(k) = 0.0_dp
                self%shear_force(k) = 0.0_dp
             else
                on_slave = 0.5_dp*(load(master_dof - 1:master_dof) - load(slave_dof - 1:slave_dof))
                self%gap(k) = 0.0_dp
-               free = 3 - points%held_axis(k)
-               if (free < 3) then
+               if (points%is_held(k)) then
                   ! Supports take the rest, and friction with it.
-                  self%force(k) = -on_slave(free)/points%normal(free, k)
+                  free = [-points%held_direction(2, k), points%held_direction(1, k)]
+                  self%force(k) = -dot_product(free, on_slave)/dot_product(free, &
+                     points%normal(:, k))
                   self%shear_force(k) = 0.0_dp
                else
                   self%force(k) = -dot_product(points%normal(:, k), on_slave)
                   self%shear_force(k) = dot_product(points%tangent(:, k), on_slave)
                end if
-               if (self%contact_state(k) == contact_slip) self%shear_force(k) = &
-                  self%direction(k)*points%friction(k)*self%force(k)
+               if (self%contact_state(k) == contact_slip) self%shear_force(k) = slip_force( &
+                  self%direction(k), points%friction(k)%coefficient, largest(k), self%force(k))
             end if
-            call next_state(self, k, points%friction(k))
+            call next_state(self, k, points%removed(k), &
+               friction_law_type(points%friction(k)%coefficient, largest(k)))
          end associate
       end do
    end subroutine update
 
    !> The state that a new contact point takes next.
-   subroutine next_state(self, k, friction)
+   subroutine next_state(self, k, removed, friction)
       type(refined_points_type), intent(inout) :: self
       integer, intent(in) :: k
-      real(dp), intent(in) :: friction
+      logical, intent(in) :: removed                    ! whether it stays open
+      type(friction_law_type), intent(in) :: friction   ! with the largest force for a shear
+      logical :: over_largest
 
       if (self%contact_state(k) == contact_open) then
-         if (self%gap(k) < 0.0_dp) self%contact_state(k) = merge(contact_stick, contact_slip, &
-            friction > 0.0_dp)
+         if (self%gap(k) < 0.0_dp .and. .not. removed) self%contact_state(k) = &
+            merge(contact_stick, contact_slip, friction%coefficient > 0.0_dp)
          return
       end if
-      if (self%contact_state(k) == contact_stick .and. &
-         abs(self%shear_force(k)) > friction*self%force(k)) then
+      if (self%contact_state(k) == contact_stick .and. abs(self%shear_force(k)) > friction_bound( &
+         friction%coefficient, friction%largest_shear, self%force(k))) then
          self%contact_state(k) = contact_slip
          self%direction(k) = merge(1, -1, self%shear_force(k) > 0.0_dp)
       end if
+      over_largest = friction%coefficient*self%force(k) > friction%largest_shear
+      self%direction(k) = merge(2, 1, over_largest)*min(max(self%direction(k), -1), 1)
       if (self%force(k) >= 0.0_dp) return
       self%contact_state(k) = contact_open
       self%force(k) = 0.0_dp
       self%shear_force(k) = 0.0_dp
    end subroutine next_state
 
-   !> Conductances by the laws, with the pressures that the forces give; a contact point that rests
-   !> on the old mesh keeps the value found there.
-   subroutine conduct(self, refined, omega, resting)
+   !> Conductances by the laws, with the temperatures of the faces and the pressures that the
+   !> forces give; a contact point that rests on the old mesh keeps the value found there.
+   subroutine conduct(self, refined, temperature, omega, resting)
       class(refined_points_type), intent(inout) :: self
       type(refined_model_type), intent(in) :: refined
+      real(dp), intent(in) :: temperature(:)             !! (nodes) of the new mesh [temperature]
       real(dp), intent(in) :: omega(:)                   !! (old contact points) conductance
       logical, intent(in) :: resting(:)                  !! (old contact points) whether it rests
+      type(conductance_law_type) :: law(size(self%contact_state))
       real(dp) :: pressure
       integer :: k
 
+      law = refined%points%laws_of(temperature, refined%points%jumps(temperature))
       do k = 1, size(self%contact_state)
          associate (points => refined%points, old => refined%old_point(k))
             pressure = 0.0_dp
             if (points%weight(k) > 0.0_dp) pressure = self%force(k)/points%weight(k)
-            self%omega(k) = conductance(points%law(k), self%contact_state(k) /= contact_open, &
+            self%omega(k) = conductance(law(k), self%contact_state(k) /= contact_open, &
                self%gap(k), pressure)
             if (old == 0) cycle
             if (resting(old)) self%omega(k) = omega(old)

@@ -8,11 +8,13 @@
 !> P being the shape functions of the old mesh and R the values at its nodes. At rest y is the
 !> solution on the new mesh, for which no factors were ever formed.
 module refinement_error
+   use all_contact_points, only: all_contact_points_type
    use balances, only: heat_residual
    use companion_steps, only: companion_step
-   use contact_operator, only: kept_contact, thermal_forces
+   use contact_operator, only: kept_contact, unstrained_forces
    use contact_states, only: contact_open
    use controls, only: implicit_scheme
+   use cut_hats, only: joined_conductance
    use errors, only: error_type
    use films, only: net_heat
    use increment_data, only: increment_workspace_type
@@ -25,7 +27,7 @@ module refinement_error
    use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
-   use all_contact_points, only: find_held_axes
+   use held_points, only: find_held_directions
    use records, only: contact_record_type
    use reduced_bodies, only: reduced_bodies_type
    use refined_model, only: refined_model_type
@@ -119,14 +121,18 @@ contains
          call refined%assemble(solves_mechanics(step%analysis), solves_heat(step%analysis), &
             allocated(bodies%thermal_load%value))
          call refined%loads%move_to(clock, refined%model)
+         call refined%points%enter_step(refined%model, simulation%control%step)
          fields%coarse = simulation%state
-         call find_held_axes(refined%points, refined%prolong_set(loads%displacement%active, 2))
+         call find_held_directions(refined%points, &
+            refined%prolong_set(loads%displacement%active, 2))
          ! Old contact points move by the solutions on the old mesh alone, which keep their
          ! conditions.
+         ! So do sides where elements of two sizes meet, whose fields then stay continuous.
          fields%moves = .not. (refined%prolong_set(loads%displacement%active, 2) .or. &
-            refined%at_old_points)
+            refined%at_old_points .or. refined%hangs(2))
          if (solves_heat(step%analysis)) then
-            fields%warms = .not. refined%prolong_set(loads%temperature%active, 1)
+            fields%warms = .not. (refined%prolong_set(loads%temperature%active, 1) .or. &
+               refined%hangs(1))
             fields%film = refined%loads%film_matrix()
             fields%conduction = refined%conduction_with(fields%film)
             call bodies%set_film(simulation%state%film, model, error)
@@ -167,7 +173,7 @@ contains
             call points%take_old(refined, fields%coarse%contact)
          end if
          if (solves_heat(step%analysis)) then
-            call points%conduct(refined, fields%coarse%omega, fields%coarse%resting)
+            call points%conduct(refined, t, fields%coarse%omega, fields%coarse%resting)
             call points%conducting_joints(refined, joints)
             call relax(fields%conduction, joints, refined%loads%heat_load(), fields%warms, &
                smoothing_steps, t)
@@ -175,7 +181,7 @@ contains
       end associate
    end subroutine smooth
 
-   !> Forces of loads and temperatures on the new mesh.
+   !> Forces of loads, temperatures and initial stresses on the new mesh.
    function mechanical_load(refined, fields) result(forces)
       type(refined_model_type), intent(in) :: refined
       type(corrected_type), intent(in) :: fields
@@ -184,6 +190,7 @@ contains
       forces = refined%loads%nodal_forces()
       if (allocated(refined%thermal_load%value)) forces = forces + &
          refined%thermal_load%multiply(fields%temperature - refined%model%initial_temperature)
+      if (allocated(refined%initial_force)) forces = forces + refined%initial_force
    end function mechanical_load
 
    !> Solves the increment on the old mesh with what is out of balance on the new one.
@@ -207,7 +214,7 @@ contains
          if (solves_mechanics(step%analysis)) trial%force_load = refined%restrict( &
             mechanical_load(refined, fields) - refined%stiffness%multiply(fields%displacement), &
             2) + bodies%mechanical%matrix%multiply(u) - &
-            thermal_forces(bodies, t)
+            unstrained_forces(bodies, t)
       end associate
       call solve_points(bodies, loads, step, previous, workspace, trial, error)
       if (allocated(error)) return
@@ -226,10 +233,13 @@ contains
       type(solution_state_type), intent(in) :: coarse
       real(dp), intent(in) :: temperature(:)
       real(dp) :: heat(size(temperature))
+      type(all_contact_points_type) :: points
 
-      associate (points => bodies%points, t => temperature)
+      points = coarse%cut%points_crossed(bodies%points)
+      associate (t => temperature)
          heat = heat_residual(bodies%thermal%matrix%multiply(t), net_heat(0.0_dp*t, &
-            coarse%film, t), points, points%weight*coarse%omega*points%jumps(t))
+            coarse%film, t), points, points%weight*joined_conductance(coarse%omega, coarse%cut)* &
+            points%jumps(t))
       end associate
    end function heat_taken
 

@@ -1,22 +1,23 @@
 !> The contact points of all interfaces in one row, as the solution works on them, and beside them
-!> the points of all ties.
+!> the points of all ties, the nodes that hang and the equations of the deck.
 module all_contact_points
-   use conductance_laws, only: conductance_law_type
+   use conductance_laws, only: conductance_law_type, is_constant, varies_with_temperature
    use interface_points, only: make_contact_points
+   use contact_changes, only: is_removed, latest_friction
    use contact_points, only: contact_points_type
+   use equations, only: equation_type
    use errors, only: error_type
+   use friction_laws, only: friction_law_type, unlimited
+   use hanging_nodes, only: hanging_rows
    use kinds, only: dp
    use model, only: model_type
    use sum_lists, only: sum_list_type
+   use temperature_laws, only: face_temperatures_type, law_at, law_jumps
    use tie_points, only: joined_ties, make_tie_points, tie_points_type
+   use transforms, only: partner_type
    implicit none
    private
    public :: all_contact_points_type, match_surfaces, match_tie, joined_points
-   public :: find_held_axes, over_constrained, held_approach, tangential_positions
-
-   !> Component of a normal along the only free axis that is rounding: the normal motion of such a
-   !> contact point is prescribed.
-   real(dp), parameter :: least_slant = 1.0e-9_dp
 
    !> The contact points of all interfaces in one row.
    type :: all_contact_points_type
@@ -27,22 +28,42 @@ module all_contact_points
       !> (m, nodes) the same of displacements, as in contact_points_type; no sums where no normal of
       !> any contact point turns
       type(sum_list_type) :: along, across
+      !> (m, nodes) mean of both; no sums where no conductance law varies with the temperature
+      type(sum_list_type) :: mean
       real(dp), allocatable :: weight(:)                      !! (m) tributary areas [length^2]
       real(dp), allocatable :: initial_gap(:)                 !! (m) h [length]
-      real(dp), allocatable :: friction(:)                    !! (m) mu [-]
+      type(friction_law_type), allocatable :: friction(:)     !! (m) laws of friction
       real(dp), allocatable :: normal(:, :), tangent(:, :)    !! (2, m) unit vectors
       type(conductance_law_type), allocatable :: law(:)       !! (m) conductance laws
-      !> (m) the axis, 1 or 2, along which supports hold both nodes, while they leave one of them
-      !> free along the other axis; else 0
-      integer, allocatable :: held_axis(:)
+      !> (m) whether the interface is removed: its contact points are open whatever their gaps, and
+      !> have neither friction nor conductance
+      logical, allocatable :: removed(:)
+      !> (2, m) unit vectors along which supports hold both nodes, while they leave one of them free
+      !> across; else 0
+      real(dp), allocatable :: held_direction(:, :)
+      logical, allocatable :: cuts_hats(:) !! (interfaces) whether the edge of contact cuts hats
+      !> nodes of both faces of these interfaces; unallocated where there are none
+      integer, allocatable :: cut_nodes(:)
       type(tie_points_type) :: ties                           !! points of the ties, no part of m
+      type(sum_list_type) :: hanging                          !! hanging nodes, as in hanging_nodes
+      type(equation_type), allocatable :: equations(:)        !! equations of the deck
+      type(partner_type), allocatable :: partners(:)          !! nodes with axes of their own
    contains
+      procedure :: enter_step
       procedure :: jumps
+      procedure :: vary_with_temperature
+      procedure :: means
+      procedure :: laws_at
+      procedure :: laws_of
       procedure :: relative
       procedure :: add_heat
       procedure :: add_forces
       procedure :: nodes_of
+      procedure :: means_of
       procedure :: turns
+      procedure :: is_held
+      procedure :: has_friction
+      procedure :: largest_friction
    end type all_contact_points_type
 
 contains
@@ -99,8 +120,8 @@ contains
       end do
       m = row%interface_start(size(interfaces) + 1) - 1
       allocate (row%slave(m), row%master(m), row%weight(m), row%initial_gap(m), row%friction(m), &
-         row%normal(2, m), row%tangent(2, m), row%law(m))
-      allocate (row%held_axis(m), source=0)
+         row%normal(2, m), row%tangent(2, m), row%law(m), row%removed(m))
+      allocate (row%held_direction(2, m), source=0.0_dp)
       call row%difference%reserve(m, 2*m)
       if (any([(interfaces(i)%across%count > 0, i=1, size(interfaces))])) then
          call row%along%reserve(m, 2*m)
@@ -115,33 +136,86 @@ contains
          row%initial_gap(first:last) = interfaces(i)%initial_gap
          row%normal(:, first:last) = interfaces(i)%normal
          row%tangent(:, first:last) = interfaces(i)%tangent
-         row%friction(first:last) = model%interactions(model%contacts(i)%interaction)%friction
-         row%law(first:last) = model%interactions(model%contacts(i)%interaction)%law
-         call append(interfaces(i)%difference, row%difference)
+         call row%difference%add_sums(interfaces(i)%difference)
          if (.not. row%turns()) cycle
          if (interfaces(i)%across%count > 0) then
-            call append(interfaces(i)%along, row%along)
-            call append(interfaces(i)%across, row%across)
+            call row%along%add_sums(interfaces(i)%along)
+            call row%across%add_sums(interfaces(i)%across)
          else
-            call append(interfaces(i)%difference, row%along)
+            call row%along%add_sums(interfaces(i)%difference)
             do k = first, last
                call row%across%add([integer ::], [real(dp) ::])
             end do
          end if
       end do
+      call row%enter_step(model, 0)
+      if (any(varies_with_temperature(row%law))) then
+         call row%mean%reserve(m, 2*m)
+         do i = 1, size(interfaces)
+            do k = 1, size(interfaces(i)%slave_node)
+               associate (slave => interfaces(i)%slave_mean, master => interfaces(i)%master_mean)
+                  call row%mean%add([slave%values_of(k), master%values_of(k)], &
+                     0.5_dp*[slave%coefficients_of(k), master%coefficients_of(k)])
+               end associate
+            end do
+         end do
+      end if
       row%ties = joined_ties(model%mesh, model%ties, of_ties)
+      row%hanging = hanging_rows(model%mesh)
+      allocate (row%equations(0), row%partners(0))
+      if (allocated(model%partners)) row%partners = model%partners
+      if (allocated(model%equations)) row%equations = model%equations
+      call find_cut_faces(interfaces, row)
    end function joined_points
 
-   !> Adds the sums of a list to another one.
-   pure subroutine append(sums, list)
-      type(sum_list_type), intent(in) :: sums
-      type(sum_list_type), intent(inout) :: list
-      integer :: k
+   !> Hats are cut of mortar points whose conductance varies without a jump, where it follows from
+   !> gap and pressure alone: the means of the faces (gap_temperatures) go by jumps of whole hats.
+   pure subroutine find_cut_faces(interfaces, row)
+      type(contact_points_type), intent(in) :: interfaces(:)
+      type(all_contact_points_type), intent(inout) :: row
+      integer, allocatable :: nodes(:)
+      integer :: i, k
 
-      do k = 1, sums%count
-         call list%add(sums%values_of(k), sums%coefficients_of(k))
+      allocate (row%cuts_hats(size(interfaces)), source=.false.)
+      if (row%vary_with_temperature()) return
+      nodes = [integer ::]
+      do i = 1, size(interfaces)
+         if (.not. allocated(interfaces(i)%segments)) cycle
+         if (size(interfaces(i)%slave_node) < 2) cycle
+         associate (law => row%law(row%interface_start(i)))
+            row%cuts_hats(i) = .not. (law_jumps(law) .or. is_constant(law))
+         end associate
+         if (.not. row%cuts_hats(i)) cycle
+         nodes = [nodes, (interfaces(i)%segments(k)%nodes, k=1, &
+            size(interfaces(i)%segments))]
       end do
-   end subroutine append
+      if (size(nodes) > 0) row%cut_nodes = nodes
+   end subroutine find_cut_faces
+
+   !> Takes the laws of a step.
+   pure subroutine enter_step(self, model, step)
+      class(all_contact_points_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: step                  !! index of the step, 0 before the first
+      integer :: first, i, last
+
+      do i = 1, size(self%interface_start) - 1
+         first = self%interface_start(i)
+         last = self%interface_start(i + 1) - 1
+         associate (interaction => model%interactions(model%contacts(i)%interaction))
+            self%friction(first:last) = interaction%friction
+            self%law(first:last) = interaction%law
+            self%removed(first:last) = .false.
+            if (step == 0) cycle
+            self%friction(first:last) = latest_friction(model%steps(:step)%changes, &
+               model%contacts(i)%interaction, interaction%friction)
+            if (.not. is_removed(model%steps(:step)%changes, i)) cycle
+         end associate
+         self%friction(first:last) = friction_law_type()
+         self%law(first:last) = conductance_law_type()
+         self%removed(first:last) = .true.
+      end do
+   end subroutine enter_step
 
    !> Whether the normal turns along the face of some contact point.
    pure logical function turns(self)
@@ -149,6 +223,33 @@ contains
 
       turns = allocated(self%across%start)
    end function turns
+
+   !> Whether supports hold a contact point along a direction.
+   elemental logical function is_held(self, k)
+      class(all_contact_points_type), intent(in) :: self
+      integer, intent(in) :: k                     !! a contact point
+
+      is_held = norm2(self%held_direction(:, k)) > 0.0_dp
+   end function is_held
+
+   !> Where friction acts.
+   pure function has_friction(self)
+      class(all_contact_points_type), intent(in) :: self
+      logical :: has_friction(size(self%friction))         !! (m)
+
+      has_friction = self%friction%coefficient > 0.0_dp
+   end function has_friction
+
+   !> Largest friction forces whatever the pressure; none at contact points of weight 0, over which
+   !> no traction acts.
+   pure function largest_friction(self) result(force)
+      class(all_contact_points_type), intent(in) :: self
+      real(dp) :: force(size(self%friction))               !! (m) [force]
+
+      force = unlimited
+      where (self%friction%largest_shear < unlimited .and. self%weight > 0.0_dp) &
+         force = self%friction%largest_shear*self%weight
+   end function largest_friction
 
    !> Slave's value less master's of a field, at every contact point.
    pure function jumps(self, field)
@@ -160,13 +261,59 @@ contains
       call self%difference%add_totals(field, jumps)
    end function jumps
 
+   !> Whether the conductance law of some contact point varies with the temperatures of its faces.
+   pure logical function vary_with_temperature(self)
+      class(all_contact_points_type), intent(in) :: self
+
+      vary_with_temperature = allocated(self%mean%start)
+   end function vary_with_temperature
+
+   !> Mean of slave's and master's value of a field, at every contact point.
+   pure function means(self, field)
+      class(all_contact_points_type), intent(in) :: self
+      real(dp), intent(in) :: field(:)             !! (nodes)
+      real(dp) :: means(size(self%slave))          !! (m)
+
+      means = 0.0_dp
+      call self%mean%add_totals(field, means)
+   end function means
+
+   !> The conductance laws at given temperatures of the faces.
+   pure function laws_at(self, faces) result(laws)
+      class(all_contact_points_type), intent(in) :: self
+      type(face_temperatures_type), intent(in) :: faces(:)      !! (m)
+      type(conductance_law_type), allocatable :: laws(:)        !! (m)
+      integer :: k
+
+      allocate (laws(size(faces)))
+      do k = 1, size(faces)
+         laws(k) = law_at(self%law(k), faces(k))
+      end do
+   end function laws_at
+
+   !> The conductance laws at the temperatures of a field whose jumps are known.
+   pure function laws_of(self, temperature, jump) result(laws)
+      class(all_contact_points_type), intent(in) :: self
+      real(dp), intent(in) :: temperature(:)                    !! (nodes)
+      real(dp), intent(in) :: jump(:)                           !! (m) T_xi - T_eta
+      type(conductance_law_type), allocatable :: laws(:)        !! (m)
+      real(dp) :: mean(size(jump))
+      integer :: k
+
+      if (.not. self%vary_with_temperature()) then
+         laws = self%law
+         return
+      end if
+      mean = self%means(temperature)
+      laws = self%laws_at([(face_temperatures_type(mean(k), jump(k)), k=1, size(jump))])
+   end function laws_of
+
    !> Slave's displacement less master's, at every contact point, in the directions of its normal:
    !> the mean of displacements that are turned with the face.
    pure function relative(self, displacement)
       class(all_contact_points_type), intent(in) :: self
       real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
       real(dp) :: relative(2, size(self%slave))    !! (2, m) [length]
-
       real(dp) :: across(2, size(self%slave))
 
       relative(1, :) = self%jumps(displacement(1::2))
@@ -217,97 +364,29 @@ contains
       nodes = self%difference%values_of(k)
    end function nodes_of
 
-   !> Finds the contact points that supports hold along one axis on all nodes, or on the two
-   !> opposite ones if the axis is their tangent, as on a line of symmetry: no shear acts there.
-   !> Their contact condition stays, along their own normal; the only relative motion that is free
-   !> is the one along the other axis.
-   pure subroutine find_held_axes(points, held)
-      type(all_contact_points_type), intent(inout) :: points !! all contact points
-      logical, intent(in) :: held(:)                        !! (2 nodes) prescribed displacements
-      logical :: both(2)
-      integer :: k
+   !> What a contact point takes of its nodes' displacements: slave's less master's along an axis
+   !> are along.u of that axis, and across.u of the other one, added for x and subtracted for y.
+   pure subroutine means_of(self, k, nodes, along, across)
+      class(all_contact_points_type), intent(in) :: self
+      integer, intent(in) :: k                     !! a contact point
+      integer, allocatable, intent(out) :: nodes(:)   !! (n) each once
+      real(dp), allocatable, intent(out) :: along(:)  !! (n)
+      real(dp), allocatable, intent(out) :: across(:) !! (n) zero where no normal turns
+      integer :: i
 
-      do k = 1, size(points%slave)
-         both = on_all_nodes(points, held, k) .or. (on_both_nodes(points, held, k) .and. &
-            abs(points%normal(:, k)) <= least_slant)
-         points%held_axis(k) = merge(merge(1, 2, both(1)), 0, both(1) .neqv. both(2))
-      end do
-   end subroutine find_held_axes
-
-   !> Contact points whose normal motion is prescribed: both nodes are held along both axes, or
-   !> along the one that is their normal.
-   pure function over_constrained(points, held) result(too_much)
-      type(all_contact_points_type), intent(in) :: points
-      logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
-      logical :: too_much(size(points%slave))      !! (m)
-      logical :: both(2)
-      integer :: k
-
-      do k = 1, size(points%slave)
-         both = on_all_nodes(points, held, k)
-         too_much(k) = any(both) .and. (all(both) .or. &
-            abs(points%normal(merge(2, 1, both(1)), k)) <= least_slant)
-      end do
-   end function over_constrained
-
-   !> Axes along which all nodes whose values a contact point takes are held.
-   pure function on_all_nodes(points, held, k) result(all_held)
-      type(all_contact_points_type), intent(in) :: points
-      logical, intent(in) :: held(:)
-      integer, intent(in) :: k
-      logical :: all_held(2)
-
-      associate (nodes => points%nodes_of(k))
-         all_held = [all(held(2*nodes - 1)), all(held(2*nodes))]
+      if (.not. self%turns()) then
+         nodes = self%nodes_of(k)
+         along = self%difference%coefficients_of(k)
+         across = 0.0_dp*along
+         return
+      end if
+      associate (straight => self%along%values_of(k), turned => self%across%values_of(k))
+         nodes = [straight, pack(turned, [(all(straight /= turned(i)), i=1, size(turned))])]
+         along = [(sum(self%along%coefficients_of(k), mask=straight == nodes(i)), &
+            i=1, size(nodes))]
+         across = [(sum(self%across%coefficients_of(k), mask=turned == nodes(i)), &
+            i=1, size(nodes))]
       end associate
-      if (.not. points%turns()) return
-      if (size(points%across%values_of(k)) > 0) all_held = all(all_held)
-   end function on_all_nodes
-
-   !> Axes along which both nodes of a contact point are held.
-   pure function on_both_nodes(points, held, k) result(both)
-      type(all_contact_points_type), intent(in) :: points
-      logical, intent(in) :: held(:)
-      integer, intent(in) :: k
-      logical :: both(2)
-
-      both = held(2*points%slave(k) - 1:2*points%slave(k)) .and. &
-         held(2*points%master(k) - 1:2*points%master(k))
-   end function on_both_nodes
-
-   !> Part of the relative normal displacement that supports prescribe.
-   pure function held_approach(points, given) result(approach)
-      type(all_contact_points_type), intent(in) :: points !! all contact points
-      real(dp), intent(in) :: given(:)             !! (2 nodes) prescribed displacements [length]
-      real(dp) :: approach(size(points%slave))     !! (m) [length]
-      real(dp) :: relative(2, size(approach))
-      integer :: axis, k
-
-      approach = 0.0_dp
-      relative = points%relative(given)
-      do k = 1, size(approach)
-         axis = points%held_axis(k)
-         if (axis > 0) approach(k) = points%normal(axis, k)*relative(axis, k)
-      end do
-   end function held_approach
-
-   !> Positions of the slave along the tangents, relative to the master. A contact point held along
-   !> an axis slides only as its supports do: while it is open, the position counts that it would
-   !> have if it closed with the supports where they are.
-   pure function tangential_positions(points, displacement) result(position)
-      type(all_contact_points_type), intent(in) :: points !! all contact points
-      real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
-      real(dp) :: position(size(points%slave))     !! (m) [length]
-      real(dp) :: relative(2, size(position))
-      integer :: axis, k
-
-      relative = points%relative(displacement)
-      do k = 1, size(position)
-         axis = points%held_axis(k)
-         if (axis > 0) relative(3 - axis, k) = (points%initial_gap(k) - points%normal(axis, k)* &
-            relative(axis, k))/points%normal(3 - axis, k)
-         position(k) = dot_product(relative(:, k), points%tangent(:, k))
-      end do
-   end function tangential_positions
+   end subroutine means_of
 
 end module all_contact_points

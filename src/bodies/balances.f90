@@ -3,6 +3,7 @@
 module balances
    use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
    use controls, only: thermal_scheme_type
+   use friction_laws, only: friction_bound
    use kinds, only: dp
    use all_contact_points, only: all_contact_points_type
    implicit none
@@ -114,11 +115,12 @@ contains
       type(scales_type), intent(in) :: scales
       real(dp) :: violation                          !! relative
       real(dp) :: force(2), gap, normal_force, shear_force, slip, cone
-      real(dp) :: relative(2, size(points%slave))
+      real(dp) :: relative(2, size(points%slave)), largest(size(points%slave))
       integer :: c, k, slave_dof, master_dof
 
       violation = 0.0_dp
       relative = points%relative(displacement)
+      largest = points%largest_friction()
       do k = 1, size(points%slave)
          ! A node may be in several contact points: what they leave over goes to each of them.
          force = state%shear_force(k)*points%tangent(:, k) - state%force(k)*points%normal(:, k)
@@ -137,8 +139,10 @@ contains
             scales%length
          normal_force = -dot_product(force, points%normal(:, k))/scales%force
          shear_force = dot_product(force, points%tangent(:, k))/scales%force
-         cone = points%friction(k)*normal_force
+         cone = friction_bound(points%friction(k)%coefficient, largest(k), &
+            normal_force*scales%force)/scales%force
          if (state%contact_state(k) == contact_open) then
+            if (points%removed(k)) gap = 0.0_dp
             violation = max(violation, -gap, abs(normal_force), abs(shear_force))
             cycle
          end if

@@ -1,26 +1,29 @@
-!> Linear constraints of supports, ties and contact points.
+!> Linear constraints of supports, hanging nodes, equations, ties and contact points.
 !>
 !> At a contact point the slave's values are the master's plus its relative values in its own frame:
-!> along normal and tangent; one jump of temperature. Where supports hold both nodes along an axis,
-!> only the other axis has a row: the relative value along the normal is the part of it that the
-!> motion along that axis makes. Contact points that form cycles, as where a block stands in an
-!> inner corner, end with one whose rows follow from those of the others: they become links.
+!> along normal and tangent; one jump of temperature. Where supports hold both nodes along an axis
+!> there is only the row of the normal. Contact points that form cycles, as where a block stands in
+!> an inner corner, end with one whose rows follow from those of the others: they become links.
 !>
 !> Contact points of a cycle that all stick share their friction in a way that statics leaves open,
 !> and their relations depend on each other. They therefore have a small part of the bodies'
 !> compliance.
 module contact_constraints
-   use constraint_elimination, only: constraint_rows_type, eliminate
+   use constraint_elimination, only: eliminate
+   use constraint_rows, only: constraint_rows_type
+   use equations, only: equation_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use linear_constraints, only: linear_constraints_type, node_stiffness
-   use all_contact_points, only: over_constrained, all_contact_points_type
+   use all_contact_points, only: all_contact_points_type
+   use held_points, only: over_constrained
    use sparse_matrix, only: sparse_matrix_type
+   use sum_lists, only: sum_list_type
    use tie_constraints, only: add_ties, most_rows
    implicit none
    private
    public :: constrain_displacements, constrain_temperatures, in_cycle, stiffness_alone, &
-      cycle_compliance, first_tied
+      cycle_compliance, first_tied, displacement_rows, temperature_rows, equation_of
 
    !> Compliance of a stuck contact point of a cycle, as a part of the bodies' at its nodes.
    real(dp), parameter :: cycle_compliance = 1.0e-8_dp
@@ -42,52 +45,122 @@ contains
       type(linear_constraints_type), intent(out) :: constraints
       type(error_type), allocatable, intent(out) :: error
       type(constraint_rows_type) :: rows
-      integer :: axis, c, k
 
       if (any(over_constrained(points, held))) then
          call set_error(error, status_deck, &
             'a contact pair whose normal motion is prescribed on both nodes')
          return
       end if
-      call begin_rows(held, 2, points, rows)
-      call add_ties(points%ties, held, rows)
-      do k = 1, size(points%slave)
-         rows%on_tail(2*k - 1:2*k) = [.true., points%friction(k) > 0.0_dp]
-         axis = points%held_axis(k)
-         do c = 1, 2
-            if (c == axis) cycle
-            if (axis > 0) then
-               call relate(points, k, c, slave_leads, [1.0_dp/points%normal(c, k)], rows)
-            else
-               call relate(points, k, c, slave_leads, [points%normal(c, k), &
-                  points%tangent(c, k)], rows)
-            end if
-         end do
-      end do
-      call eliminate(rows, reshape(spread(used, 1, 2), [size(held)]), constraints)
+      rows = displacement_rows(held, points, slave_leads)
+      call eliminate(rows, in_use(used, points%equations, .false.), constraints)
    end subroutine constrain_displacements
 
-   !> Constraints of the temperatures; all jumps are on the tail.
+   !> The rows of the displacements.
+   pure function displacement_rows(held, points, slave_leads) result(rows)
+      logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
+      type(all_contact_points_type), intent(in) :: points !! as above
+      logical, intent(in) :: slave_leads(:)         !! (m) as above
+      type(constraint_rows_type) :: rows
+      integer :: k
+
+      call begin_rows(held, 2, points, rows)
+      call add_equations(points%equations, size(points%slave), .false., rows)
+      call add_ties(points%ties, held, rows)
+      do k = 1, size(points%slave)
+         rows%on_tail(2*k - 1:2*k) = [.true., points%friction(k)%coefficient > 0.0_dp]
+         associate (n => points%normal(:, k), t => points%tangent(:, k), &
+            across => abs(points%held_direction([2, 1], k)))
+            if (points%is_held(k)) then
+               call relate(points, k, maxloc(across, dim=1), n, [1.0_dp], slave_leads, rows)
+            else
+               call relate(points, k, 1, [1.0_dp, 0.0_dp], [n(1), t(1)], slave_leads, rows)
+               call relate(points, k, 2, [0.0_dp, 1.0_dp], [n(2), t(2)], slave_leads, rows)
+            end if
+         end associate
+      end do
+   end function displacement_rows
+
+   !> Constraints of the temperatures; all jumps are on the tail, and the nodes of faces on
+   !> which hats are cut.
    pure subroutine constrain_temperatures(used, held, points, slave_leads, constraints)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
       type(all_contact_points_type), intent(in) :: points !! contact points
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(linear_constraints_type), intent(out) :: constraints
+
+      call eliminate(temperature_rows(held, points, slave_leads), &
+         in_use(used, points%equations, .true.), constraints)
+   end subroutine constrain_temperatures
+
+   !> The rows of the temperatures.
+   pure function temperature_rows(held, points, slave_leads) result(rows)
+      logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
+      type(all_contact_points_type), intent(in) :: points !! contact points
+      logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(constraint_rows_type) :: rows
       integer :: k
 
       call begin_rows(held, 1, points, rows)
+      call add_equations(points%equations, size(points%slave), .true., rows)
       call add_ties(points%ties, held, rows)
       rows%on_tail = .true.
+      if (allocated(points%cut_nodes)) then
+         allocate (rows%dof_on_tail(size(held)), source=.false.)
+         rows%dof_on_tail(points%cut_nodes) = .true.
+      end if
       do k = 1, size(points%slave)
          if (all(held(points%nodes_of(k)))) cycle
-         call relate(points, k, 1, slave_leads, [1.0_dp], rows)
+         call relate(points, k, 1, [1.0_dp], [1.0_dp], slave_leads, rows)
       end do
-      call eliminate(rows, used, constraints)
-   end subroutine constrain_temperatures
+   end function temperature_rows
 
-   !> The rows of the supports, u - g = 0.
+   !> Degrees of freedom that elements or equations have.
+   pure function in_use(used, equations, thermal) result(dofs)
+      logical, intent(in) :: used(:)
+      type(equation_type), intent(in) :: equations(:)
+      logical, intent(in) :: thermal
+      logical, allocatable :: dofs(:)
+      integer :: i
+
+      if (thermal) then
+         dofs = used
+      else
+         dofs = reshape(spread(used, 1, 2), [2*size(used)])
+      end if
+      do i = 1, size(equations)
+         if (equations(i)%is_thermal() .eqv. thermal) dofs(equations(i)%places()) = .true.
+      end do
+   end function in_use
+
+   !> Adds the rows of the equations of a field. Their first terms are to be written by the others.
+   pure subroutine add_equations(equations, points, thermal, rows)
+      type(equation_type), intent(in) :: equations(:)
+      integer, intent(in) :: points                 ! number of contact points
+      logical, intent(in) :: thermal
+      type(constraint_rows_type), intent(inout) :: rows
+      integer :: i
+
+      do i = 1, size(equations)
+         if (equations(i)%is_thermal() .neqv. thermal) cycle
+         associate (dofs => equations(i)%places())
+            call rows%add(dofs, equations(i)%coefficient)
+            rows%constraint(rows%count) = rows%dofs + points + i
+            rows%choice(rows%count) = dofs(1)
+         end associate
+      end do
+   end subroutine add_equations
+
+   !> The equation that a constraint is; 0 or less for another one.
+   elemental integer function equation_of(constraint, dofs, points)
+      integer, intent(in) :: constraint             !! as in linear_constraints_type
+      integer, intent(in) :: dofs                   !! number of degrees of freedom
+      integer, intent(in) :: points                 !! number of contact points
+
+      equation_of = constraint - dofs - points
+   end function equation_of
+
+   !> The rows of the supports, u - g = 0, and of the hanging nodes.
    pure subroutine begin_rows(held, components, points, rows)
       logical, intent(in) :: held(:)
       integer, intent(in) :: components
@@ -98,7 +171,8 @@ contains
       rows%components = components
       rows%dofs = size(held)
       introduced = components*size(points%slave)
-      most = count(held) + most_rows(points%ties, components) + introduced
+      most = count(held) + components*points%hanging%count + size(points%equations) + &
+         most_rows(points%ties, components) + introduced
       allocate (rows%on_tail(introduced), rows%constraint(most), rows%choice(most))
       call rows%reserve(most, 2*count(held) + components*(introduced + &
          size(points%difference%value)*merge(2, 1, points%turns())))
@@ -108,36 +182,64 @@ contains
          rows%constraint(rows%count) = dof
          rows%choice(rows%count) = dof
       end do
+      call hang(points%hanging, held, rows)
    end subroutine begin_rows
 
-   !> Adds the row of one component of a contact point: direction*relative - (slave - master) = 0.
-   !> The slave's own node is to be written by the others, or the master's; on faces that do not
-   !> match always the slave's.
-   pure subroutine relate(points, k, component, slave_leads, direction, rows)
+   !> Adds the rows of hanging nodes. Where one is prescribed, so are those of its side: they are in
+   !> one set.
+   pure subroutine hang(hanging, held, rows)
+      type(sum_list_type), intent(in) :: hanging
+      logical, intent(in) :: held(:)
+      type(constraint_rows_type), intent(inout) :: rows
+      integer :: c, i
+
+      do i = 1, hanging%count
+         do c = 1, rows%components
+            associate (dofs => rows%components*(hanging%values_of(i) - 1) + c)
+               if (held(dofs(1))) cycle
+               call rows%add(dofs, hanging%coefficients_of(i))
+               rows%constraint(rows%count) = dofs(1)
+               rows%choice(rows%count) = dofs(1)
+            end associate
+         end do
+      end do
+   end subroutine hang
+
+   !> Adds a row of a contact point, introduced values less direction.(slave - master) = 0. A
+   !> component of the slave's own node is to be written by the others, or of the master's; on faces
+   !> that do not match always of the slave's.
+   pure subroutine relate(points, k, component, direction, introduced, slave_leads, rows)
       type(all_contact_points_type), intent(in) :: points
       integer, intent(in) :: k, component
+      real(dp), intent(in) :: direction(:)          ! (components)
+      real(dp), intent(in) :: introduced(:)         ! factors of its introduced values
       logical, intent(in) :: slave_leads(:)
-      real(dp), intent(in) :: direction(:)
       type(constraint_rows_type), intent(inout) :: rows
       integer, allocatable :: nodes(:), dofs(:)
-      real(dp), allocatable :: share(:)
+      real(dp), allocatable :: along(:), across(:), share(:)
       integer :: i
 
-      nodes = points%nodes_of(k)
-      share = points%difference%coefficients_of(k)
+      if (rows%components == 2) then
+         call points%means_of(k, nodes, along, across)
+      else
+         nodes = points%nodes_of(k)
+         along = points%difference%coefficients_of(k)
+      end if
       if (slave_leads(k) .and. size(nodes) == 2) then
          nodes = nodes([2, 1])
-         share = share([2, 1])
+         along = along([2, 1])
       end if
       dofs = rows%components*(nodes - 1) + component
-      if (rows%components == 2 .and. points%turns()) then
-         dofs = [2*(points%along%values_of(k) - 1) + component, &
-            2*(points%across%values_of(k) - 1) + 3 - component]
-         share = [points%along%coefficients_of(k), &
-            (3 - 2*component)*points%across%coefficients_of(k)]
+      share = direction(component)*along
+      if (rows%components == 2) then
+         associate (other => 3 - component)
+            share = [share + (3 - 2*other)*direction(other)*across, direction(other)*along + &
+               (3 - 2*component)*direction(component)*across]
+            dofs = [dofs, 2*(nodes - 1) + other]
+         end associate
       end if
-      call rows%add([dofs, (rows%dofs + rows%components*(k - 1) + i, i=1, size(direction))], &
-         [-share, direction])
+      call rows%add([dofs, (rows%dofs + rows%components*(k - 1) + i, i=1, size(introduced))], &
+         [-share, introduced])
       rows%constraint(rows%count) = rows%dofs + k
       rows%choice(rows%count) = rows%components*(nodes(1) - 1) + component
    end subroutine relate

@@ -13,7 +13,7 @@ module contact_reduction
 
    !> Part of the bodies' stiffness at its nodes below which a contact point's is rounding.
    real(dp), parameter :: strainless = 1.0e-10_dp
-   public :: contact_system_of
+   public :: contact_system_of, take_laws
 
 contains
 
@@ -32,10 +32,20 @@ contains
          contact%tangent(:) = map%tail_index(map%introduced(2::2))
       end associate
       contact%schur = mechanical%solver%schur
-      contact%friction = points%friction
+      call take_laws(points, contact)
       call set_motions(points, rigid, contact)
       call set_cycles(mechanical, points, contact)
    end function contact_system_of
+
+   !> Takes the laws of a step, of which the reduced bodies know nothing but where friction acts.
+   pure subroutine take_laws(points, contact)
+      type(all_contact_points_type), intent(in) :: points  !! all contact points, in the step
+      type(contact_system_type), intent(inout) :: contact  !! reduced for its frictions
+
+      contact%friction = points%friction%coefficient
+      contact%largest_shear = points%largest_friction()
+      contact%removed = points%removed
+   end subroutine take_laws
 
    !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
    !> force; what S makes of them is rounding, and is taken from it.

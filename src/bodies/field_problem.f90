@@ -77,6 +77,10 @@ contains
       load%given = given
       supported = self%map%supported(given)
       allocate (load%rhs(self%map%equations, 1))
+      if (.not. any(abs(supported) > 0.0_dp)) then
+         load%rhs(:, 1) = self%map%load(forces, given)
+         return
+      end if
       load%rhs(:, 1) = self%map%load(forces - self%matrix%multiply(supported), given)
       if (allocated(self%added%value)) load%rhs(:, 1) = load%rhs(:, 1) - &
          self%map%restrict(self%added%multiply(supported))

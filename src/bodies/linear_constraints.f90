@@ -17,7 +17,8 @@
 !> constraint_elimination makes these matrices from rows of any origin.
 module linear_constraints
    use kinds, only: dp
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
+   use sparse_products, only: congruent
    use sum_lists, only: sum_list_type
    implicit none
    private
@@ -166,41 +167,22 @@ contains
       class(linear_constraints_type), intent(in) :: self
       type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, dofs) K, symmetric, both triangles
       type(sparse_matrix_type) :: lower               !! (equations, equations) by rows
-      type(triplet_list_type) :: list
-      integer :: i, j, k, s, t, pass, entries
 
-      entries = 0
       associate (by => self%by_unknowns)
-         do pass = 1, 2
-            if (pass == 2) call list%reserve(entries + size(self%link_unknowns%value))
-            do i = 1, matrix%row_count
-               do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
-                  j = matrix%column(k)
-                  do s = by%start(i), by%start(i + 1) - 1
-                     do t = by%start(j), by%start(j + 1) - 1
-                        if (by%value(t) > by%value(s)) cycle
-                        if (pass == 1) then
-                           entries = entries + 1
-                        else
-                           call list%add(by%value(s), by%value(t), &
-                              by%coefficient(s)*by%coefficient(t)*matrix%value(k))
-                        end if
-                     end do
-                  end do
-               end do
-            end do
-         end do
+         lower = congruent(matrix, sparse_matrix_type(by%count, self%equations, &
+            by%start(:by%count + 1), by%value, by%coefficient))
       end associate
-      call add_links(self, list)
-      lower = list%compress(self%equations, self%equations)
+      if (size(self%link_force) > 0) lower = linear_combination(1.0_dp, lower, 1.0_dp, links(self))
    end function transform
 
-   !> Adds the links to the lower triangle of the matrix on the unknowns.
-   pure subroutine add_links(self, list)
-      type(linear_constraints_type), intent(in) :: self
-      type(triplet_list_type), intent(inout) :: list
+   !> The links in the lower triangle of the matrix on the unknowns.
+   pure function links(self) result(lower)
+      class(linear_constraints_type), intent(in) :: self
+      type(sparse_matrix_type) :: lower               ! (equations, equations)
+      type(triplet_list_type) :: list
       integer :: i, k
 
+      call list%reserve(size(self%link_unknowns%value))
       do i = 1, size(self%link_force)
          associate (rows => self%link_unknowns, force => self%link_force(i))
             do k = rows%start(i), rows%start(i + 1) - 1
@@ -209,7 +191,8 @@ contains
             end do
          end associate
       end do
-   end subroutine add_links
+      lower = list%compress(self%equations, self%equations)
+   end function links
 
    !> Position of an unknown on the tail, 0 where it is not there.
    elemental function tail_index(self, unknown) result(position)

@@ -4,6 +4,7 @@ module loads
    use kinds, only: dp
    use load_histories, only: load_history_type, step_clock_type
    use load_integrals, only: film_side, unit_forces, unit_heat
+   use all_contact_points, only: all_contact_points_type
    use load_locations, only: entries_of, find_locations, load_locations_type
    use mesh, only: mesh_type
    use model, only: model_type
@@ -30,6 +31,9 @@ module loads
       type(load_history_type) :: displacement  !! (2 nodes) prescribed displacements [length]
       type(load_history_type) :: temperature   !! (nodes) prescribed temperatures [temperature]
       type(load_history_type) :: applied       !! (locations) loads, each in the unit of its kind
+      !> (interfaces) overlaps that are allowed, or factors of the initial ones [length or -]
+      type(load_history_type) :: interference
+      logical, allocatable :: shrinks(:)       !! (interfaces) which of the two
       type(load_locations_type) :: locations   !! (locations) what they act on
       !> (2 nodes, locations) nodal forces of unit loads [force per unit of the load]
       type(sparse_matrix_type) :: unit_forces
@@ -43,6 +47,7 @@ module loads
       procedure :: begin_step
       procedure :: move_to
       procedure :: nodal_forces
+      procedure :: present_gaps
       procedure :: heat_load
       procedure :: film_matrix
       procedure :: card_heat
@@ -63,6 +68,8 @@ contains
       allocate (zero(2*size(model%mesh%node_number)), source=0.0_dp)
       call self%displacement%prepare(zero, model%amplitudes)
       call hold_axis(model%mesh, self%displacement)
+      call self%interference%prepare(spread(0.0_dp, 1, size(model%contacts)), model%amplitudes)
+      allocate (self%shrinks(size(model%contacts)), source=.false.)
       call self%temperature%prepare(model%initial_temperature, model%amplitudes)
       self%locations = find_locations(model%steps)
       call self%applied%prepare(values_at(self%locations, model%initial_temperature), &
@@ -194,7 +201,33 @@ contains
          end associate
       end do
       call apply_step(self, step)
+      call begin_interferences(self, step)
    end subroutine begin_step
+
+   !> Gives the interferences of a step. Without an amplitude they act whole at once, and go down to
+   !> zero over the step.
+   pure subroutine begin_interferences(self, step)
+      class(loads_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer :: i
+
+      call self%interference%begin_step(0.0_dp*self%interference%value)
+      if (step%changes%ends_interferences) then
+         do i = 1, size(self%shrinks)
+            call self%interference%remove(i)
+         end do
+      end if
+      if (.not. allocated(step%changes%interferences)) return
+      do i = 1, size(step%changes%interferences)
+         associate (given => step%changes%interferences(i))
+            self%shrinks(given%contact) = given%shrinks
+            call self%interference%give(given%contact, given%value, given%amplitude, 0)
+            if (given%amplitude > 0) cycle
+            self%interference%start(given%contact) = given%value
+            self%interference%target(given%contact) = 0.0_dp
+         end associate
+      end do
+   end subroutine begin_interferences
 
    !> Gives the loads of a step; on their locations, and of the kinds that OP=NEW ends, nothing
    !> stays.
@@ -233,10 +266,14 @@ contains
       class(loads_type), intent(inout) :: self
       type(step_clock_type), intent(in) :: clock  !! the instant
       type(model_type), intent(in) :: model
+      type(step_clock_type) :: ramped
 
       call self%displacement%move_to(clock, model%amplitudes)
       call self%temperature%move_to(clock, model%amplitudes)
       call self%applied%move_to(clock, model%amplitudes)
+      ramped = clock
+      ramped%ramped = .true.
+      call self%interference%move_to(ramped, model%amplitudes)
    end subroutine move_to
 
    !> Present strength of every load; a film counts by its coefficient times its sink.
@@ -257,6 +294,23 @@ contains
 
       forces = self%unit_forces%multiply(strength(self))
    end function nodal_forces
+
+   !> Initial gaps of the contact points, counted from the overlaps that are allowed at present.
+   pure function present_gaps(self, points) result(gap)
+      class(loads_type), intent(in) :: self
+      type(all_contact_points_type), intent(in) :: points  !! all contact points
+      real(dp) :: gap(size(points%initial_gap))            !! (m) h [length]
+      integer :: i, k
+
+      gap = points%initial_gap
+      do i = 1, size(self%shrinks)
+         if (.not. self%interference%active(i)) cycle
+         do k = points%interface_start(i), points%interface_start(i + 1) - 1
+            gap(k) = gap(k) + self%interference%value(i)*merge(max(-points%initial_gap(k), &
+               0.0_dp), 1.0_dp, self%shrinks(i))
+         end do
+      end do
+   end function present_gaps
 
    !> Nodal heat of sources and fluxes, and of films with the bodies at temperature zero: Q of
    !> (3.3).

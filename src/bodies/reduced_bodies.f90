@@ -1,11 +1,12 @@
 !> The bodies reduced once to their contact unknowns: everything that the fixed-point iteration
 !> needs, on the contact points alone.
 module reduced_bodies
-   use contact_constraints, only: constrain_displacements, constrain_temperatures, first_tied, &
+   use contact_constraints, only: constrain_displacements, constrain_temperatures, &
       in_cycle, stiffness_alone
    use contact_points, only: contact_points_type
    use contact_reduction, only: contact_system_of
    use contact_system, only: contact_system_type
+   use constraint_joints, only: joints_of
    use element_kinds, only: element_node_count
    use errors, only: error_type, set_error, status_deck
    use field_problem, only: field_problem_type
@@ -13,14 +14,13 @@ module reduced_bodies
    use unconstrained_motions, only: balanced_load
    use mesh, only: extent_of
    use model, only: model_type
-   use all_contact_points, only: find_held_axes, all_contact_points_type, match_surfaces, &
-      match_tie, joined_points
+   use all_contact_points, only: all_contact_points_type, joined_points, match_surfaces, match_tie
+   use held_points, only: find_held_directions
    use rigid_motions, only: unsupported_motions
    use sparse_matrix, only: sparse_matrix_type
-   use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
+   use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
    use text, only: to_text
    use thermal_matrix, only: assemble_conduction
-   use tie_constraints, only: joints_of
    use unconstrained_bodies, only: undetermined_beside
    implicit none
    private
@@ -38,6 +38,7 @@ module reduced_bodies
       type(field_problem_type) :: thermal                     !! heat, (3.3)
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
+      real(dp), allocatable :: initial_force(:)               !! (2 nodes) of stresses, or none
       type(contact_system_type) :: contact                    !! the partial solution of (2.4)
       real(dp), allocatable :: initial_temperature(:)         !! (nodes) [temperature]
       real(dp) :: largest_expansion = 0.0_dp !! of all bodies [1/temperature]
@@ -45,6 +46,8 @@ module reduced_bodies
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       !> (mechanical tail, thermal tail) condensed mechanical load per jump; formed where coupled.
       real(dp), allocatable :: jump_load(:, :)
+      !> (m, thermal tail) mean temperature of the faces per jump; formed where laws vary with it
+      real(dp), allocatable :: jump_mean(:, :)
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
    contains
       procedure :: prepare
@@ -99,38 +102,18 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (mechanics) then
-         call find_held_axes(self%points, held)
-         call unsupported_motions(model%mesh, held, joints_of(self%points%ties), self%rigid)
+         call find_held_directions(self%points, held)
+         call unsupported_motions(model%mesh, held, [joints_of(self%points%ties), &
+            joints_of(self%points%equations)], self%rigid)
       end if
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) call constrain_displacements(used, held, points, &
             slave_is_stiffer(model, points, .true.), self%mechanical%map, error)
-         if (mechanics .and. .not. allocated(error)) call check_tied(self, model, error)
          if (allocated(error) .or. .not. heat) return
          call constrain_temperatures(used, held_temperature, points, &
             slave_is_stiffer(model, points, .false.), self%thermal%map)
       end associate
    end subroutine number
-
-   !> Refuses a contact point whose relative motion ties and supports prescribe.
-   subroutine check_tied(self, model, error)
-      type(reduced_bodies_type), intent(in) :: self
-      type(model_type), intent(in) :: model
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i, k
-
-      if (size(model%ties) == 0) return
-      k = first_tied(self%mechanical%map, self%points)
-      if (k == 0) return
-      i = count(self%points%interface_start <= k)
-      associate (number => model%mesh%node_number)
-         call set_error(error, status_deck, model%contacts(i)%title()//': ties and supports '// &
-            'prescribe how slave node '//to_text(number(self%points%slave(k)))// &
-            ' moves against master node '//to_text(number(self%points%master(k)))// &
-            ' along an axis; give *BOUNDARY at both nodes where supports behind the tie do, or '// &
-            'leave the faces out of the *TIE or of the *CONTACT PAIR', model%contacts(i)%card)
-      end associate
-   end subroutine check_tied
 
    !> Whether the slave's body is far stiffer, or conducts far better, than the master's. A soft
    !> body is to be written by the stiff one: the other way round its stiffness would be left over
@@ -198,6 +181,8 @@ contains
          self%jump_index = map%tail_index(map%introduced)
       end associate
       if (allocated(self%jump_load)) deallocate (self%jump_load)
+      if (allocated(self%jump_mean)) deallocate (self%jump_mean)
+      if (self%points%vary_with_temperature()) call form_jump_mean(self)
       if (self%is_coupled) call form_jump_load(self)
    end subroutine reduce_heat
 
@@ -255,6 +240,8 @@ contains
 
       if (with_mechanics) self%mechanical%matrix = assemble_stiffness(model%mesh, &
          model%sections, model%materials, model%orientations)
+      if (with_mechanics .and. allocated(model%mesh%initial_stress)) self%initial_force = &
+         assemble_initial_force(model%mesh, model%sections)
       if (with_strain) self%thermal_load = assemble_thermal_load(model%mesh, model%sections, &
          model%materials, model%orientations)
       if (with_heat) self%thermal%matrix = assemble_conduction(model%mesh, model%sections, &
@@ -284,17 +271,37 @@ contains
       end do
    end subroutine form_jump_load
 
+   !> Mean temperature of the faces at all contact points, of a unit jump at each.
+   subroutine form_jump_mean(self)
+      class(reduced_bodies_type), intent(inout) :: self
+      real(dp), allocatable :: temperature(:, :)
+      integer :: first, k, last, tail
+
+      tail = self%thermal%map%tail
+      allocate (self%jump_mean(size(self%points%slave), tail))
+      do first = 1, tail, columns_at_once
+         last = min(first + columns_at_once - 1, tail)
+         allocate (temperature(self%thermal%matrix%row_count, last - first + 1))
+         call self%thermal%unit_responses(first, temperature)
+         do k = first, last
+            self%jump_mean(:, k) = self%points%means(temperature(:, k - first + 1))
+         end do
+         deallocate (temperature)
+      end do
+      ! Forces of links, which are unknowns of the tail too, act on jumps only.
+      do k = 1, tail
+         if (.not. any(self%jump_index == k)) self%jump_mean(:, k) = 0.0_dp
+      end do
+   end subroutine form_jump_mean
+
    !> Condensed mechanical loads of fields of temperature.
    subroutine condense_thermal_load(self, temperature, condensed)
       class(reduced_bodies_type), intent(in) :: self
       real(dp), intent(in) :: temperature(:, :) !! (nodes, columns) over the natural state
       real(dp), intent(out) :: condensed(:, :)               !! (mechanical tail, columns)
       real(dp) :: forces(self%thermal_load%row_count, size(temperature, 2))
-      integer :: k
 
-      do k = 1, size(temperature, 2)
-         forces(:, k) = self%thermal_load%multiply(temperature(:, k))
-      end do
+      call self%thermal_load%multiply_columns(temperature, forces)
       call self%mechanical%condense_forces(forces, condensed)
    end subroutine condense_thermal_load
 

@@ -3,9 +3,10 @@
 !> A body of a plane model shifts along x and y and turns about the middle of its nodes; one of an
 !> axisymmetric model shifts along the axis y. Every support and every direction in which a contact
 !> point holds is one linear condition on these few unknowns; the motions that are free span the
-!> null space of all conditions. It comes from a singular value decomposition and is brought to
-!> echelon form, so that a motion names as few bodies as possible. Turns count by the displacement
-!> that they give at the farthest node of the body.
+!> null space of all conditions. Nodes of no body that joints take move by themselves. That space
+!> comes from a singular value decomposition and is brought to echelon form, so that a motion names
+!> as few bodies as possible. Turns count by the displacement that they give at the farthest node of
+!> the body.
 module rigid_motions
    use bodies, only: bodies_on_axis
    use dense, only: null_space
@@ -27,7 +28,8 @@ module rigid_motions
 
    !> A motion that nothing hinders.
    type :: free_motion_type
-      integer :: body = 0                       !! the first body that moves
+      integer :: body = 0                       !! the first body that moves; 0 for a node of none
+      integer :: node = 0                       !! the first node of no body that moves
       logical :: turns = .false.                !! it turns; else it moves on a line
       character(:), allocatable :: way          !! such as 'along x' or 'about (1, 2)'
       character(:), allocatable :: company      !! other bodies that move with it, or empty
@@ -37,6 +39,7 @@ module rigid_motions
    type :: rigid_bodies_type
       real(dp), allocatable :: middle(:, :)     !! (2, bodies) mean of the nodes [length]
       real(dp), allocatable :: extent(:)        !! (bodies) distance of the farthest node [length]
+      integer, allocatable :: lone(:) !! degrees of freedom, of no body, that joints take
    end type rigid_bodies_type
 
 contains
@@ -51,11 +54,12 @@ contains
       real(dp), allocatable :: basis(:, :)
       integer :: i
 
-      bodies = measure(mesh)
+      bodies = measure(mesh, joints)
       basis = free_basis(mesh, bodies, held, joints)
       allocate (motions(size(basis, 2)))
       do i = 1, size(motions)
-         motions(i) = motion_of(bodies, reshape(basis(:, i), [3, mesh%body_count]))
+         motions(i) = motion_of(bodies, reshape(basis(:, i), [3, mesh%body_count]), &
+            basis(3*mesh%body_count + 1:, i))
       end do
    end subroutine find_free_motions
 
@@ -70,7 +74,7 @@ contains
       real(dp), allocatable :: basis(:, :)
       integer :: c, node
 
-      bodies = measure(mesh)
+      bodies = measure(mesh, joints)
       basis = free_basis(mesh, bodies, held, joints)
       allocate (fields(size(held), size(basis, 2)), source=0.0_dp)
       do node = 1, size(mesh%node_body)
@@ -91,7 +95,8 @@ contains
       type(rigid_bodies_type), intent(in) :: bodies
       logical, intent(in) :: held(:)
       type(joint_type), intent(in) :: joints(:)
-      real(dp), allocatable :: basis(:, :)           !! (3 bodies, motions)
+      !> (3 bodies + degrees of freedom of no body, motions)
+      real(dp), allocatable :: basis(:, :)
       integer :: column, i, k, pivot
 
       basis = null_space(conditions(mesh, bodies, held, joints))
@@ -116,7 +121,7 @@ contains
       logical, intent(in) :: held(:)
       type(joint_type), intent(in) :: joints(:)
       real(dp) :: rows(count(held) + size(joints) + 2*count(bodies_on_axis(mesh)), &
-         3*mesh%body_count)
+         3*mesh%body_count + size(bodies%lone))
       logical :: on_axis(mesh%body_count)
       integer :: body, c, i, k, n, node
 
@@ -145,16 +150,20 @@ contains
       end do
    end function conditions
 
-   !> Displacement of a node along a direction by the rigid motions; none of a node of no body.
+   !> Displacement of a node along a direction by the rigid motions; a node of no body has its own.
    pure function displacement_row(mesh, bodies, node, direction) result(row)
       type(mesh_type), intent(in) :: mesh
       type(rigid_bodies_type), intent(in) :: bodies
       integer, intent(in) :: node
       real(dp), intent(in) :: direction(2)
-      real(dp) :: row(3*mesh%body_count)
+      real(dp) :: row(3*mesh%body_count + size(bodies%lone))
 
       row = 0.0_dp
-      if (mesh%node_body(node) == 0) return
+      if (mesh%node_body(node) == 0) then
+         where ((bodies%lone + 1)/2 == node) row(3*mesh%body_count + 1:) = &
+            direction(2 - modulo(bodies%lone, 2))
+         return
+      end if
       associate (b => mesh%node_body(node))
          row(3*b - 2:3*b) = at_point(bodies, b, mesh%coordinates(:, node), direction)
       end associate
@@ -172,11 +181,13 @@ contains
       displacement = [direction, direction(2)*arm(1) - direction(1)*arm(2)]
    end function at_point
 
-   pure function measure(mesh) result(bodies)
+   pure function measure(mesh, joints) result(bodies)
       type(mesh_type), intent(in) :: mesh
+      type(joint_type), intent(in) :: joints(:)
       type(rigid_bodies_type) :: bodies
       integer :: nodes(mesh%body_count), node
 
+      bodies%lone = lone_dofs(mesh, joints)
       allocate (bodies%middle(2, size(nodes)), bodies%extent(size(nodes)), source=0.0_dp)
       nodes = 0
       do node = 1, size(mesh%node_body)
@@ -196,16 +207,45 @@ contains
       end do
    end function measure
 
+   !> Degrees of freedom of no body that joints take, each once.
+   pure function lone_dofs(mesh, joints) result(dofs)
+      type(mesh_type), intent(in) :: mesh
+      type(joint_type), intent(in) :: joints(:)
+      integer, allocatable :: dofs(:)
+      integer :: c, i, k
+
+      allocate (dofs(0))
+      do i = 1, size(joints)
+         do k = 1, size(joints(i)%nodes)
+            associate (node => joints(i)%nodes(k))
+               if (mesh%node_body(node) > 0) cycle
+               do c = 1, 2
+                  if (abs(joints(i)%share(c, k)) <= 0.0_dp) cycle
+                  if (all(dofs /= 2*(node - 1) + c)) dofs = [dofs, 2*(node - 1) + c]
+               end do
+            end associate
+         end do
+      end do
+   end function lone_dofs
+
    !> A motion in words.
-   pure function motion_of(bodies, vector) result(motion)
+   pure function motion_of(bodies, vector, lone) result(motion)
       type(rigid_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: vector(:, :)   !! (3, bodies) shifts, turn times extent
+      real(dp), intent(in) :: lone(:)        !! values of the degrees of freedom of no body
       type(free_motion_type) :: motion
       character(:), allocatable :: way
       logical :: turns
       integer :: b
 
       motion%company = ''
+      if (maxval(abs(vector)) <= nothing*maxval(abs([vector, lone]))) then
+         associate (dof => bodies%lone(maxloc(abs(lone), dim=1)))
+            motion%node = (dof + 1)/2
+            motion%way = 'along '//merge('x', 'y', modulo(dof, 2) == 1)
+         end associate
+         return
+      end if
       do b = 1, size(vector, 2)
          if (maxval(abs(vector(:, b))) <= nothing*maxval(abs(vector))) cycle
          call describe(vector(:, b), bodies%middle(:, b), bodies%extent(b), turns, way)

@@ -50,7 +50,7 @@ contains
       call map%condition_given%add_totals(given, left)
       do i = 1, size(left)
          associate (dofs => map%condition_given%values_of(i))
-            if (size(dofs) == 0) cycle
+            if (size(dofs) == 0 .or. map%condition(i) > 0) cycle
             if (abs(left(i)) <= agreed*maxval(abs(given(dofs)))) cycle
             call blame(model, bodies, map, i, left(i), error)
             return

@@ -6,13 +6,13 @@
 !> of its own; its hat function goes to its neighbour's (Bernardi, Maday and Patera's multipliers,
 !> constant on the last side).
 module tie_constraints
-   use constraint_elimination, only: constraint_rows_type
+   use constraint_rows, only: constraint_rows_type
    use kinds, only: dp
-   use rigid_motions, only: joint_type
+   use sum_lists, only: add_terms
    use tie_points, only: tie_points_type
    implicit none
    private
-   public :: add_ties, most_rows, joints_of, tie_point_of
+   public :: add_ties, most_rows, tie_point_of
 
 contains
 
@@ -105,7 +105,7 @@ contains
       type(constraint_rows_type), intent(inout) :: rows
       integer, allocatable :: nodes(:)
       real(dp), allocatable :: share(:)
-      integer :: i, j, other
+      integer :: other
 
       nodes = ties%difference%values_of(k)
       share = ties%difference%coefficients_of(k)
@@ -114,15 +114,7 @@ contains
          if (owner(other) /= k .or. other == k) cycle
          associate (more => ties%difference%values_of(other), &
             part => ties%weight(other)*ties%difference%coefficients_of(other))
-            do j = 1, size(more)
-               i = findloc(nodes, more(j), dim=1)
-               if (i > 0) then
-                  share(i) = share(i) + part(j)
-               else
-                  nodes = [nodes, more(j)]
-                  share = [share, part(j)]
-               end if
-            end do
+            call add_terms(more, part, nodes, share)
          end associate
       end do
       if (count(owner == k) > 1) share = share/sum(ties%weight, mask=owner == k)
@@ -148,23 +140,5 @@ contains
 
       tie_point_of = -constraint
    end function tie_point_of
-
-   !> What ties hold, for rigid motions.
-   pure function joints_of(ties) result(joints)
-      type(tie_points_type), intent(in) :: ties
-      type(joint_type), allocatable :: joints(:)    !! (2 n) along x and y
-      integer :: c, k
-
-      allocate (joints(2*ties%difference%count))
-      do k = 1, ties%difference%count
-         do c = 1, 2
-            associate (joint => joints(2*(k - 1) + c))
-               joint%nodes = ties%difference%values_of(k)
-               allocate (joint%share(2, size(joint%nodes)), source=0.0_dp)
-               joint%share(c, :) = ties%difference%coefficients_of(k)
-            end associate
-         end do
-      end do
-   end function joints_of
 
 end module tie_constraints

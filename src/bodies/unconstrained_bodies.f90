@@ -2,23 +2,26 @@
 !> determines, in words: for a whole step, whatever its contact does, and at an instant of it.
 module unconstrained_bodies
    use conductance_laws, only: law_none
+   use constraint_joints, only: joints_of
    use contact_states, only: contact_open, contact_slip, contact_stick
+   use dense, only: null_space
    use kinds, only: dp
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type
    use rigid_motions, only: find_free_motions, free_motion_type, joint_type
    use steps, only: load_film_coefficient
    use text, only: append, string_type, to_text
-   use tie_constraints, only: joints_of
    implicit none
    private
    public :: unconstrained_in_step, unconstrained_now
    public :: undetermined_in_step, undetermined_now, undetermined_beside
 
+   real(dp), parameter :: negligible = 1.0e-6_dp    !! part of a body in a free temperature
+
 contains
 
-   !> Bodies that neither supports nor contact could ever constrain: all contact points count as
-   !> closed, those with friction as stuck. One message a motion.
+   !> Bodies that neither supports nor contact could ever constrain: all contact points that are not
+   !> removed count as closed, those with friction as stuck. One message a motion.
    subroutine unconstrained_in_step(model, points, held, messages)
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points !! all contact points
@@ -28,10 +31,11 @@ contains
       integer :: i
 
       call free_motions(model, points, held, &
-         merge(contact_stick, contact_slip, points%friction > 0.0_dp), motions)
+         merge(contact_open, merge(contact_stick, contact_slip, points%has_friction()), &
+         points%removed), motions)
       allocate (messages(0))
       do i = 1, size(motions)
-         call append(messages, body_name(model, motions(i)%body)//' can '// &
+         call append(messages, mover(model, motions(i))//' can '// &
             trim(merge('turn', 'move', motions(i)%turns))//' '//motions(i)%way// &
             motions(i)%company//': no *BOUNDARY and no contact holds it')
       end do
@@ -51,15 +55,15 @@ contains
 
       call free_motions(model, points, held, contact_state, motions)
       stuck = merge(contact_stick, contact_state, contact_state == contact_slip .and. &
-         points%friction > 0.0_dp)
+         points%has_friction())
       call free_motions(model, points, held, stuck, welded)
       words = ''
       last = 0
       do i = 1, size(motions)
-         if (motions(i)%body == last) then
+         if (motions(i)%body == last .and. last > 0) then
             words = words//', '
          else
-            words = words//'; '//body_name(model, motions(i)%body)//' '
+            words = words//'; '//mover(model, motions(i))//' '
          end if
          last = motions(i)%body
          if (motions(i)%turns) then
@@ -90,7 +94,8 @@ contains
          n = n + 1
          joints(n) = joint_of(points, k, points%tangent(:, k))
       end do
-      call find_free_motions(model%mesh, held, [joints(:n), joints_of(points%ties)], motions)
+      call find_free_motions(model%mesh, held, [joints(:n), joints_of(points%ties), &
+         joints_of(points%equations)], motions)
    end subroutine free_motions
 
    !> What a contact point holds along a direction.
@@ -132,7 +137,7 @@ contains
       type(string_type), allocatable, intent(out) :: messages(:)
       integer :: i
 
-      call find_undetermined(model, points, with_source(model, held, step), &
+      call find_undetermined(model, points, with_source(model, held, step), held, &
          points%law%open_kind /= law_none .or. points%law%closed_kind /= law_none, messages)
       do i = 1, size(messages)
          messages(i)%value = messages(i)%value//': no *BOUNDARY on dof 11, no *FILM and no '// &
@@ -151,7 +156,8 @@ contains
       character(:), allocatable :: words
       type(string_type), allocatable :: messages(:)
 
-      call find_undetermined(model, points, with_source(model, held, step), conducts, messages)
+      call find_undetermined(model, points, with_source(model, held, step), held, conducts, &
+         messages)
       words = joined(messages, ': all its contact points have conductance 0')
    end function undetermined_now
 
@@ -167,8 +173,8 @@ contains
 
       has_source = .false.
       has_source(pack(model%mesh%node_body, determined .and. model%mesh%node_body > 0)) = .true.
-      call find_undetermined(model, points, has_source, spread(.true., 1, size(points%slave)), &
-         messages)
+      call find_undetermined(model, points, has_source, determined, &
+         spread(.true., 1, size(points%slave)), messages)
       words = joined(messages, '')
    end function undetermined_beside
 
@@ -186,43 +192,97 @@ contains
       end do
    end function joined
 
-   !> Bodies without a source of heat from which no way over conducting contact points and ties
-   !> leads to one that has.
-   subroutine find_undetermined(model, points, has_source, conducts, messages)
+   !> Bodies whose temperature, uniform in each, is left free by the sources of heat, by conducting
+   !> contact points and ties, which make that of two bodies equal, and by the equations.
+   subroutine find_undetermined(model, points, has_source, held, conducts, messages)
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points
-      logical, intent(in) :: has_source(:)
+      logical, intent(in) :: has_source(:)          ! (bodies)
+      logical, intent(in) :: held(:)                ! (nodes) prescribed temperatures
       logical, intent(in) :: conducts(:)
       type(string_type), allocatable, intent(out) :: messages(:)
-      logical :: reached(size(has_source))
-      logical :: spreads
-      integer, allocatable :: slave(:), master(:)
-      integer :: body, k
+      logical :: joined(0:size(has_source), 0:size(has_source))
+      real(dp), allocatable :: rows(:, :), free(:, :)
+      integer :: body, i, k, other
 
-      reached = has_source
-      slave = pack(points%slave, conducts)
-      master = pack(points%master, conducts)
+      joined = .false.
+      do k = 1, size(conducts)
+         if (conducts(k)) call join(points%slave(k), points%master(k))
+      end do
       if (allocated(points%ties%slave)) then
-         slave = [slave, points%ties%slave]
-         master = [master, points%ties%master]
+         do k = 1, size(points%ties%slave)
+            call join(points%ties%slave(k), points%ties%master(k))
+         end do
       end if
-      spreads = .true.
-      do while (spreads)
-         spreads = .false.
-         do k = 1, size(slave)
-            associate (bodies => model%mesh%node_body([slave(k), master(k)]))
-               if (reached(bodies(1)) .eqv. reached(bodies(2))) cycle
-               reached(bodies) = .true.
-               spreads = .true.
+      rows = equation_rows(model, points, held)
+      do body = 1, size(has_source)
+         if (has_source(body)) call add_row(body, 0)
+         do other = 1, body - 1
+            if (joined(body, other)) call add_row(body, other)
+         end do
+      end do
+      free = null_space(transpose(rows))
+      allocate (messages(0))
+      do body = 1, size(has_source)
+         if (any(abs(free(body, :)) > negligible)) call append(messages, 'the temperature of '// &
+            body_name(model, body)//' is undetermined')
+      end do
+
+   contains
+      subroutine join(slave, master)
+         integer, intent(in) :: slave, master
+
+         associate (b => model%mesh%node_body([slave, master]))
+            joined(maxval(b), minval(b)) = maxval(b) > minval(b)
+         end associate
+      end subroutine join
+
+      subroutine add_row(first, second)
+         integer, intent(in) :: first, second
+
+         rows = reshape(rows, [size(rows, 1), size(rows, 2) + 1], pad=[0.0_dp])
+         i = size(rows, 2)
+         rows(first, i) = 1.0_dp
+         if (second > 0) rows(second, i) = -1.0_dp
+      end subroutine add_row
+   end subroutine find_undetermined
+
+   !> What the equations say of the temperatures of the bodies and, behind them, of the nodes of no
+   !> body that they name, a column each.
+   pure function equation_rows(model, points, held) result(rows)
+      type(model_type), intent(in) :: model
+      type(all_contact_points_type), intent(in) :: points
+      logical, intent(in) :: held(:)
+      real(dp), allocatable :: rows(:, :)
+      integer :: lone(size(held)), e, i, k, n
+
+      lone = 0
+      n = 0
+      do e = 1, size(points%equations)
+         if (.not. points%equations(e)%is_thermal()) cycle
+         n = n + 1
+         lone(points%equations(e)%node) = 1
+      end do
+      where (model%mesh%node_body > 0 .or. held) lone = 0
+      k = model%mesh%body_count
+      do i = 1, size(lone)
+         if (lone(i) == 0) cycle
+         k = k + 1
+         lone(i) = k
+      end do
+      allocate (rows(k, n), source=0.0_dp)
+      n = 0
+      do e = 1, size(points%equations)
+         if (.not. points%equations(e)%is_thermal()) cycle
+         n = n + 1
+         do i = 1, size(points%equations(e)%node)
+            associate (node => points%equations(e)%node(i))
+               k = max(model%mesh%node_body(node), lone(node))
+               if (k > 0) rows(k, n) = rows(k, n) + points%equations(e)%coefficient(i)
             end associate
          end do
       end do
-      allocate (messages(0))
-      do body = 1, size(reached)
-         if (.not. reached(body)) call append(messages, 'the temperature of '// &
-            body_name(model, body)//' is undetermined')
-      end do
-   end subroutine find_undetermined
+   end function equation_rows
 
    !> Bodies with a prescribed temperature, or with a film in a step: its own ones and those of the
    !> steps before that it keeps.
@@ -246,6 +306,19 @@ contains
       end do
       source(pack(model%mesh%node_body, held .and. model%mesh%node_body > 0)) = .true.
    end function with_source
+
+   !> What moves, in words.
+   function mover(model, motion) result(name)
+      type(model_type), intent(in) :: model
+      type(free_motion_type), intent(in) :: motion
+      character(:), allocatable :: name
+
+      if (motion%body > 0) then
+         name = body_name(model, motion%body)
+      else
+         name = 'node '//to_text(model%mesh%node_number(motion%node))//' of an equation'
+      end if
+   end function mover
 
    !> How a body is named to the user, such as 'body 2 (of STEEL, first node 38)'.
    function body_name(model, body) result(name)

@@ -15,6 +15,7 @@ module active_set
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use friction, only: next_contact_state, response_type, rounding_type
+   use friction_laws, only: friction_law_type
    use idle_points, only: find_idle_points
    use kinds, only: dp
    use lemke_path, only: follow_lemke_path
@@ -228,10 +229,13 @@ contains
       rounding%force = force_rounding(system, load, work, state)
       next(1, :) = state%contact_state
       next(2, :) = state%direction
+      excess = 0.0_dp
       do k = 1, size(state%contact_state)
+         if (system%removed(k)) cycle
          response = response_type(state%gap(k), state%force(k), state%shear_force(k), &
             work%slip(system, state, k))
-         call next_contact_state(next(1, k), next(2, k), response, system%friction(k), &
+         call next_contact_state(next(1, k), next(2, k), response, &
+            friction_law_type(system%friction(k), work%largest_shear(k)), &
             system%tangent(k) > 0, rounding, excess(k))
       end do
    end subroutine judge

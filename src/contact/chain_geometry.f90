@@ -7,8 +7,9 @@ module chain_geometry
    implicit none
    private
    public :: arc_lengths, edge_lengths, tributary_lengths, swept_areas, chain_tangents
-   public :: at_tips, length_between, side_positions, side_total
+   public :: at_tips, length_between, side_positions, side_total, two_pi
 
+   !> Angle of a full turn [rad].
    real(dp), parameter :: two_pi = 6.283185307179586477_dp
    !> Slope of a side at its end, over the chord, that counts as 0. The side turns away from such a
    !> slope within the square of this part of its length.

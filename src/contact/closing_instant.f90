@@ -46,24 +46,27 @@ contains
    !> least one from the start of the increment. The workspace may have laws of an earlier pass; a
    !> pass that fails leaves none.
    !> Error: as solve_contact, or closing laws that do not settle.
-   subroutine solve_increment(system, previous, load, work, state, error)
+   subroutine solve_increment(system, previous, load, work, held, state, error)
       type(contact_system_type), intent(in) :: system     !! the reduced system
       type(contact_state_type), intent(in) :: previous    !! state at the start of the increment
       real(dp), intent(in) :: load(:)                     !! (tail) condensed load [force]
       type(contact_workspace_type), intent(inout) :: work !! laws and factors of the solution out
+      !> Factors of the set whose closed contact points all hold their positions: a fresh one, or
+      !> that of an earlier pass of the increment.
+      type(contact_workspace_type), intent(inout) :: held
       type(contact_state_type), intent(inout) :: state    !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
 
-      call settle_laws(system, previous, load, work, state, error)
+      call settle_laws(system, previous, load, work, held, state, error)
       if (allocated(error)) work%closing = closing_law_type()
    end subroutine solve_increment
 
    !> Solves with frozen closing laws until they stay.
-   subroutine settle_laws(system, previous, load, work, state, error)
+   subroutine settle_laws(system, previous, load, work, held, state, error)
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: previous
       real(dp), intent(in) :: load(:)
-      type(contact_workspace_type), intent(inout) :: work
+      type(contact_workspace_type), intent(inout) :: work, held
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       type(closing_law_type) :: laws(size(state%contact_state))
@@ -71,6 +74,10 @@ contains
       real(dp) :: change
       integer :: k, pass
 
+      if (.not. allocated(held%closing)) then
+         held = work%another()
+         held%closing = closing_law_type()
+      end if
       holds = .false.
       do pass = 1, most_passes
          state%gap = previous%gap
@@ -78,7 +85,8 @@ contains
          call solve_contact(system, load, work, state, error)
          if (allocated(error)) return
          holds = state%contact_state /= contact_open .or. (holds .and. pass > free_passes)
-         call find_laws(system, previous, state, holds, work, laws, error)
+         laws = work%closing
+         call find_laws(system, previous, state, holds, held, laws, error)
          if (allocated(error)) return
          change = maxval([0.0_dp, law_change(work%closing, laws)])
          if (pass > plain_passes) where (work%closing%acts .and. laws%acts) &
@@ -92,7 +100,7 @@ contains
                end if
             end do
             ! An active set satisfies its conditions to rounding.
-            state%gap = max(state%gap, 0.0_dp)
+            where (.not. system%removed) state%gap = max(state%gap, 0.0_dp)
             return
          end if
       end do
@@ -104,26 +112,22 @@ contains
    !> increment. A contact point that has opened again keeps its law, on which nothing depends:
    !> without it the contact point might close, with it open, for ever.
    !> Error: a singular system.
-   subroutine find_laws(system, previous, state, holds, work, laws, error)
+   subroutine find_laws(system, previous, state, holds, held, laws, error)
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: previous
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: holds(:)
-      type(contact_workspace_type), intent(in) :: work
-      type(closing_law_type), intent(out) :: laws(:)
+      type(contact_workspace_type), intent(inout) :: held
+      type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
-      type(contact_workspace_type) :: held
       type(contact_state_type) :: held_state
       logical :: closes(size(state%contact_state)), alone
       real(dp) :: compliance(2, 2)
       integer :: k
 
-      laws = work%closing
       closes = previous%contact_state == contact_open .and. state%contact_state /= &
          contact_open .and. system%tangent > 0
       if (.not. any(closes)) return
-      held = work%another()
-      held%closing = closing_law_type()
       held_state = state
       held_state%contact_state = merge(contact_stick, contact_open, holds)
       call held%factor_set(system, held_state, error)

@@ -3,6 +3,7 @@
 !> face with its hat function (mortar_points).
 module contact_points
    use contact_definitions, only: pairing_nodes
+   use edge_segments, only: edge_segment_type
    use kinds, only: dp
    use sum_lists, only: sum_list_type
    implicit none
@@ -48,6 +49,7 @@ module contact_points
       !> How far the first contact point lies from the master's first end and the last one from its
       !> last end, along the slave; at least 0 [length]
       real(dp) :: to_end(2) = huge(1.0_dp)
+      type(edge_segment_type), allocatable :: segments(:)   !! of mortar points; none of node pairs
       logical :: about_axis = .false.          !! whether the model is axisymmetric
    end type contact_points_type
 

@@ -1,7 +1,8 @@
 !> The rows of the contact system under one active set: which relative displacements are sought, and
 !> what forces and displacements enter the row of each. A slipping contact point's tangential row is
-!> lambda_t + share lambda_n = 0, that of a contact point which closes and sticks (contact_system),
-!> divided by f c_t, own lambda_t + share lambda_n + spring d_t = 0.
+!> lambda_t + share lambda_n = 0, or without a share the largest friction for 0; that of a contact
+!> point which closes and sticks (contact_system), divided by f c_t,
+!> own lambda_t + share lambda_n + spring d_t = 0.
 module contact_rows
    use contact_states, only: closing_law_type, contact_state_type, contact_open, contact_slip
    use contact_system, only: contact_system_type
@@ -44,6 +45,7 @@ contains
             if (state%contact_state(k) == contact_open) then
                cycle
             else if (state%contact_state(k) == contact_slip) then
+               if (abs(state%direction(k)) > 1) cycle
                rows%partner(row) = system%normal(k)
                rows%share(row) = state%direction(k)*system%friction(k)
             else if (law%acts) then
@@ -69,12 +71,14 @@ contains
       class(contact_rows_type), intent(in) :: self
       real(dp), intent(in) :: columns(:, :)           !! (tail, columns)
       real(dp) :: rows(size(columns, 1), size(columns, 2))
-      integer :: i
+      integer :: i, j
 
-      do i = 1, size(columns, 1)
-         rows(i, :) = self%own(i)*columns(i, :)
-         if (self%partner(i) == 0) cycle
-         rows(i, :) = rows(i, :) + self%share(i)*columns(self%partner(i), :)
+      do j = 1, size(columns, 2)
+         rows(:, j) = self%own*columns(:, j)
+         do i = 1, size(columns, 1)
+            if (self%partner(i) > 0) rows(i, j) = rows(i, j) + &
+               self%share(i)*columns(self%partner(i), j)
+         end do
       end do
    end function combine
 

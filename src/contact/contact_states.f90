@@ -4,7 +4,7 @@ module contact_states
    use kinds, only: dp
    implicit none
    private
-   public :: contact_state_type, closing_law_type, state_code
+   public :: contact_state_type, closing_law_type, slip_force, state_code
    public :: contact_open, contact_slip, contact_stick
 
    integer, parameter :: contact_open = 0   !! gap, zone I
@@ -14,7 +14,9 @@ module contact_states
    !> Contact state of all contact points.
    type :: contact_state_type
       integer, allocatable :: contact_state(:) !! (m) contact_open, contact_slip or contact_stick
-      integer, allocatable :: direction(:)    !! (m) sign of the friction force where it slips
+      !> (m) sign of the friction force where it slips, 0 where it is not known; doubled where the
+      !> force is the largest that friction has, whatever the pressure
+      integer, allocatable :: direction(:)
       real(dp), allocatable :: reference(:)   !! (m) d_t from which friction counts [length]
       real(dp), allocatable :: gap(:)         !! (m) gamma = h - d_n [length]
       !> (m) d_n, with the digits that it loses in h; unallocated before a solution [length]
@@ -38,6 +40,21 @@ module contact_states
    end type closing_law_type
 
 contains
+
+   !> Friction force on the slave at a contact point that slips.
+   elemental function slip_force(direction, friction, largest, force) result(shear_force)
+      integer, intent(in) :: direction       !! as in the state
+      real(dp), intent(in) :: friction       !! mu [-]
+      real(dp), intent(in) :: largest        !! largest friction [force]
+      real(dp), intent(in) :: force          !! positive in compression [force]
+      real(dp) :: shear_force                !! [force]
+
+      if (abs(direction) == 2) then
+         shear_force = sign(largest, real(direction, dp))
+      else
+         shear_force = direction*friction*force
+      end if
+   end function slip_force
 
    !> One number per contact point for its contact state.
    pure function state_code(state) result(codes)

@@ -8,6 +8,7 @@
 !>    open   lambda_n = 0                            lambda_t = 0
 !>    stick  d_n = h                                 d_t = reference
 !>    slip   d_n = h                                 lambda_t = direction mu (-lambda_n)
+!>    capped d_n = h                                 lambda_t = direction times the largest shear
 !>
 !> A contact point that closes within the increment sticks where it closed, a position that depends
 !> on its forces (closing_instant):
@@ -36,6 +37,8 @@ module contact_system
       integer, allocatable :: tangent(:) !! (m) row of d_t, 0 without friction or held
       real(dp), allocatable :: schur(:, :)        !! (tail, tail) S [force/length]
       real(dp), allocatable :: friction(:)        !! (m) mu [-]
+      real(dp), allocatable :: largest_shear(:)   !! (m) largest friction [force]
+      logical, allocatable :: removed(:)          !! (m) open whatever the gap
       !> (m) of stuck contact points, not zero in cycles [length/force]
       real(dp), allocatable :: compliance(:)
       !> (m) normal stiffness of a contact point alone [force/length]

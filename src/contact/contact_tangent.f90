@@ -24,7 +24,8 @@ contains
       real(dp), intent(out) :: gap(:, :)              !! (m, n) changes of the gaps [length]
       real(dp), intent(out) :: force(:, :) !! (m, n) changes of the compressive forces [force]
       logical, intent(out) :: sound                   !! whether the derivative exists
-      real(dp) :: motion(size(load, 1), size(load, 2)), lambda(size(load, 1), size(load, 2))
+      real(dp) :: motion(size(load, 1), size(load, 2))
+      integer, allocatable :: closed(:)
       integer :: k
 
       motion = load
@@ -34,16 +35,15 @@ contains
       else
          call work%solve_free(motion)
       end if
-      lambda = matmul(system%schur(:, work%rows%free), motion(work%rows%free, :)) - load
+      closed = pack([(k, k=1, size(state%contact_state))], state%contact_state /= contact_open)
       gap = 0.0_dp
-      force = 0.0_dp
       do k = 1, size(state%contact_state)
-         if (state%contact_state(k) == contact_open) then
-            gap(k, :) = -motion(system%normal(k), :)
-         else
-            force(k, :) = -lambda(system%normal(k), :)
-         end if
+         if (state%contact_state(k) == contact_open) gap(k, :) = -motion(system%normal(k), :)
       end do
+      force = 0.0_dp
+      associate (rows => system%normal(closed), free => work%rows%free)
+         force(closed, :) = load(rows, :) - matmul(system%schur(rows, free), motion(free, :))
+      end associate
    end subroutine contact_response
 
    !> Contact points whose position of sticking depends on their forces.

@@ -3,6 +3,7 @@
 !> the tip of sides with quarter points.
 module contact_tractions
    use contact_points, only: contact_points_type, on_axis
+   use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    implicit none
    private
@@ -69,7 +70,7 @@ contains
       type(contact_points_type), intent(in) :: points !! contact points of one interface
       real(dp), intent(in) :: force(:)         !! (m) nodal forces, 0 at open contact points [force]
       logical, intent(in) :: closed(:)               !! (m) contact points in contact
-      real(dp), intent(in) :: friction               !! mu [-]
+      type(friction_law_type), intent(in) :: friction !! the law of all of them
       real(dp), intent(in) :: pressure(:)            !! (m) as from pressures [stress]
       real(dp) :: shear(size(force))                 !! (m) [stress]
       integer :: k
@@ -78,7 +79,8 @@ contains
       do k = 1, size(force)
          if (points%weight(k) > 0.0_dp .or. .not. closed(k) .or. on_axis(points, k)) cycle
          shear(k) = limit(points, shear, k)
-         shear(k) = sign(min(abs(shear(k)), friction*pressure(k)), shear(k))
+         shear(k) = sign(min(abs(shear(k)), friction_bound(friction%coefficient, &
+            friction%largest_shear, pressure(k))), shear(k))
       end do
    end function shears
 

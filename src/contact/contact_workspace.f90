@@ -3,8 +3,8 @@
 !> moment. A second trial takes a workspace of its own.
 module contact_workspace
    use contact_rows, only: contact_rows_type, rows_of
-   use contact_states, only: closing_law_type, state_code, contact_state_type, contact_open, &
-      contact_slip, contact_stick
+   use contact_states, only: closing_law_type, slip_force, state_code, contact_state_type, &
+      contact_open, contact_slip, contact_stick
    use contact_system, only: contact_system_type
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -22,8 +22,8 @@ module contact_workspace
 
    !> Data of the increment, and the factors for the active set of the last solution.
    type :: contact_workspace_type
-      !> (m) h less the part of d_n that supports prescribe, which is no part of d_n here [length]
-      real(dp), allocatable :: initial_gap(:)
+      real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
+      real(dp), allocatable :: largest_shear(:) !! (m) largest friction [force]
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
       real(dp), allocatable :: least_drive(:) !! (tail) resultants that count as none [force]
       !> Stiffness that holds the unsupported motions softly, 0 for none [force/length]
@@ -36,6 +36,7 @@ module contact_workspace
       real(dp), allocatable :: drive(:)           !! (l) forces along them that nothing takes up
       logical :: driven = .false.                 !! whether these are more than rounding
       logical, allocatable :: idle(:)  !! (m) closed contact points that carry nothing (idle_points)
+      integer :: factorisations = 0               !! of active sets, so far
       logical :: several = .false.                !! whether other states under the load are proven
       type(lu_type), private :: lu                !! factors on the free rows, bordered
       real(dp), private :: border = 1.0_dp        !! scale of the border [force/length]
@@ -67,6 +68,7 @@ contains
       type(contact_workspace_type) :: work             !! nothing closed, nothing factored
 
       work%initial_gap = initial_gap
+      work%largest_shear = system%largest_shear
       allocate (work%least_drive(size(system%schur, 1)), source=0.0_dp)
       allocate (work%anchor(size(system%schur, 1)), source=0.0_dp)
       allocate (work%closing(size(initial_gap)))
@@ -79,6 +81,7 @@ contains
       type(contact_workspace_type) :: work               !! nothing factored
 
       work%initial_gap = self%initial_gap
+      work%largest_shear = self%largest_shear
       work%load_scale = self%load_scale
       work%least_drive = self%least_drive
       work%closing = self%closing
@@ -127,7 +130,7 @@ contains
          if (system%tangent(k) == 0 .or. state%contact_state(k) /= contact_stick) cycle
          d(system%tangent(k)) = start_of_slip(self, state, k)
       end do
-      residual(:, 1) = load - forces(self, system, d)
+      residual(:, 1) = load + capped_forces(self, system, state) - forces(self, system, d)
       call self%solve_free(residual, unbalanced)
       d(self%rows%free) = d(self%rows%free) + residual(self%rows%free, 1)
       if (size(self%unconstrained, 2) > 0) then
@@ -167,7 +170,8 @@ contains
          case (contact_open)
             state%shear_force(k) = 0.0_dp
          case (contact_slip)
-            state%shear_force(k) = state%direction(k)*system%friction(k)*state%force(k)
+            state%shear_force(k) = slip_force(state%direction(k), system%friction(k), &
+               self%largest_shear(k), state%force(k))
          case default
             state%shear_force(k) = lambda(system%tangent(k))
          end select
@@ -182,6 +186,22 @@ contains
 
       start_of_slip = merge(self%closing(k)%start, state%reference(k), self%closing(k)%acts)
    end function start_of_slip
+
+   !> Friction that is the largest whatever the pressure.
+   pure function capped_forces(self, system, state) result(lambda)
+      type(contact_workspace_type), intent(in) :: self
+      type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: state
+      real(dp) :: lambda(size(system%schur, 1))
+      integer :: k
+
+      lambda = 0.0_dp
+      do k = 1, size(state%contact_state)
+         if (state%contact_state(k) /= contact_slip .or. abs(state%direction(k)) < 2) cycle
+         if (system%tangent(k) > 0) lambda(system%tangent(k)) = slip_force(state%direction(k), &
+            system%friction(k), self%largest_shear(k), state%force(k))
+      end do
+   end function capped_forces
 
    !> S d, with the soft hold.
    pure function forces(self, system, d)
@@ -275,6 +295,7 @@ contains
             system%schur)
       end if
       call self%factor_rows(system, singular)
+      self%factorisations = self%factorisations + 1
       if (singular) then
          call set_error(error, status_no_convergence, 'the contact system is singular')
       else
@@ -310,23 +331,25 @@ contains
       logical, intent(out) :: singular                     !! the rows depend on each other
       real(dp) :: rows(size(self%rows%free) + size(self%unconstrained, 2), size(self%rows%free) + &
          size(self%unconstrained, 2))
-      integer :: i
+      real(dp) :: column(size(system%schur, 1), 1)
+      integer :: i, j
 
       if (allocated(self%factored)) deallocate (self%factored)
-      rows = 0.0_dp
-      associate (f => size(self%rows%free), free => self%rows%free, &
-         of_tail => self%rows%combine(columns(self, system, self%rows%free)))
-         rows(:f, :f) = of_tail(free, :)
-         do i = 1, f
-            rows(i, i) = rows(i, i) + self%rows%spring(free(i))
+      associate (f => size(self%rows%free), free => self%rows%free)
+         do j = 1, f
+            column = self%rows%combine(columns(self, system, free(j:j)))
+            rows(:f, j) = column(free, 1)
+            rows(f + 1:, j) = 0.0_dp
+            rows(j, j) = rows(j, j) + self%rows%spring(free(j))
          end do
+         rows(:, f + 1:) = 0.0_dp
          ! Rows of slipping contact points are mu times as large, those of stuck ones in cycles 1e8
          ! times.
          self%scale = [(1.0_dp, i=1, f)]
          if (size(self%unconstrained, 2) == 0) self%scale = 1.0_dp/max(maxval(abs(rows(:f, :f)), &
             dim=2), tiny(1.0_dp))
-         do i = 1, f
-            rows(i, :f) = self%scale(i)*rows(i, :f)
+         do j = 1, f
+            rows(:f, j) = self%scale*rows(:f, j)
          end do
          self%border = max(maxval(abs(rows)), tiny(1.0_dp))
          rows(:f, f + 1:) = self%border*self%unconstrained

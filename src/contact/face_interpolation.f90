@@ -4,7 +4,7 @@
 module face_interpolation
    use chain_geometry, only: side_positions
    use kinds, only: dp
-   use mortar_segments, only: beside_normal, face_line_type, hats, opposite_coordinate, &
+   use mortar_sides, only: beside_normal, face_line_type, hats, opposite_coordinate, &
       side_opposite, side_type, sides_of
    use sum_lists, only: sum_list_type
    implicit none

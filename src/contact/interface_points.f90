@@ -12,7 +12,7 @@ module interface_points
    use interface_checks, only: blame_corner, check_corner, check_covered, check_opposite, &
       check_shared, compare_lines
    use interface_warnings, only: mismatch_of_pairs
-   use surface_chains, only: chain_faces, precedes, surface_chain_type
+   use surface_chains, only: aligned_chains, chain_faces, surface_chain_type
    implicit none
    private
    public :: make_contact_points
@@ -38,7 +38,7 @@ contains
          if (allocated(error)) return
          call chain_faces(mesh, master_surface, master, error)
          if (allocated(error)) return
-         call align(mesh, slave, master, turned(1), turned(2))
+         call aligned_chains(mesh, slave, master, turned)
          points%name = definition%name
          points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
       end associate
@@ -46,8 +46,27 @@ contains
       if (allocated(error)) return
       call find_points(mesh, definition, slave, master, turned, thickness, points, error)
       if (allocated(error)) return
+      if (definition%adjusts) call close_gaps(mesh, definition, points)
       if (definition%has_clearance) points%initial_gap = definition%clearance
    end subroutine make_contact_points
+
+   !> Contact points that start without a gap: those up to a distance, overlaps among them, or those
+   !> whose slave nodes are in a set.
+   pure subroutine close_gaps(mesh, definition, points)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      type(contact_points_type), intent(inout) :: points
+      logical :: in_set(size(mesh%node_number))
+
+      if (definition%adjusted_set == 0) then
+         where (points%initial_gap <= definition%adjusted) points%initial_gap = 0.0_dp
+      else
+         in_set = .false.
+         in_set(mesh%node_sets(definition%adjusted_set)%members) = .true.
+         where (in_set(points%slave_node)) points%initial_gap = 0.0_dp
+      end if
+   end subroutine close_gaps
+
    !> The contact points of two lines that run the same way.
    subroutine find_points(mesh, definition, slave, master, turned, thickness, points, error)
       type(mesh_type), intent(in) :: mesh
@@ -89,41 +108,5 @@ contains
       call set_mortar_points(mesh, slave, master, turned, thickness, points)
       call check_covered(mesh, definition, slave, master, turned, size(points%slave_node), error)
    end subroutine find_points
-
-   !> Turns both lines to run from the slave's first contact point on: an open one if its ends so
-   !> lie nearer to the slave's, a closed face of the master always, for it runs against the slave.
-   subroutine align(mesh, slave, master, turned_slave, turned_master)
-      type(mesh_type), intent(in) :: mesh
-      type(surface_chain_type), intent(inout) :: slave, master
-      logical, intent(out) :: turned_slave, turned_master
-      real(dp) :: distance(size(master%nodes))
-      integer :: n, start
-
-      turned_slave = .false.
-      associate (x => mesh%coordinates)
-         if (.not. slave%closed) then
-            n = size(slave%nodes)
-            associate (first => x(:, slave%nodes(1)), last => x(:, slave%nodes(n)))
-               turned_slave = precedes(last, first, norm2(last - first))
-            end associate
-            if (turned_slave) slave%nodes = slave%nodes(n:1:-1)
-         end if
-         n = size(master%nodes)
-         distance = norm2(x(:, master%nodes) - spread(x(:, slave%nodes(1)), 2, n), dim=1)
-         if (master%closed) then
-            start = 1 + (master%side_nodes - 1)*(minloc(distance(::master%side_nodes - 1), dim=1) &
-               - 1)
-            master%nodes = cshift(master%nodes, start - 1)
-            master%nodes(2:) = master%nodes(n:2:-1)
-            turned_master = .true.
-         else
-            ! Squares of these distances, less what they have in common: bodies may lie far apart.
-            turned_master = dot_product(x(:, slave%nodes(size(slave%nodes))) - &
-               x(:, slave%nodes(1)), x(:, master%nodes(n)) - x(:, master%nodes(1))) < 0.0_dp
-            if (turned_master) master%nodes = master%nodes(n:1:-1)
-         end if
-      end associate
-   end subroutine align
-
 
 end module interface_points

@@ -11,6 +11,7 @@ module lemke_path
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
+   use friction_laws, only: unlimited
    use kinds, only: dp
    implicit none
    private
@@ -24,7 +25,7 @@ module lemke_path
       type(contact_state_type) :: base          !! state at t = 0
       real(dp), allocatable :: cover(:)         !! (m) d [length]
       real(dp), allocatable :: slip(:, :)       !! (m, 2) slip [length]
-      real(dp), allocatable :: slack(:, :, :)   !! (2, m, 2) what must not be negative
+      real(dp), allocatable :: slack(:, :, :)   !! (4, m, 2) what must not be negative
    end type piece_type
 
 contains
@@ -45,7 +46,7 @@ contains
       path = work%another()
       path%hold = work%hold
       piece%cover = [(1.0_dp + modulo(k*golden, 1.0_dp), k=1, size(state%contact_state))]
-      allocate (piece%slip(size(piece%cover), 2), piece%slack(2, size(piece%cover), 2))
+      allocate (piece%slip(size(piece%cover), 2), piece%slack(4, size(piece%cover), 2))
       state%contact_state = contact_open
       state%direction = 0
       call solve_piece(system, load, work, path, state, piece, error)
@@ -85,6 +86,7 @@ contains
 
       piece%base = state
       path%initial_gap = work%initial_gap
+      path%largest_shear = work%largest_shear
       path%closing%start = work%closing%start
       call path%solve_set(system, load, piece%base, error)
       if (allocated(error)) return
@@ -92,6 +94,7 @@ contains
       rate = state
       rate%reference = 0.0_dp
       path%initial_gap = piece%cover
+      path%largest_shear = 0.0_dp
       path%closing%start = 0.0_dp
       call path%solve_set(system, 0.0_dp*load, rate, error)
       if (allocated(error)) return
@@ -112,7 +115,7 @@ contains
       event = 0
       step = huge(1.0_dp)
       do k = 1, size(piece%slip, 1)
-         do i = 1, 2
+         do i = 1, size(piece%slack, 1)
             along = sense*piece%slack(i, k, 2)
             if (along >= 0.0_dp) cycle
             way = max(piece%slack(i, k, 1) + t*piece%slack(i, k, 2), 0.0_dp)/(-along)
@@ -125,27 +128,33 @@ contains
    end subroutine next_event
 
    !> Slip, and what must not be negative under each contact point's state: the gap; or force and
-   !> slip against friction; or the distances to both sides of the cone. A second one that is
-   !> missing is zero.
+   !> slip against friction, and the distance to the largest friction or back to the cone; or the
+   !> distances to both sides of the cone and to the largest friction both ways. Those that are
+   !> missing are zero.
    pure subroutine measure(system, path, state, slip, slack)
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(in) :: path
       type(contact_state_type), intent(in) :: state
       real(dp), intent(out) :: slip(:)
       real(dp), intent(out) :: slack(:, :)
-      real(dp) :: cone
+      real(dp) :: cone, largest
       integer :: k
 
       slack = 0.0_dp
       do k = 1, size(slip)
          slip(k) = path%slip(system, state, k)
+         cone = system%friction(k)*state%force(k)
+         largest = path%largest_shear(k)
          if (state%contact_state(k) == contact_open) then
-            slack(1, k) = state%gap(k)
+            if (.not. system%removed(k)) slack(1, k) = state%gap(k)
          else if (state%contact_state(k) == contact_slip) then
-            slack(:, k) = [state%force(k), -state%direction(k)*slip(k)]
+            slack(:3, k) = [state%force(k), -state%direction(k)*slip(k), largest - cone]
+            if (abs(state%direction(k)) > 1) slack(3, k) = -slack(3, k)
+            if (system%largest_shear(k) >= unlimited) slack(3, k) = 0.0_dp
          else
-            cone = system%friction(k)*state%force(k)
-            slack(:, k) = [cone - state%shear_force(k), cone + state%shear_force(k)]
+            slack(:, k) = [cone - state%shear_force(k), cone + state%shear_force(k), &
+               largest - state%shear_force(k), largest + state%shear_force(k)]
+            if (system%largest_shear(k) >= unlimited) slack(3:, k) = 0.0_dp
          end if
       end do
    end subroutine measure
@@ -167,11 +176,22 @@ contains
          if (system%tangent(k) == 0 .or. system%friction(k) <= 0.0_dp) return
          state%direction(k) = merge(-1, 1, slip > 0.0_dp)
       case (contact_slip)
-         state%contact_state(k) = merge(contact_open, contact_stick, event == 1)
-         if (event == 2) entering = merge(1, 2, state%direction(k) > 0)
+         select case (event)
+         case (1)
+            state%contact_state(k) = contact_open
+         case (2)
+            state%contact_state(k) = contact_stick
+            entering = merge(1, 2, state%direction(k) > 0)
+            if (abs(state%direction(k)) > 1) entering = entering + 2
+         case default
+            state%direction(k) = merge(2, 1, abs(state%direction(k)) == 1)* &
+               sign(1, state%direction(k))
+            entering = 3
+         end select
       case default
          state%contact_state(k) = contact_slip
-         state%direction(k) = merge(1, -1, event == 1)
+         state%direction(k) = merge(1, -1, mod(event, 2) == 1)
+         if (event > 2) state%direction(k) = 2*state%direction(k)
          entering = 2
       end select
    end subroutine change_condition

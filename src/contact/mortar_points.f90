@@ -5,10 +5,12 @@ module mortar_points
    use chain_geometry, only: arc_lengths, edge_lengths
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
+   use edge_segments, only: edge_segments_of
    use face_interpolation, only: interpolate_on_faces
    use kinds, only: dp
    use mesh, only: mesh_type
-   use mortar_segments, only: face_line_type, integrate_segments, mortar_integrals_type
+   use mortar_segments, only: integrate_segments, mortar_integrals_type
+   use mortar_sides, only: face_line_type
    use sparse_matrix, only: sparse_matrix_type
    use sum_lists, only: sum_list_type
    use surface_chains, only: surface_chain_type
@@ -36,16 +38,19 @@ contains
       real(dp), intent(in) :: thickness               !! not used about an axis [length]
       type(contact_points_type), intent(inout) :: points !! its name and its axis are set
       type(mortar_integrals_type) :: integrals
-      integer, allocatable :: corner(:), owner(:), kept(:)
+      type(face_line_type) :: slave_line, master_line
+      integer, allocatable :: corner(:), owner(:), kept(:), point_of(:)
       real(dp) :: outward(2)
       integer :: c
 
       outward = merge(-1.0_dp, 1.0_dp, turned)
-      call integrate_segments(line_of(slave, outward(1)), line_of(master, outward(2)), thickness, &
-         points%about_axis, integrals)
+      slave_line = line_of(slave, outward(1))
+      master_line = line_of(master, outward(2))
+      call integrate_segments(slave_line, master_line, thickness, points%about_axis, integrals)
       corner = slave%nodes(1::slave%side_nodes - 1)
       owner = owners(integrals, slave%closed, [(any(master%nodes == corner(c)), c=1, size(corner))])
       kept = pack([(c, c=1, size(corner))], owner == [(c, c=1, size(corner))])
+      point_of = [(findloc(kept, owner(c), dim=1), c=1, size(owner))]
       points%pairing = pairing_surfaces
       points%side_nodes = 2
       points%node_spacings = slave%side_nodes - 1
@@ -64,8 +69,10 @@ contains
       points%tangent = outward(1)*reshape([-points%normal(2, :), points%normal(1, :)], &
          shape(points%normal), order=[2, 1])
       call set_means(slave, master, integrals, owner, kept, points)
-      call set_face_nodes(line_of(slave, outward(1)), line_of(master, outward(2)), &
-         [slave%nodes, master%nodes], owner, kept, points)
+      call set_face_nodes(slave_line, master_line, [slave%nodes, master%nodes], point_of, &
+         owner == [(c, c=1, size(owner))], points)
+      points%segments = edge_segments_of(slave_line, master_line, [slave%nodes, master%nodes], &
+         thickness, points%about_axis, point_of)
       points%initial_gap = initial_gaps(points, mesh%coordinates)
       allocate (points%master_node, mold=points%slave_node)
       if (size(kept) > 0 .and. .not. master%closed) points%to_end = ends_beyond(mesh%coordinates( &
@@ -171,16 +178,16 @@ contains
    end subroutine set_means
 
    !> The nodes of both faces that carry contact quantities.
-   pure subroutine set_face_nodes(slave, master, nodes, owner, kept, points)
+   pure subroutine set_face_nodes(slave, master, nodes, point_of, own_point, points)
       type(face_line_type), intent(in) :: slave, master
       integer, intent(in) :: nodes(:)                  ! of the slave, then of the master
-      integer, intent(in) :: owner(:), kept(:)
+      integer, intent(in) :: point_of(:)               ! (corners) contact point of each; 0 for none
+      logical, intent(in) :: own_point(:)              ! (corners) whether it is the corner itself
       type(contact_points_type), intent(inout) :: points
       type(sum_list_type) :: on_face(2)
-      integer :: c, i, k, n
+      integer :: i, k, n
 
-      call interpolate_on_faces(slave, master, [(findloc(kept, owner(c), dim=1), c=1, &
-         size(owner))], owner == [(c, c=1, size(owner))], on_face(1), on_face(2))
+      call interpolate_on_faces(slave, master, point_of, own_point, on_face(1), on_face(2))
       allocate (points%face_node(0))
       call points%at_face_nodes%reserve(size(nodes), 2*size(nodes))
       n = 0

@@ -79,7 +79,7 @@ contains
       type(tie_definition_type), intent(in) :: ties(:)
       type(contact_points_type), intent(in) :: of_tie(:)    !! (ties) their points
       type(tie_points_type) :: row
-      integer :: i, k
+      integer :: i
 
       allocate (row%tie(0), row%slave(0), row%master(0), row%is_opposite(0), row%is_linear(0), &
          row%weight(0))
@@ -96,10 +96,7 @@ contains
                opposite*points%edge]
             row%is_linear = [row%is_linear, spread(points%pairing /= pairing_nodes .and. &
                side_node_count(mesh%element_kind(face(1))) == 2, 1, size(points%slave_node))]
-            do k = 1, size(points%slave_node)
-               call row%difference%add(points%difference%values_of(k), &
-                  points%difference%coefficients_of(k))
-            end do
+            call row%difference%add_sums(points%difference)
          end associate
       end do
    end function joined_ties

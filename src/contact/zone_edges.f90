@@ -20,10 +20,12 @@
 module zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_states, only: contact_open, contact_slip, contact_stick
+   use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    implicit none
    private
-   public :: contact_profile_type, contact_edges, stick_edges, edges_kept
+   public :: contact_profile_type, contact_edges, contact_end, mean_beyond, stick_edges, turned
+   public :: edges_kept
 
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
@@ -147,10 +149,12 @@ contains
    !> points.
    pure real(dp) function mean_beyond(s, a)
       real(dp), intent(in) :: s(:), a
+      real(dp) :: root(size(s))
       real(dp) :: once(size(s)), twice(size(s))   ! the integrals of (x - a)^(3/2)
 
-      once = max(s - a, 0.0_dp)**2.5_dp/2.5_dp
-      twice = max(s - a, 0.0_dp)**3.5_dp/8.75_dp
+      root = sqrt(max(s - a, 0.0_dp))
+      once = root**5/2.5_dp
+      twice = root**7/8.75_dp
       mean_beyond = once(2) - (twice(2) - twice(1))/(s(2) - s(1))
       if (size(s) > 2) mean_beyond = mean_beyond + (twice(3) - twice(2))/(s(3) - s(2)) - once(2)
       mean_beyond = 2*mean_beyond/(s(size(s)) - s(1))
@@ -193,7 +197,7 @@ contains
    !> Edges of the stick zones, ascending, padded with NaN, and the outer edge of the widest zone.
    pure subroutine stick_edges(profile, friction, edges, outer)
       type(contact_profile_type), intent(in) :: profile
-      real(dp), intent(in) :: friction             !! mu [-]
+      type(friction_law_type), intent(in) :: friction   !! the law of all contact points
       real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
       real(dp), intent(out) :: outer               !! outer edge, NaN without stick [length]
       real(dp) :: edge, widest
@@ -241,7 +245,7 @@ contains
    !> contact.
    pure function stick_end(profile, friction, first, last) result(edge)
       type(contact_profile_type), intent(in) :: profile
-      real(dp), intent(in) :: friction
+      type(friction_law_type), intent(in) :: friction
       integer, intent(in) :: first, last
       real(dp) :: edge
       real(dp) :: excess(fitted_spacings + 1), limit, mean_s, mean_excess, slope, spread, total
@@ -256,7 +260,8 @@ contains
          edge = 0.5_dp*(s(n) + limit)
          total = sum(weight)
          if (count(weight > 0.0_dp) < 2) return
-         excess(:n) = friction*profile%pressure(start:last) - sign(1.0_dp, &
+         excess(:n) = friction_bound(friction%coefficient, friction%largest_shear, &
+            profile%pressure(start:last)) - sign(1.0_dp, &
             merge(profile%shear(last + 1), profile%shear(last), next_contact_state == &
             contact_slip))* profile%shear(start:last)
          mean_s = sum(weight*s)/total

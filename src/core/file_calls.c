@@ -208,6 +208,30 @@ int file_append(int descriptor, const char *text, long count)
    return write_all(descriptor, text, (size_t)count);
 }
 
+/* Writes over what stands at a position of a file that is open to write at its end. */
+int file_overwrite(int descriptor, long position, const char *text, long count)
+{
+   int flags = fcntl(descriptor, F_GETFL), number = 0;
+
+   /* With O_APPEND pwrite writes at the end, wherever it is told to. */
+   if (flags < 0 || fcntl(descriptor, F_SETFL, flags & ~O_APPEND) < 0)
+      return errno;
+   while (count > 0 && number == 0) {
+      ssize_t written = pwrite(descriptor, text, (size_t)count, (off_t)position);
+
+      if (written < 0 && errno != EINTR)
+         number = errno;
+      if (written > 0) {
+         text += written;
+         position += written;
+         count -= written;
+      }
+   }
+   if (fcntl(descriptor, F_SETFL, flags) < 0 && number == 0)
+      number = errno;
+   return number;
+}
+
 int file_empty(int descriptor)
 {
    /* What is no regular file, such as a device, has nothing to be cut off. */

@@ -10,6 +10,7 @@ module file_calls
    public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file
    public :: try_file, try_growth, create_working_file, remove_working_files, survive_file_limits
    public :: write_file, open_new_file, lock_file, unlock_file, append_to_file, empty_file
+   public :: overwrite_in_file
    public :: close_descriptor, open_in_memory, cannot_write, print_text, check_printed
 
    integer(c_int), parameter :: locked_by_another = -1_c_int   !! as in file_calls.c
@@ -128,6 +129,16 @@ module file_calls
          integer(c_long), value :: count
          integer(c_int) :: number
       end function c_append
+
+      function c_overwrite(descriptor, position, text, count) bind(c, name='file_overwrite') &
+         result(number)
+         import :: c_char, c_int, c_long
+         integer(c_int), value :: descriptor
+         integer(c_long), value :: position
+         character(kind=c_char), intent(in) :: text(*)
+         integer(c_long), value :: count
+         integer(c_int) :: number
+      end function c_overwrite
 
       function c_empty(descriptor) bind(c, name='file_empty') result(number)
          import :: c_int
@@ -392,6 +403,21 @@ contains
       number = c_append(int(descriptor, c_int), string, len(string, kind=c_long))
       if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
    end subroutine append_to_file
+
+   !> Writes text over what stands at a position of an open file.
+   !> Error: status_internal, when the system refuses.
+   subroutine overwrite_in_file(descriptor, path, position, string, error)
+      integer, intent(in) :: descriptor                    !! the open file
+      character(*), intent(in) :: path                     !! its path, for the message
+      integer, intent(in) :: position                      !! bytes before the text
+      character(*), intent(in) :: string                   !! what is written
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+      integer(c_int) :: number
+
+      number = c_overwrite(int(descriptor, c_int), int(position, c_long), string, &
+         len(string, kind=c_long))
+      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+   end subroutine overwrite_in_file
 
    !> Empties an open file.
    !> Error: status_internal, when the system refuses.

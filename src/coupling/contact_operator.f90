@@ -2,25 +2,27 @@
 !> contact state -> conductance, all on the contact points.
 module contact_operator
    use closing_instant, only: solve_increment
-   use conductance_laws, only: conductance, conductance_derivative
+   use conductance_laws, only: conductance, conductance_derivative, conductance_law_type
+   use contact_heat, only: temperature_jumps
    use contact_states, only: contact_state_type, contact_open, contact_slip
    use errors, only: error_type, status_no_convergence
    use finite_values, only: check_finite
+   use gap_temperatures, only: face_temperatures, settle_conductance
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use contact_tractions, only: pressures
    use reduced_bodies, only: reduced_bodies_type
-   use tail_factors, only: tail_flops
-   use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
    private
-   public :: contact_operator_pass, temperature_jumps, law_conductance, law_pressure
-   public :: kept_contact, residual_floor, thermal_forces
+   public :: contact_operator_pass, law_conductance, law_pressure
+   public :: kept_contact, residual_floor, unstrained_forces
 
 contains
 
    !> U: conductance in, workspace%pass%omega, conductance of the resulting contact state out,
-   !> workspace%pass%image.
+   !> workspace%pass%image. Where laws vary with the temperature, their value is that of the
+   !> temperatures of the pass; with the coordinates of the contact points given,
+   !> workspace%pass%coordinate, omega is what these and the temperatures make it.
    !> Errors: as solve_increment; jumps or conductances overflow.
    subroutine contact_operator_pass(bodies, data, workspace, jump, state, error)
       type(reduced_bodies_type), intent(in) :: bodies
@@ -29,72 +31,52 @@ contains
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(inout) :: state           !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
+      real(dp), allocatable :: coordinate(:), omega(:)
 
-      call temperature_jumps(bodies, data, workspace%pass%omega, workspace, jump)
+      if (allocated(workspace%pass%coordinate)) then
+         ! The workspace changes in the call: its own values go there as copies.
+         coordinate = workspace%pass%coordinate
+         omega = workspace%pass%omega
+         call settle_conductance(bodies, data, coordinate, workspace, omega, jump, error)
+         workspace%pass%omega = omega
+         if (allocated(error)) return
+      else
+         call temperature_jumps(bodies, data, workspace%pass%omega, workspace, jump)
+      end if
       call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       if (allocated(error)) return
       call solve_increment(bodies%contact, data%previous, &
-         condensed_load(bodies, data, jump), workspace%contact, state, error)
+         condensed_load(bodies, data, workspace%on_tail), workspace%contact, workspace%held, &
+         state, error)
       if (allocated(error)) return
-      workspace%pass%image = law_conductance(bodies, state)
+      if (bodies%points%vary_with_temperature()) then
+         workspace%pass%law = bodies%points%laws_at(face_temperatures(bodies, data, jump))
+         if (allocated(workspace%graph)) workspace%graph%law = workspace%pass%law
+         workspace%pass%image = law_conductance(bodies, workspace%pass%law, state)
+      else
+         workspace%pass%image = law_conductance(bodies, bodies%points%law, state)
+      end if
       call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
    end subroutine contact_operator_pass
 
-   !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first
-   !> changed one on are factored again.
-   subroutine temperature_jumps(bodies, data, omega, workspace, jump)
+   !> Condensed mechanical load of the increment with a solution of (3.4).
+   pure function condensed_load(bodies, data, on_tail) result(load)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
-      real(dp), intent(in) :: omega(:)                           !! (m) omega*
-      type(increment_workspace_type), intent(inout) :: workspace !! heat in, factors out
-      real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
-      real(dp) :: x(bodies%thermal%map%tail), diagonal(bodies%thermal%map%tail)
-      real(dp) :: of_point(size(omega)), history(size(omega))
-      integer :: k
-
-      associate (tail_index => bodies%jump_index, weight => bodies%points%weight, &
-         solver => bodies%thermal%solver, tail => workspace%tail, work => workspace%record%work)
-         of_point = contact_diagonal(data%scheme, weight, data%omega_old, omega)
-         history = contact_history(data%scheme, weight, data%omega_old, omega, data%jump_old)
-         x = workspace%heat%condensed
-         diagonal = 0.0_dp
-         do k = 1, size(omega)
-            if (tail_index(k) == 0) cycle
-            diagonal(tail_index(k)) = of_point(k)
-            x(tail_index(k)) = x(tail_index(k)) + history(k)
-         end do
-         call tail%refactor(solver%schur, diagonal)
-         work%columns_again = work%columns_again + size(x) + 1 - tail%first_changed
-         work%columns_full = work%columns_full + solver%order
-         work%flops_again = work%flops_again + tail_flops(size(x), tail%first_changed)
-         work%flops_full = work%flops_full + solver%full_flops + tail_flops(size(x), 1)
-         call tail%solve(x)
-         jump = data%held_jump
-         do k = 1, size(omega)
-            if (tail_index(k) > 0) jump(k) = x(tail_index(k))
-         end do
-      end associate
-   end subroutine temperature_jumps
-
-   !> Condensed mechanical load of the increment with given jumps.
-   pure function condensed_load(bodies, data, jump) result(load)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(increment_data_type), intent(in) :: data
-      real(dp), intent(in) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
+      real(dp), intent(in) :: on_tail(:)                        !! (thermal tail)
       real(dp) :: load(size(data%welded_load))                  !! (mechanical tail) [force]
       integer :: k
 
       load = data%welded_load
-      do k = 1, size(jump)
-         if (bodies%jump_index(k) > 0) then
-            load = load + bodies%jump_load(:, bodies%jump_index(k))*jump(k)
-         end if
+      do k = 1, size(on_tail)
+         load = load + bodies%jump_load(:, k)*on_tail(k)
       end do
    end function condensed_load
 
    !> chi: the conductance of a contact state, eq. (1.8).
-   pure function law_conductance(bodies, state) result(omega)
+   pure function law_conductance(bodies, law, state) result(omega)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(conductance_law_type), intent(in) :: law(:)          !! (m) at the temperatures
       type(contact_state_type), intent(in) :: state
       real(dp) :: omega(size(state%contact_state))              !! (m)
       real(dp) :: pressure(size(state%contact_state))
@@ -102,7 +84,7 @@ contains
 
       pressure = law_pressure(bodies, state)
       do k = 1, size(omega)
-         omega(k) = conductance(bodies%points%law(k), state%contact_state(k) /= contact_open, &
+         omega(k) = conductance(law(k), state%contact_state(k) /= contact_open, &
             state%gap(k), pressure(k))
       end do
    end function law_conductance
@@ -134,8 +116,9 @@ contains
       where (kept%gap <= 0.0_dp) kept%contact_state = contact_slip
    end function kept_contact
 
-   !> Nodal forces that temperatures cause; none where no temperature strains.
-   pure function thermal_forces(bodies, temperature) result(forces)
+   !> Nodal forces of the stresses that the bodies have without strains: of temperatures, and the
+   !> initial ones.
+   pure function unstrained_forces(bodies, temperature) result(forces)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:)                    !! (nodes) [temperature]
       real(dp) :: forces(2*size(temperature))                   !! (2 nodes) [force]
@@ -144,13 +127,15 @@ contains
       if (allocated(bodies%thermal_load%value)) then
          forces = bodies%thermal_load%multiply(temperature - bodies%initial_temperature)
       end if
-   end function thermal_forces
+      if (allocated(bodies%initial_force)) forces = forces + bodies%initial_force
+   end function unstrained_forces
 
-   !> What a few units in the last place of the displacements change in omega, relative: no residual
-   !> can be smaller.
-   pure function residual_floor(bodies, data, state, omega) result(floor_value)
+   !> What a few units in the last place of the displacements change in omega, relative, and at
+   !> least the unit in its own last place: no residual can be smaller.
+   pure function residual_floor(bodies, data, law, state, omega) result(floor_value)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
+      type(conductance_law_type), intent(in) :: law(:)          !! (m) at the temperatures
       type(contact_state_type), intent(in) :: state
       real(dp), intent(in) :: omega(:)                          !! (m) its conductance
       real(dp) :: floor_value                                   !! relative change of omega
@@ -158,7 +143,7 @@ contains
       integer :: k
       integer, parameter :: few = 4
 
-      floor_value = 0.0_dp
+      floor_value = epsilon(1.0_dp)
       do k = 1, size(omega)
          if (omega(k) <= 0.0_dp .or. bodies%points%weight(k) <= 0.0_dp) cycle
          associate (weight => bodies%points%weight(k))
@@ -170,7 +155,7 @@ contains
             pressure = state%force(k)/weight
          end associate
          floor_value = max(floor_value, change/omega(k)*abs(conductance_derivative( &
-            bodies%points%law(k), state%contact_state(k) /= contact_open, state%gap(k), pressure)))
+            law(k), state%contact_state(k) /= contact_open, state%gap(k), pressure)))
       end do
    end function residual_floor
 

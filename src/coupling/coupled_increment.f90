@@ -7,12 +7,14 @@ module coupled_increment
    use coupling_gains, only: coupling_gain_type, find_gain
    use errors, only: error_type
    use fixed_point, only: predicted_conductance
+   use gap_temperatures, only: derivative_by_temperature, face_temperatures
    use increment_data, only: increment_data_type, increment_workspace_type
    use increment_iteration, only: iterate
    use kinds, only: dp
    use opening_derivatives, only: make_graph, opening_derivative
    use reduced_bodies, only: reduced_bodies_type
    use resting_points, only: contact_scales
+   use scheme_properties, only: has_memory
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
    use steps, only: step_type
@@ -35,13 +37,14 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous          !! state at the start
-      type(increment_data_type), intent(inout) :: data           !! receives graphs and scales
+      type(increment_data_type), intent(inout) :: data           !! receives scales
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
       type(solution_state_type), intent(inout) :: next           !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
 
       data%scales = contact_scales(bodies, data)
-      data%graph = make_graph(bodies, data%scales%length)
+      workspace%graph = make_graph(bodies, data%scales%length)
+      data%cuts_hats = any(bodies%points%cuts_hats) .and. .not. has_memory(data%scheme)
       next%omega_before = previous%omega
       if (step%start%kind == start_both) then
          call solve_from_both(bodies, step, previous, data, workspace, next, error)
@@ -160,21 +163,25 @@ contains
       type(solution_state_type), intent(in) :: next
       logical, intent(in) :: is_plain                            !! whether the iteration is (4.1)
       type(increment_workspace_type), intent(inout) :: workspace
-      real(dp), allocatable :: derivative(:, :), body(:)
+      real(dp), allocatable :: derivative(:, :), body(:), by_temperature(:, :)
       type(coupling_gain_type) :: gain
       logical :: found
 
       workspace%record%coupling_gain = 0.0_dp
       workspace%record%coupling_gain_max = 0.0_dp
-      associate (graph => data%graph, opening => workspace%pass%opening)
+      associate (graph => workspace%graph, opening => workspace%pass%opening)
          if (.not. (any(abs(graph%derivative(graph%coordinate_of_opening(opening))) > 0.0_dp) .or. &
-            any(next%resting))) return
+            any(next%resting) .or. bodies%points%vary_with_temperature())) return
       end associate
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
       call opening_derivative(bodies, data, workspace, next%jump, next%contact, derivative, body)
       if (.not. allocated(derivative)) return
-      call find_gain(data%graph, workspace%pass%opening, derivative, next%resting, gain, found)
+      if (bodies%points%vary_with_temperature()) by_temperature = &
+         derivative_by_temperature(bodies, data, workspace, workspace%graph%coordinate_of_opening( &
+         workspace%pass%opening), face_temperatures(bodies, data, next%jump))
+      call find_gain(workspace%graph, workspace%pass%opening, derivative, next%resting, gain, &
+         found, by_temperature)
       if (.not. found) return
       workspace%record%coupling_gain = gain%largest
       workspace%record%coupling_gain_max = gain%largest_real

@@ -23,7 +23,7 @@ contains
 
    !> The gain of a solution. The conductance of a contact point that rests is no variable of U'; in
    !> det(I - U') it is one, that of a law which is all but vertical there.
-   subroutine find_gain(graph, opening, derivative, resting, gain, found)
+   subroutine find_gain(graph, opening, derivative, resting, gain, found, by_temperature)
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
       real(dp), intent(in) :: opening(:)                    !! (m) openings [length]
       !> (m, m) derivative of the openings by the conductances
@@ -31,6 +31,9 @@ contains
       logical, intent(in) :: resting(:)                     !! (m) contact points that rest
       type(coupling_gain_type), intent(out) :: gain
       logical, intent(out) :: found                         !! whether LAPACK found it
+      !> (m, m) derivative of the conductances by each other at constant openings, by way of the
+      !> temperatures; absent where no law varies with these
+      real(dp), intent(in), optional :: by_temperature(:, :)
       real(dp) :: u_derivative(size(opening), size(opening)), matrix(size(opening), size(opening))
       real(dp), allocatable :: real_part(:), imaginary_part(:)
       integer, allocatable :: free(:)
@@ -42,6 +45,7 @@ contains
       do k = 1, size(opening)
          u_derivative(k, :) = &
             graph(k)%derivative(graph(k)%coordinate_of_opening(opening(k)))*derivative(k, :)
+         if (present(by_temperature)) u_derivative(k, :) = u_derivative(k, :) + by_temperature(k, :)
          matrix(k, :) = -u_derivative(k, :)
          matrix(k, k) = matrix(k, k) + 1.0_dp
          if (resting(k)) matrix(k, :) = -sign(1.0_dp, &

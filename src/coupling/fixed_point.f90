@@ -2,6 +2,7 @@
 !> two, (4.1) and (4.2). The loop and its tolerances are the caller's; an accelerator only chooses
 !> the next omega*.
 module fixed_point
+   use conductance_laws, only: conductance_law_type
    use kinds, only: dp
    implicit none
    private
@@ -14,6 +15,11 @@ module fixed_point
       real(dp), allocatable :: omega(:)       !! (m) omega*
       real(dp), allocatable :: image(:)       !! (m) U(omega*)
       real(dp), allocatable :: opening(:)     !! (m) openings that it found [length]
+      !> (m) laws at the temperatures that it found, and coordinates that with these temperatures
+      !> give omega* [length]; only where laws vary with the temperature, and the second only where
+      !> the accelerator goes by them
+      type(conductance_law_type), allocatable :: law(:)
+      real(dp), allocatable :: coordinate(:)
       !> (m, m) derivative of the openings by omega*, where the accelerator asked and there is one
       real(dp), allocatable :: derivative(:, :)
       !> (m) conductance that the bodies put in series with each contact point; set with the

@@ -4,7 +4,7 @@ module friction_memory
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use kinds, only: dp
-   use all_contact_points, only: tangential_positions
+   use held_points, only: tangential_positions
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    implicit none

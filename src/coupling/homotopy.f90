@@ -33,12 +33,8 @@ module homotopy
    real(dp), parameter :: first_near = 0.02_dp      !! correction after which the path goes on
    real(dp), parameter :: nearest = 1.0e-11_dp      !! smallest one that is asked for
    real(dp), parameter :: closer = 0.25_dp          !! by which it becomes smaller at sharp turns
-   !> Correction over `near` that rejects no pass: the sides of a kink may correct to each other,
-   !> however short the step is.
-   real(dp), parameter :: at_a_kink = 0.25_dp
-   integer, parameter :: most_arrived = 6           !! passes at t = 1 to which that applies
    real(dp), parameter :: rounding = 1.0e-12_dp     !! correction that cannot become smaller
-   real(dp), parameter :: least_unit = 1.0e-8_dp    !! of lengths along the graphs
+   real(dp), parameter :: least_t = 1.0e-8_dp       !! of the tangent that leads to t = 1
    real(dp), parameter :: no_part = 1.0e-100_dp     !! of the tangent, whose quotients stay finite
    real(dp), parameter :: unlike = 0.1_dp           !! part of the openings by which points differ
    real(dp), parameter :: golden = 0.5_dp*(sqrt(5.0_dp) - 1.0_dp)   !! spreads them evenly
@@ -53,10 +49,8 @@ module homotopy
       real(dp), private :: base_t = 0.0_dp, trial_t = 0.0_dp   !! t of both
       real(dp), allocatable, private :: correction(:) !! (m + 1) from the base to the path
       real(dp), allocatable, private :: tangent(:)    !! (m + 1) of the path there, of length 1
-      real(dp), private :: unit = 0.0_dp          !! of lengths along the graphs
       real(dp), private :: step = first_step      !! length of the present advance
       real(dp), private :: near = first_near      !! correction after which the path goes on
-      integer, private :: arrived = 0             !! passes at t = 1, one after the other
       logical, private :: has_turned = .false.    !! whether the path turned back at the base
       real(dp), private :: way = huge(1.0_dp)     !! length of the move to the trial
    contains
@@ -100,7 +94,6 @@ contains
       self%trial = self%base
       self%base_t = 0.0_dp
       self%trial_t = 0.0_dp
-      self%unit = 0.0_dp
       self%step = first_step
       self%way = huge(1.0_dp)
       self%correction = [(0.0_dp, k=0, size(opening))]
@@ -119,16 +112,14 @@ contains
       real(dp), intent(out) :: coordinate(:)                !! (m) z [length]
       type(path_step_type) :: step
 
-      if (self%unit <= 0.0_dp) self%length = max(self%length, maxval(abs(opening)))
+      if (self%base_t <= 0.0_dp .and. self%trial_t <= 0.0_dp) self%length = max(self%length, &
+         maxval(abs(opening)))
       if (self%step < shortest_step) then
-         self%near = max(closer*self%near, nearest)
          call restart(self, graph, opening)
          coordinate = self%trial
          return
       end if
       step%sound = allocated(derivative)
-      if (step%sound .and. self%unit <= 0.0_dp) call set_unit(self, graph, body, opening, &
-         derivative, step)
       if (step%sound) call find_step(self, graph, body, opening, derivative, step)
       if (step%sound) call judge(self, step)
       if (.not. step%sound) then
@@ -145,13 +136,11 @@ contains
 
    !> Whether a pass is one on the way: its correction is small, and at t = 1 the path goes forward.
    subroutine judge(self, step)
-      class(homotopy_type), intent(inout) :: self
+      class(homotopy_type), intent(in) :: self
       type(path_step_type), intent(inout) :: step
 
-      self%arrived = merge(self%arrived + 1, 0, self%trial_t >= 1.0_dp)
       associate (correction => norm2(step%change))
-         step%sound = correction <= merge(too_large, 1.0_dp, self%step > self%near)*self%way .or. &
-            (correction <= at_a_kink*self%near .and. self%arrived < most_arrived)
+         step%sound = correction <= merge(too_large, 1.0_dp, self%step > self%near)*self%way
          if (self%trial_t < 1.0_dp) return
          step%sound = (step%sound .or. correction <= rounding) .and. &
             dot_product(step%tangent, self%tangent) >= 0.0_dp
@@ -190,22 +179,6 @@ contains
       coordinate = self%trial
    end subroutine retreat
 
-   !> The unit of lengths: as far as the points go at the start while t goes to 1, where that is
-   !> little.
-   subroutine set_unit(self, graph, body, opening, derivative, step)
-      class(homotopy_type), intent(inout) :: self
-      type(conductance_graph_type), intent(in) :: graph(:)
-      real(dp), intent(in) :: body(:), opening(:), derivative(:, :)
-      type(path_step_type), intent(out) :: step
-      integer :: n
-
-      self%unit = 1.0_dp
-      call find_step(self, graph, body, opening, derivative, step)
-      n = size(body)
-      if (step%sound) self%unit = min(max(norm2(step%tangent(:n))/step%tangent(n + 1), &
-         least_unit), 1.0_dp)
-   end subroutine set_unit
-
    !> The trial from the base: to the path and along it, no point by more than a part of its opening
    !> where that is large.
    subroutine advance(self, graph, body)
@@ -214,8 +187,7 @@ contains
       real(dp), intent(in) :: body(:)
       real(dp) :: longest(size(self%tangent))
 
-      longest = longest_step*[max(1.0_dp, abs(graph%opening(self%base))/self%length)/self%unit, &
-         1.0_dp]
+      longest = longest_step*[max(1.0_dp, abs(graph%opening(self%base))/self%length), 1.0_dp]
       self%step = min(self%step, minval(longest/max(abs(self%tangent), no_part)))
       call move(self, graph, body, self%base, self%base_t, path_step_type(.true., &
          self%correction + self%step*self%tangent, self%tangent))
@@ -234,9 +206,9 @@ contains
       n = size(body)
       way = step%change
       if (from_t < 1.0_dp .and. from_t + way(n + 1) >= 1.0_dp) way = way - &
-         (from_t + way(n + 1) - 1.0_dp)/max(step%tangent(n + 1), least_unit)*step%tangent
+         (from_t + way(n + 1) - 1.0_dp)/max(step%tangent(n + 1), least_t)*step%tangent
       self%way = norm2(way)
-      self%trial = moved_along(graph, from, self%unit*way(:n), body, self%length)
+      self%trial = moved_along(graph, from, way(:n), body, self%length)
       self%trial_t = min(max(from_t + way(n + 1), 0.0_dp), 1.0_dp)
       if (from_t + step%change(n + 1) >= 1.0_dp) self%trial_t = 1.0_dp
    end subroutine move
@@ -255,7 +227,7 @@ contains
 
       n = size(opening)
       do k = 1, n
-         rate = self%unit*coordinate_rate(graph(k), self%trial(k), body(k), self%length)
+         rate = coordinate_rate(graph(k), self%trial(k), body(k), self%length)
          matrix(:n, k) = -self%trial_t*rate*graph(k)%derivative(self%trial(k))*derivative(:, k)
          matrix(k, k) = matrix(k, k) + rate*graph(k)%advance(self%trial(k))
       end do

@@ -4,6 +4,7 @@ module increment_data
    use contact_states, only: contact_state_type
    use contact_workspace, only: contact_workspace_type
    use controls, only: thermal_scheme_type
+   use cut_hats, only: cut_hats_type
    use field_problem, only: field_load_type
    use fixed_point, only: pass_type
    use kinds, only: dp
@@ -29,9 +30,11 @@ module increment_data
       real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
       real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]
       real(dp) :: expansion = 0.0_dp !! largest coefficient of expansion [1/temperature]
+      !> (m) mean temperature of the faces without jumps, where conductance laws vary with it
+      real(dp), allocatable :: welded_mean(:)
       ! The next two are set where heat and mechanics are coupled.
-      type(conductance_graph_type), allocatable :: graph(:)  !! (m) graphs of the conductance
       type(contact_scales_type) :: scales            !! largest values
+      logical :: cuts_hats = .false.                 !! whether edges of contact cut hats
    end type increment_data_type
 
    !> What a trial solution needs, and nobody but its own increment changes.
@@ -39,7 +42,13 @@ module increment_data
       type(field_load_type) :: heat                  !! load of (3.4)
       type(field_load_type) :: force                 !! load of (2.4)
       type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
+      real(dp), allocatable :: on_tail(:)            !! (thermal tail) their last solution
+      type(cut_hats_type) :: cut                     !! hats that an edge cuts, for the last omega*
       type(contact_workspace_type) :: contact        !! laws and factors of the contact
+      !> (m) graphs of the conductance, at the temperatures of the last pass; where heat and
+      !> mechanics are coupled
+      type(conductance_graph_type), allocatable :: graph(:)
+      type(contact_workspace_type) :: held           !! with all closed contact points holding
       type(pass_type) :: pass                        !! the last pass
       type(solution_report_type) :: record           !! what is told of the way to the solution
    end type increment_workspace_type

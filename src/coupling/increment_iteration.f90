@@ -4,8 +4,10 @@ module increment_iteration
    use contact_operator, only: contact_operator_pass, residual_floor
    use contact_states, only: closing_law_type, contact_state_type, contact_open
    use controls, only: fixed_point_type, method_newton
+   use cut_hats, only: cut_hats_type, find_cut_hats
    use errors, only: error_type, set_error, status_no_convergence
-   use fixed_point, only: accelerator_type
+   use fixed_point, only: accelerator_type, pass_type, point_residual
+   use gap_temperatures, only: at_own_temperatures, derivative_by_temperature, face_temperatures
    use increment_data, only: increment_data_type, increment_workspace_type
    use interruption, only: check_overdue
    use kinds, only: dp
@@ -27,11 +29,10 @@ module increment_iteration
 
 contains
 
-   !> Conductances, jumps and contact state of an increment. Where another method fails, Newton's
-   !> solves the increment if laws jump, since the others know no contact points at rest; elsewhere
-   !> it only tells what the failure means.
-   !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies;
-   !> status_interrupted where a signal left no more time.
+   !> Conductances, jumps and contact state of an increment. If an edge of contact cuts hats and its
+   !> position does not converge, as when it jumps back and forth over a contact point, heat crosses
+   !> whole hats.
+   !> Errors: as iterate_whole.
    subroutine iterate(bodies, controls, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(fixed_point_type), intent(in) :: controls
@@ -40,11 +41,48 @@ contains
       type(solution_state_type), intent(inout) :: next           !! omega*^0 and guess in
       type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: start
+      type(increment_data_type) :: whole
+
+      allocate (workspace%record%iterations(0))
+      next%cut = cut_hats_type()
+      if (.not. data%cuts_hats) then
+         call iterate_whole(bodies, controls, data, workspace, next, error)
+         return
+      end if
+      start = next
+      call use_method(bodies, controls, data, workspace, next, error)
+      if (.not. allocated(error)) return
+      if (error%status /= status_no_convergence) return
+      deallocate (error)
+      call append(workspace%record%notes, 'the edge of contact comes to no place within its '// &
+         'side; heat crosses the whole faces of the contact points there')
+      whole = data
+      whole%cuts_hats = .false.
+      next = start
+      next%cut = cut_hats_type()
+      workspace%cut = next%cut
+      call iterate_whole(bodies, controls, whole, workspace, next, error)
+   end subroutine iterate
+
+   !> The same with whole hats. Where another method fails, Newton's solves the increment if laws
+   !> jump, since the others know no contact points at rest; elsewhere it only tells what the
+   !> failure means.
+   !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies;
+   !> status_interrupted where a signal left no more time.
+   subroutine iterate_whole(bodies, controls, data, workspace, next, error)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(fixed_point_type), intent(in) :: controls
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(inout) :: workspace !! loads in, passes out
+      type(solution_state_type), intent(inout) :: next           !! omega*^0 and guess in
+      type(error_type), allocatable, intent(out) :: error
+      type(solution_state_type) :: start
+      integer :: before
 
       start = next
-      allocate (workspace%record%iterations(0))
+      before = size(workspace%record%iterations)
       call use_method(bodies, controls, data, workspace, next, error)
-      if (allocated(error) .and. size(workspace%record%iterations) == 0) then
+      if (allocated(error) .and. size(workspace%record%iterations) == before) then
          ! Not even the contact zones of the start were found: those of the last increment may be.
          next%contact = start%contact
          next%omega = data%omega_old
@@ -53,7 +91,7 @@ contains
       if (.not. allocated(error)) return
       if (controls%method == method_newton) then
          call name_runaway(bodies, data, next%jump, workspace%record, error)
-      else if (any(data%graph%width > 0.0_dp)) then
+      else if (any(workspace%graph%width > 0.0_dp)) then
          deallocate (error)
          call append(workspace%record%notes, &
             'a contact point whose conductance jumps comes to no state by the '// &
@@ -67,7 +105,7 @@ contains
       else if (.not. workspace%contact%driven) then
          call explain_failure(bodies, by_newton(controls), data, start, workspace, error)
       end if
-   end subroutine iterate
+   end subroutine iterate_whole
 
    !> The controls with Newton's method.
    pure function by_newton(controls)
@@ -141,24 +179,28 @@ contains
       class(accelerator_type), allocatable :: accelerator
       type(iteration_record_type) :: passes((1 + path_share)*controls%max_iterations)
       type(contact_state_type) :: good
-      integer :: turns(size(data%graph)), away, before, i
-      real(dp) :: wanted
+      integer :: turns(size(workspace%graph)), away, before, i
+      real(dp) :: edge_opening(size(workspace%graph)), wanted
 
       before = size(workspace%record%iterations)
       turns = 0
       away = 0
       wanted = controls%tolerance
-      workspace%contact%closing = closing_law_type()
-      call make_accelerator(controls, data%graph, accelerator)
+      edge_opening = openings(bodies, workspace%graph, data%previous)
+      call begin_passes(next%omega, workspace)
+      call make_accelerator(controls, workspace%graph, accelerator)
       associate (pass => workspace%pass, record => workspace%record)
-         pass%omega = next%omega
-         pass%image = pass%omega
          do i = 1, size(passes)
             if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
+            ! Where the edge goes over a contact point U jumps, and there is no path.
+            if (data%cuts_hats .and. accelerator%follows_path) exit
             call check_overdue(error)
             if (allocated(error)) exit
             good = next%contact
             pass%iteration = i
+            call take_coordinates(bodies, accelerator, pass)
+            if (data%cuts_hats) call find_cut_hats(bodies, workspace%graph%modulus, &
+               edge_opening, pass%omega, workspace%cut)
             call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
             passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
                residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
@@ -169,19 +211,16 @@ contains
                if (allocated(error)) exit
                cycle
             end if
-            pass%opening = openings(bodies, data%graph, next%contact)
-            call find_residual(data%graph, data%scales, bodies%points%weight, pass, &
-               passes(i)%residual, next%resting)
-            record%residual_floor = residual_floor(bodies, data, next%contact, pass%image)
+            call measure_pass(bodies, data, workspace, next, passes(i)%residual)
+            edge_opening = pass%opening
             wanted = max(controls%tolerance, record%residual_floor)
-            next%omega = pass%omega
             if (passes(i)%residual <= wanted) exit
             away = merge(away + 1, 0, runs_away(data, next%jump))
             if (away >= merge(1, most_away, accelerator%follows_path)) exit
             where ((next%contact%contact_state == contact_open) .neqv. &
                (good%contact_state == contact_open)) turns = turns + 1
             if (controls%method /= method_newton .and. any(turns > most_turns .and. &
-               data%graph%width > 0.0_dp)) exit
+               workspace%graph%width > 0.0_dp)) exit
             call take_step(bodies, data, next, accelerator, workspace)
          end do
          call close_passes(record, passes, i, wanted, error)
@@ -190,6 +229,64 @@ contains
       end associate
       call settle(next%resting, next%contact)
    end subroutine use_method
+
+   !> Starts passes from omega*^0 without anything that passes of another method left.
+   pure subroutine begin_passes(omega, workspace)
+      real(dp), intent(in) :: omega(:)                           ! (m) omega*^0
+      type(increment_workspace_type), intent(inout) :: workspace
+
+      workspace%contact%closing = closing_law_type()
+      if (allocated(workspace%pass%coordinate)) deallocate (workspace%pass%coordinate)
+      workspace%pass%omega = omega
+      workspace%pass%image = omega
+   end subroutine begin_passes
+
+   !> What a pass found: solution so far, openings, points at rest, residual and its floor.
+   subroutine measure_pass(bodies, data, workspace, next, residual)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
+      type(solution_state_type), intent(inout) :: next
+      real(dp), intent(out) :: residual
+
+      workspace%pass%opening = openings(bodies, workspace%graph, next%contact)
+      call find_residual(workspace%graph, data%scales, bodies%points%weight, workspace%pass, &
+         residual, next%resting)
+      if (data%cuts_hats) residual = max(residual, cut_residual(bodies, workspace))
+      next%omega = workspace%pass%omega
+      next%cut = workspace%cut
+      workspace%record%residual_floor = residual_floor(bodies, data, workspace%graph%law, &
+         next%contact, workspace%pass%image)
+   end subroutine measure_pass
+
+   !> The coordinates that Newton's method tries, where conductances follow them and the
+   !> temperatures.
+   subroutine take_coordinates(bodies, accelerator, pass)
+      type(reduced_bodies_type), intent(in) :: bodies
+      class(accelerator_type), intent(in) :: accelerator
+      type(pass_type), intent(inout) :: pass
+
+      if (.not. bodies%points%vary_with_temperature()) return
+      select type (accelerator)
+      type is (newton_type)
+         if (allocated(accelerator%trial)) pass%coordinate = accelerator%trial
+      end select
+   end subroutine take_coordinates
+
+   !> How far the conductances of cut hats are from those for the openings that a pass found.
+   pure real(dp) function cut_residual(bodies, workspace) result(residual)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_workspace_type), intent(in) :: workspace
+      type(cut_hats_type) :: found
+
+      associate (pass => workspace%pass, cut => workspace%cut)
+         call find_cut_hats(bodies, workspace%graph%modulus, pass%opening, pass%image, found)
+         residual = 1.0_dp
+         if (size(found%point) /= size(cut%point)) return
+         if (any(found%point /= cut%point)) return
+         residual = maxval([0.0_dp, point_residual(cut%conductance, found%conductance)])
+      end associate
+   end function cut_residual
 
    !> The next omega* from the contact state before a pass whose contact zones were not found, which
    !> only Newton's method has.
@@ -242,8 +339,14 @@ contains
          if (allocated(pass%derivative)) deallocate (pass%derivative)
          select type (accelerator)
          type is (newton_type)
+            if (bodies%points%vary_with_temperature()) accelerator%graph%law = pass%law
             if (accelerator%asks_derivative(pass)) call opening_derivative(bodies, data, &
                workspace, next%jump, next%contact, pass%derivative, pass%body)
+            if (bodies%points%vary_with_temperature() .and. allocated(pass%derivative)) then
+               call at_own_temperatures(derivative_by_temperature(bodies, data, workspace, &
+                  accelerator%coordinates_of(pass), face_temperatures(bodies, data, next%jump)), &
+                  pass%derivative)
+            end if
          end select
          call accelerator%next(pass, next%omega)
          pass%omega = next%omega

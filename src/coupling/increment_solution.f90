@@ -3,27 +3,31 @@
 module increment_solution
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
-   use conductance_laws, only: law_jumps
+   use conductance_graph, only: conductance_graph_type
+   use contact_heat, only: temperature_jumps
    use contact_operator, only: contact_operator_pass, kept_contact, law_conductance, &
-      temperature_jumps, thermal_forces
-   use contact_states, only: contact_state_type, contact_open
+      law_pressure, unstrained_forces
+   use contact_states, only: contact_state_type, contact_open, contact_slip
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
-   use errors, only: error_type, status_no_convergence
+   use cut_hats, only: cut_hats_type
+   use errors, only: error_type, set_error, status_no_convergence
    use field_problem, only: field_load_type
    use films, only: film_history
    use finite_values, only: check_finite
    use friction_memory, only: remember_slip
+   use gap_temperatures, only: face_temperatures, settle_conductance
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use loads, only: loads_type
-   use all_contact_points, only: held_approach
    use reduced_bodies, only: reduced_bodies_type
-   use scheme_properties, only: is_explicit
+   use scheme_properties, only: has_memory, is_explicit
    use scheme_start, only: warn_of_imbalance
    use solution_report, only: solution_report_type, iteration_record_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
+   use temperature_laws, only: is_below_zero, law_jumps
+   use text, only: to_text
    use thermal_matrix, only: field_history, scheme_load
    use unconstrained_motions, only: balanced_load, least_drive
    implicit none
@@ -46,10 +50,15 @@ contains
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
       type(increment_data_type) :: data
+      type(solution_state_type) :: begun
 
+      begun = as_begun(bodies, previous)
+      if (has_memory(step%scheme)) begun%cut = cut_hats_type()
+      next%cut = begun%cut
+      call adapt_contact(bodies, next%contact)
       data%scheme = step%scheme
-      data%previous = previous%contact
-      data%omega_old = previous%omega
+      data%previous = begun%contact
+      data%omega_old = begun%omega
       data%jump_old = previous%jump
       next%omega_start = data%omega_old
       next%keeps_imbalance = .false.
@@ -62,7 +71,9 @@ contains
          if (allocated(error)) return
          call warn_of_imbalance(bodies, loads, data, previous, next, workspace%record)
          if (size(next%omega) > 0 .and. .not. bodies%is_coupled) then
-            call conduct(bodies, previous, data, workspace, next)
+            call conduct(bodies, begun, data, workspace, next, error)
+            if (.not. allocated(error)) call check_absolute_zero(bodies, data, next, error)
+            if (allocated(error)) return
          end if
       end if
       if (.not. solves_mechanics(step%analysis)) return
@@ -77,13 +88,55 @@ contains
       if (.not. bodies%is_coupled) then
          call solve_mechanics(bodies, step, data, workspace, next, error)
       else if (is_explicit(step%scheme)) then
-         call pass_once(bodies, previous, data, workspace, next, error)
+         call pass_once(bodies, begun, data, workspace, next, error)
       else
-         call solve_coupled(bodies, step, previous, data, workspace, next, error)
+         call solve_coupled(bodies, step, begun, data, workspace, next, error)
       end if
       if (.not. allocated(error)) call settle_idle_points(bodies, workspace%contact%idle, next)
       next%has_mechanics = .true.
+      if (bodies%is_coupled .and. .not. allocated(error)) call check_absolute_zero(bodies, data, &
+         next, error)
    end subroutine solve_points
+
+   !> The state at the start of an increment under the laws of its step: contact points that the
+   !> step removes or adds have other conductances.
+   pure function as_begun(bodies, previous) result(begun)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(solution_state_type), intent(in) :: previous
+      type(solution_state_type) :: begun
+      real(dp) :: omega(size(previous%omega))
+
+      begun = previous
+      call adapt_contact(bodies, begun%contact)
+      omega = law_conductance(bodies, bodies%points%laws_of(begun%temperature, begun%jump), &
+         kept_contact(begun%contact, begun%has_mechanics))
+      associate (removed => bodies%points%removed)
+         begun%resting = begun%resting .and. .not. removed
+         begun%cut = begun%cut%without(removed)
+         where (removed .or. begun%omega <= 0.0_dp)
+            begun%omega = omega
+            begun%omega_before = omega
+         end where
+      end associate
+   end function as_begun
+
+   !> Contact points that the step removes are open, those without friction slip freely.
+   pure subroutine adapt_contact(bodies, contact)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(contact_state_type), intent(inout) :: contact
+
+      associate (removed => bodies%points%removed)
+         where (removed)
+            contact%contact_state = contact_open
+            contact%force = 0.0_dp
+         end where
+         where (.not. bodies%points%has_friction())
+            contact%direction = 0
+            contact%shear_force = 0.0_dp
+            contact%contact_state = min(contact%contact_state, contact_slip)
+         end where
+      end associate
+   end subroutine adapt_contact
 
    !> Idle contact points count as open without a gap; where their law jumps they rest. For the next
    !> increment they are closed still: the body stays where it touches.
@@ -106,9 +159,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call solve_increment(bodies%contact, data%previous, data%welded_load, workspace%contact, &
-         next%contact, error)
+         workspace%held, next%contact, error)
       if (allocated(error)) return
-      next%omega = law_conductance(bodies, next%contact)
+      next%omega = law_conductance(bodies, bodies%points%laws_of(next%temperature, next%jump), &
+         next%contact)
       next%omega_before = next%omega
       next%resting = .false.
       if (.not. solves_heat(step%analysis) .or. size(next%omega) == 0) return
@@ -135,40 +189,72 @@ contains
 
    !> Jumps and temperatures of an increment whose mechanics they do not depend on, for want of it
    !> or because the conductance is constant: it is that of the contact state that stays, at both
-   !> ends of the increment.
-   subroutine conduct(bodies, previous, data, workspace, next)
+   !> ends of the increment; or it follows the temperatures.
+   !> Error: no convergence to these.
+   subroutine conduct(bodies, previous, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(inout) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: coordinate(size(next%omega))
 
-      next%omega = law_conductance(bodies, kept_contact(previous%contact, &
-         previous%has_mechanics))
+      next%omega = law_conductance(bodies, bodies%points%laws_of(previous%temperature, &
+         previous%jump), kept_contact(previous%contact, previous%has_mechanics))
       where (previous%resting) next%omega = previous%omega
       data%omega_old = next%omega
-      call temperature_jumps(bodies, data, next%omega, workspace, next%jump)
+      workspace%cut = previous%cut
+      if (bodies%points%vary_with_temperature()) then
+         call begin_graphs(bodies, previous, next%omega, workspace%graph, coordinate)
+         call settle_conductance(bodies, data, coordinate, workspace, next%omega, next%jump, error)
+         if (allocated(error)) return
+      else
+         call temperature_jumps(bodies, data, next%omega, workspace, next%jump)
+      end if
       next%omega_before = next%omega
-      next%omega_start = next%omega
-      next%temperature = temperatures(bodies, workspace%heat, next%jump)
+      next%omega_start = data%omega_old
+      next%temperature = bodies%thermal%recover(workspace%heat, workspace%on_tail)
    end subroutine conduct
 
-   !> Temperatures of the whole bodies with these jumps.
-   function temperatures(bodies, load, jump) result(values)
+   !> Graphs of the conductance, and coordinates of a contact state that stays.
+   subroutine begin_graphs(bodies, previous, omega, graph, coordinate)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(field_load_type), intent(in) :: load
-      real(dp), intent(in) :: jump(:)
-      real(dp) :: values(bodies%thermal%matrix%row_count)
-      real(dp) :: on_tail(bodies%thermal%map%tail)
+      type(solution_state_type), intent(in) :: previous
+      real(dp), intent(in) :: omega(:)                      !! (m) of points at rest
+      type(conductance_graph_type), allocatable, intent(out) :: graph(:)
+      real(dp), intent(out) :: coordinate(:)                !! (m) [length]
+      type(contact_state_type) :: contact
+
+      contact = kept_contact(previous%contact, previous%has_mechanics)
+      allocate (graph(size(coordinate)))
+      graph%law = bodies%points%laws_of(previous%temperature, previous%jump)
+      where (law_jumps(bodies%points%law)) graph%width = 1.0_dp
+      coordinate = -graph%width - law_pressure(bodies, contact)
+      where (contact%contact_state == contact_open) coordinate = max(contact%gap, 0.0_dp)
+      where (previous%resting) coordinate = graph%coordinate_of_omega(omega, 0.0_dp)
+   end subroutine begin_graphs
+
+   !> Radiation has no meaning below absolute zero.
+   !> Error: a face that radiates is below it.
+   subroutine check_absolute_zero(bodies, data, next, error)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
+      type(solution_state_type), intent(in) :: next
+      type(error_type), allocatable, intent(out) :: error
       integer :: k
 
-      ! Forces of links act on jumps only, nothing is recovered from them.
-      on_tail = 0.0_dp
-      do k = 1, size(jump)
-         if (bodies%jump_index(k) > 0) on_tail(bodies%jump_index(k)) = jump(k)
-      end do
-      values = bodies%thermal%recover(load, on_tail)
-   end function temperatures
+      if (.not. bodies%points%vary_with_temperature()) return
+      k = findloc(is_below_zero(bodies%points%law, face_temperatures(bodies, data, next%jump)), &
+         .true., dim=1)
+      if (k == 0) return
+      associate (i => count(bodies%points%interface_start <= k))
+         call set_error(error, status_no_convergence, 'contact pair '// &
+            bodies%interfaces(i)%name//' radiates below absolute zero, '// &
+            to_text(bodies%points%law(k)%by_temperature%absolute_zero)// &
+            '; see ABSOLUTE ZERO= of *PHYSICAL CONSTANTS and the temperatures of the deck')
+      end associate
+   end subroutine check_absolute_zero
 
    !> An increment explicit in omega: temperatures by the conductance at its start, then mechanics,
    !> then the conductance at its end. Nothing is iterated.
@@ -219,6 +305,8 @@ contains
          where (bodies%jump_index > 0) data%held_jump = 0.0_dp
          allocate (zero(bodies%thermal%map%tail), source=0.0_dp)
          next%temperature = bodies%thermal%recover(workspace%heat, zero)
+         if (bodies%points%vary_with_temperature()) data%welded_mean = &
+            bodies%points%means(next%temperature)
       end associate
    end subroutine load_heat
 
@@ -232,12 +320,12 @@ contains
       real(dp), allocatable, intent(out) :: welded_load(:)
       real(dp) :: thermal(2*size(next%temperature))
 
-      thermal = thermal_forces(bodies, next%temperature)
+      thermal = unstrained_forces(bodies, next%temperature)
       workspace%force = bodies%mechanical%load_of(next%force_load + thermal, &
          loads%displacement%value)
       call bodies%mechanical%condense_load(workspace%force)
-      workspace%contact = contact_workspace_type(bodies%contact, bodies%points%initial_gap - &
-         held_approach(bodies%points, loads%displacement%value))
+      workspace%contact = contact_workspace_type(bodies%contact, loads%present_gaps( &
+         bodies%points))
       workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       associate (applied => next%force_load, rigid => bodies%rigid)
          workspace%contact%least_drive = least_drive(bodies%contact%rigid, &
@@ -262,9 +350,9 @@ contains
       next%smallest_gap = min(previous%smallest_gap, next%contact%gap)
       if (.not. solves_mechanics(step%analysis)) return
       if (bodies%is_coupled) then
-         next%temperature = temperatures(bodies, workspace%heat, next%jump)
+         next%temperature = bodies%thermal%recover(workspace%heat, workspace%on_tail)
          workspace%force = bodies%mechanical%load_of(next%force_load + &
-            thermal_forces(bodies, next%temperature), loads%displacement%value)
+            unstrained_forces(bodies, next%temperature), loads%displacement%value)
       end if
       allocate (on_tail(bodies%mechanical%map%tail))
       associate (contact => bodies%contact)

@@ -49,12 +49,13 @@ module newton
       !> (m) conductance of the bodies about a contact point
       real(dp), allocatable, private :: body(:)
       real(dp), allocatable, private :: step(:)        !! (m) dz of the present step [length]
-      real(dp), allocatable, private :: trial(:)       !! (m) z of the pass that runs [length]
+      real(dp), allocatable :: trial(:)                !! (m) z of the pass that runs [length]
       real(dp), allocatable, private :: filter(:, :)   !! (2, passes taken) their measures
       real(dp), private :: part = 1.0_dp               !! part of the present step that is tried
       real(dp), private :: time_step = huge(1.0_dp)    !! tau; huge for Newton's method
    contains
       procedure :: asks_derivative
+      procedure :: coordinates_of
       procedure :: next
       procedure :: retreat
    end type newton_type
@@ -75,9 +76,9 @@ contains
 
    !> Coordinates of a pass; those of the first one by its conductances.
    pure function coordinates_of(self, pass) result(coordinate)
-      class(newton_type), intent(in) :: self
-      type(pass_type), intent(in) :: pass
-      real(dp) :: coordinate(size(pass%omega))
+      class(newton_type), intent(in) :: self         !! memory of the method
+      type(pass_type), intent(in) :: pass            !! the last pass
+      real(dp) :: coordinate(size(pass%omega))       !! (m) z [length]
 
       if (allocated(self%trial)) then
          coordinate = self%trial

@@ -1,22 +1,19 @@
 !> The derivative of the contact operator of section 2, point by point on the reduced system: how
 !> the openings of the contact points follow their conductances.
 !>
-!> From (3.4) on the tail, (S_T + diag(d)) theta = Q_c - history with d = weight (a2 omega_i + a3
-!> omega)/a1,
-!>
-!>    dtheta = -(S_T + diag(d))^-1 diag(weight (a3 theta + b3 theta_i)/a1) domega;
-!>
-!> the condensed load follows by J dtheta, gaps and forces by the contact system with the conditions
-!> that hold.
+!> The jumps follow them by contact_heat, from (3.4) on the tail, (S_T + diag(d)) theta = Q_c -
+!> history with d = weight (a2 omega_i + a3 omega)/a1; the condensed load follows by J dtheta, gaps
+!> and forces by the contact system with the conditions that hold.
 module opening_derivatives
    use conductance_graph, only: conductance_graph_type
-   use conductance_laws, only: law_jumps
+   use contact_heat, only: jump_derivatives
    use contact_operator, only: law_pressure
    use contact_states, only: contact_state_type, contact_open
    use contact_tangent, only: contact_response
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
+   use temperature_laws, only: law_jumps
    implicit none
    private
    public :: make_graph, openings, opening_derivative
@@ -80,26 +77,20 @@ contains
       !> (m) conductance that the bodies put in series with each contact point, 1 where that means
       !> nothing
       real(dp), allocatable, intent(out) :: body(:)
-      real(dp), allocatable :: of_jump(:, :), gap(:, :), force(:, :)
-      real(dp) :: heat(size(jump))
+      real(dp), allocatable :: of_jump(:, :), gap(:, :), force(:, :), heat(:)
       integer, allocatable :: active(:)
       integer :: k, n
       logical :: sound
 
       allocate (derivative(size(jump), size(jump)), source=0.0_dp)
       allocate (body(size(jump)), source=1.0_dp)
-      associate (weight => bodies%points%weight, tail_index => bodies%jump_index, &
-         a => data%scheme%a)
-         heat = -weight/a(1)*(a(3)*jump + data%scheme%b(3)*data%jump_old)
-         active = pack([(k, k=1, size(jump))], tail_index > 0 .and. abs(heat) > 0.0_dp)
-         n = size(active)
-         if (n == 0) return
-         allocate (of_jump(bodies%thermal%map%tail, n), source=0.0_dp)
+      call jump_derivatives(bodies, data, workspace, jump, active, of_jump, heat)
+      n = size(active)
+      if (n == 0) return
+      associate (weight => bodies%points%weight, tail_index => bodies%jump_index)
          do k = 1, n
             associate (j => active(k))
-               of_jump(tail_index(j), k) = heat(j)
-               call workspace%tail%solve(of_jump(:, k))
-               body(j) = (heat(j)/of_jump(tail_index(j), k) - &
+               body(j) = (heat(k)/of_jump(tail_index(j), k) - &
                   workspace%tail%diagonal(tail_index(j)))/weight(j)
             end associate
          end do
@@ -112,7 +103,7 @@ contains
             if (state%contact_state(k) == contact_open) then
                derivative(k, active) = gap(k, :)
             else
-               derivative(k, active) = -force(k, :)/(weight(k)*data%graph(k)%modulus)
+               derivative(k, active) = -force(k, :)/(weight(k)*workspace%graph(k)%modulus)
             end if
          end do
       end associate

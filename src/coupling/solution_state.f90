@@ -2,6 +2,7 @@
 module solution_state
    use contact_states, only: contact_state_type
    use controls, only: thermal_scheme_type
+   use cut_hats, only: cut_hats_type, joined_conductance
    use kinds, only: dp
    use recovered_error, only: error_record_type
    use scheme_properties, only: is_explicit
@@ -14,6 +15,7 @@ module solution_state
    type :: solution_state_type
       type(contact_state_type) :: contact           !! contact state of all contact points
       real(dp), allocatable :: omega(:)             !! (m) conductance
+      type(cut_hats_type) :: cut                    !! contact points at the edge of contact
       logical, allocatable :: resting(:)          !! (m) contact points that rest, where a law jumps
       logical, allocatable :: idle(:)               !! (m) closed contact points that carry no force
       real(dp), allocatable :: omega_start(:)       !! (m) omega_i that (3.4) took last
@@ -48,7 +50,7 @@ contains
       type(thermal_scheme_type), intent(in) :: scheme
       real(dp) :: omega(size(state%omega))              !! (m) [power/(length^2 temperature)]
 
-      omega = state%omega
+      omega = joined_conductance(state%omega, state%cut)
       if (is_explicit(scheme)) omega = state%omega_start
    end function carrying_conductance
 

@@ -10,10 +10,10 @@ module deck_check
    use messages, only: print_line
    use model, only: model_type
    use model_words, only: closed_law_words, friction_words, material_words, open_law_words, &
-      open_words, pairing_words, points_words
+      open_words, pairing_words, points_words, section_words
    use run_description, only: describe_run
    use run_summaries, only: run_summary_type
-   use text, only: to_text
+   use text, only: string_type, to_text
    use utf8, only: character_count
    implicit none
    private
@@ -36,7 +36,7 @@ contains
       call prepare_deck(path, command, cards, model, simulation, error)
       if (allocated(error)) then
          status = error%status
-      else
+      else if (allocated(model%steps)) then
          call describe_run(path, model, simulation, run)
          call print_deck(model, simulation, run)
       end if
@@ -47,6 +47,7 @@ contains
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(run_summary_type), intent(in) :: run
+      type(string_type), allocatable :: sections(:)
       integer :: i
 
       call print_line(output_unit, run%deck_path//': the deck is sound')
@@ -59,6 +60,10 @@ contains
       call line('unknown displacements', to_text(run%equations_mechanical))
       call line('contact unknowns', to_text(run%contact_unknowns))
       call line('memory of a run', to_text(nint(model%memory_needed/1.0e6_dp))//' MB (estimate)')
+      sections = section_words(model)
+      do i = 1, size(sections)
+         call line('section '//to_text(i), sections(i)%value)
+      end do
       do i = 1, size(model%materials)
          call line('material '//model%materials(i)%name, material_words(model%materials(i)))
       end do

@@ -25,6 +25,7 @@ contains
       type(deck_outcome_type) :: outcome
 
       call run_deck(self%path, self%command, outcome)
+      call outcome%print_failed_checks()
       report = outcome%as_report()
    end subroutine execute
 

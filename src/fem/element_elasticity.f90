@@ -13,7 +13,7 @@ module element_elasticity
    use side_integrals, only: area_factor
    implicit none
    private
-   public :: element_stiffness, element_thermal_load, strain_at
+   public :: element_stiffness, element_thermal_load, element_stress_force, strain_at
 
 contains
 
@@ -68,6 +68,24 @@ contains
          end do
       end do
    end function element_thermal_load
+
+   !> Nodal forces that a uniform stress of the element exerts: minus the integral of B^T sigma.
+   pure function element_stress_force(kind, plane, coordinates, stress, thickness) result(force)
+      integer, intent(in) :: kind                 !! kind of the element
+      integer, intent(in) :: plane                !! plane_strain, ...
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
+      real(dp), intent(in) :: stress(4)           !! xx, yy, zz, xy [stress]
+      real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
+      real(dp) :: force(2*element_node_count(kind))   !! (2 nodes) [force]
+      real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
+      integer :: g
+
+      call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
+      force = 0.0_dp
+      do g = 1, size(volumes)
+         force = force - volumes(g)*matmul(stress, b(:, :, g))
+      end do
+   end function element_stress_force
 
    !> Strain at a point of an element.
    pure function strain_at(kind, plane, coordinates, point, displacement) result(strain)

@@ -80,6 +80,8 @@ contains
             stress(:, g) = matmul(e, strain_at(kind, plane, coordinates, xi_eta(:, g), &
                displacement(:, nodes))) - &
                beta*dot_product(element_shape(kind, xi_eta(:, g)), temperature(nodes))
+            if (allocated(mesh%initial_stress)) stress(:, g) = stress(:, g) + &
+               mesh%initial_stress(:, element)
          end do
       end associate
    end function element_stress

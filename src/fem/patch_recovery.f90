@@ -236,6 +236,10 @@ contains
             q = findloc(points%element_points(:corners, e), corner, dim=1)
             sides = corners + [q, modulo(q - 2, corners) + 1]
             do i = 1, 2
+               associate (midside => points%element_points(sides(i), e))
+                  ! Where it hangs on a larger element it is a corner, with a fit of its own.
+                  if (layout%start(midside + 1) > layout%start(midside)) cycle
+               end associate
                if (any(near == points%element_points(sides(i), e))) cycle
                near = [near, points%element_points(sides(i), e)]
             end do

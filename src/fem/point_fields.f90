@@ -233,6 +233,10 @@ contains
             if (g < n) call stress_of_second(self%materials(i + 1), g + 1, strain, warmth, values)
             i = i + 2
          end do
+         if (.not. allocated(mesh%initial_stress)) return
+         do g = 1, n
+            values(g, :) = values(g, :) + mesh%initial_stress(:, element)
+         end do
       end associate
    end subroutine stress
 

@@ -1,7 +1,7 @@
-!> The stiffness matrices K^n of (2.4) of all bodies, and the forces that temperatures exert on
-!> them. Rows 2i - 1 and 2i are u_x and u_y of node i; bodies share no entries.
+!> The stiffness matrices K^n of (2.4) of all bodies, and the forces that temperatures and initial
+!> stresses exert on them. Rows 2i - 1 and 2i are u_x and u_y of node i; bodies share no entries.
 module stiffness_matrix
-   use element_elasticity, only: element_stiffness, element_thermal_load
+   use element_elasticity, only: element_stiffness, element_stress_force, element_thermal_load
    use element_kinds, only: element_node_count
    use kinds, only: dp
    use materials, only: material_type, section_type
@@ -12,7 +12,7 @@ module stiffness_matrix
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: assemble_stiffness, assemble_thermal_load
+   public :: assemble_stiffness, assemble_thermal_load, assemble_initial_force
 
 contains
 
@@ -76,6 +76,27 @@ contains
       end do
       load = list%compress(2*size(mesh%node_number), size(mesh%node_number))
    end function assemble_thermal_load
+
+   !> Nodal forces of the initial stresses.
+   pure function assemble_initial_force(mesh, sections) result(force)
+      type(mesh_type), intent(in) :: mesh                !! with initial stresses
+      type(section_type), intent(in) :: sections(:)
+      real(dp) :: force(2*size(mesh%node_number))        !! (2 nodes) [force]
+      integer, allocatable :: dofs(:)
+      integer :: element
+
+      force = 0.0_dp
+      do element = 1, size(mesh%element_number)
+         if (all(abs(mesh%initial_stress(:, element)) <= 0.0_dp)) cycle
+         associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
+            section => sections(mesh%element_section(element)), &
+            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+            dofs = element_dofs(nodes)
+            force(dofs) = force(dofs) + element_stress_force(kind, plane, &
+               mesh%coordinates(:, nodes), mesh%initial_stress(:, element), section%thickness)
+         end associate
+      end do
+   end function assemble_initial_force
 
    !> Rows of an element's degrees of freedom.
    pure function element_dofs(nodes) result(dofs)

@@ -3,7 +3,7 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, ilaver
+   public :: ddot, daxpy, dgemm, dtrsm, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, ilaver
 
    interface
       !> Scalar product x.y.
@@ -21,6 +21,24 @@ module blas_lapack
          real(dp), intent(in) :: a, x(*)
          real(dp), intent(inout) :: y(*)
       end subroutine daxpy
+
+      !> C = alpha A B + beta C, or with A^T or B^T.
+      pure subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+         import :: dp
+         character, intent(in) :: transa, transb
+         integer, intent(in) :: m, n, k, lda, ldb, ldc
+         real(dp), intent(in) :: alpha, a(lda, *), b(ldb, *), beta
+         real(dp), intent(inout) :: c(ldc, *)
+      end subroutine dgemm
+
+      !> B = alpha A^-1 B, or with A^T, or from the right; A is a triangle.
+      pure subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
+         import :: dp
+         character, intent(in) :: side, uplo, transa, diag
+         integer, intent(in) :: m, n, lda, ldb
+         real(dp), intent(in) :: alpha, a(lda, *)
+         real(dp), intent(inout) :: b(ldb, *)
+      end subroutine dtrsm
 
       !> LU factors of a general matrix, with row exchanges.
       pure subroutine dgetrf(m, n, a, lda, ipiv, info)

@@ -47,7 +47,7 @@ contains
       call self%skyline%factor_leading(bad_column)
       self%full_flops = self%skyline%leading_flops
       self%smallest_pivot = self%skyline%smallest_pivot
-      self%factor_bytes = storage_size(1.0_dp)/8*(size(self%skyline%value, kind=long) + &
+      self%factor_bytes = storage_size(1.0_dp)/8*(size(self%skyline%columns%value, kind=long) + &
          int(tail, long)*(tail + 1)/2)
       call move_alloc(self%skyline%schur, self%schur)
       if (bad_column > 0) call set_error(error, status_deck, &
@@ -77,7 +77,8 @@ contains
 
       allocate (x, mold=rhs)
       x(self%position, :) = rhs
-      call self%skyline%condense(x)
+      ! Unit responses have no load.
+      if (any(abs(x) > 0.0_dp)) call self%skyline%condense(x)
       x(self%order - self%tail + 1:, :) = on_tail
       call self%skyline%recover(x)
       solution = x(self%position, :)

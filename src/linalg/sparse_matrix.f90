@@ -15,6 +15,7 @@ module sparse_matrix
       real(dp), allocatable :: value(:)       !! (entries) its value
    contains
       procedure :: multiply
+      procedure :: multiply_columns
    end type sparse_matrix_type
 
    !> Entries as they come from the elements, in any order; equal positions add up.
@@ -48,6 +49,24 @@ contains
          y(i) = total
       end do
    end function multiply
+
+   !> Y = A X, each entry of A being read once.
+   pure subroutine multiply_columns(self, x, y)
+      class(sparse_matrix_type), intent(in) :: self
+      real(dp), intent(in) :: x(:, :)               !! (columns, n)
+      real(dp), intent(out) :: y(:, :)              !! (rows, n)
+      real(dp) :: by_row(size(x, 2), size(x, 1)), total(size(x, 2))
+      integer :: i, k
+
+      by_row = transpose(x)
+      do i = 1, self%row_count
+         total = 0.0_dp
+         do k = self%row_start(i), self%row_start(i + 1) - 1
+            total = total + self%value(k)*by_row(:, self%column(k))
+         end do
+         y(i, :) = total
+      end do
+   end subroutine multiply_columns
 
    !> Makes room for entries; what the list held is dropped.
    pure subroutine reserve(self, capacity)

@@ -3,7 +3,7 @@ module sum_lists
    use kinds, only: dp
    implicit none
    private
-   public :: sum_list_type, differences, single_values
+   public :: sum_list_type, add_terms, differences, single_values
 
    !> The sums.
    type :: sum_list_type
@@ -14,6 +14,7 @@ module sum_lists
    contains
       procedure :: reserve
       procedure :: add
+      procedure :: add_sums
       procedure :: renumbered
       procedure :: add_totals
       procedure :: add_shares
@@ -81,6 +82,17 @@ contains
       self%count = self%count + 1
       self%start(self%count + 1) = term
    end subroutine add
+
+   !> Adds the sums of another list.
+   pure subroutine add_sums(self, sums)
+      class(sum_list_type), intent(inout) :: self
+      type(sum_list_type), intent(in) :: sums
+      integer :: i
+
+      do i = 1, sums%count
+         call self%add(sums%values_of(i), sums%coefficients_of(i))
+      end do
+   end subroutine add_sums
 
    !> The sums with values of other numbers, without the terms whose value has none.
    pure function renumbered(self, number) result(sums)
@@ -150,5 +162,21 @@ contains
 
       coefficients = self%coefficient(self%start(i):self%start(i + 1) - 1)
    end function coefficients_of
+
+   !> Adds terms to one sum, in which each value stays once.
+   pure subroutine add_terms(more, factor, value, coefficient)
+      integer, intent(in) :: more(:)                            !! (n) values, each once
+      real(dp), intent(in) :: factor(:)                         !! (n) their coefficients
+      integer, allocatable, intent(inout) :: value(:)           !! values of the sum
+      real(dp), allocatable, intent(inout) :: coefficient(:)    !! their coefficients
+      integer :: entry(size(more)), i
+
+      entry = [(findloc(value, more(i), dim=1), i=1, size(more))]
+      do i = 1, size(more)
+         if (entry(i) > 0) coefficient(entry(i)) = coefficient(entry(i)) + factor(i)
+      end do
+      value = [value, pack(more, entry == 0)]
+      coefficient = [coefficient, pack(factor, entry == 0)]
+   end subroutine add_terms
 
 end module sum_lists

@@ -229,8 +229,9 @@ contains
       if (abs(self%omega(coordinate) - omega) <= rounding*omega) return
       if (self%may_rest(omega)) then
          ends = rest_ends(self)
-         coordinate = self%width*(omega - ends(2))/(ends(2) - ends(1))* &
-            ((ends(1) + self%body)/(omega + self%body))
+         coordinate = -0.5_dp*self%width
+         if (abs(ends(2) - ends(1)) > 0.0_dp) coordinate = self%width*(omega - ends(2))/ &
+            (ends(2) - ends(1))*((ends(1) + self%body)/(omega + self%body))
          coordinate = min(max(coordinate, -self%width), 0.0_dp)
          return
       end if

@@ -4,32 +4,52 @@ module conductance_laws
    use piecewise_lines, only: line_abscissa, line_slope, line_value
    implicit none
    private
-   public :: conductance_law_type, law_none, law_gas, law_power, law_clearance, law_pressure
-   public :: conductance, conductance_derivative, conductance_inverse, law_jump, law_jumps, &
-      table_jump, &
-      is_constant
+   public :: conductance_law_type, law_by_temperature_type
+   public :: law_none, law_gas, law_power, law_clearance, law_pressure
+   public :: conductance, conductance_derivative, conductance_inverse, law_jump, table_jump, &
+      is_constant, varies_with_temperature
 
    integer, parameter :: law_none = 0        !! this side of the law was not given
-   integer, parameter :: law_gas = 1         !! open: omega = A/(B + gamma)
+   integer, parameter :: law_gas = 1         !! open: omega = A/(B + gamma) + radiation
    integer, parameter :: law_power = 2       !! closed: omega = C0 + C1 p^n
    integer, parameter :: law_clearance = 3   !! open: table over gamma
    integer, parameter :: law_pressure = 4    !! closed: table over p
 
+   !> What of a law varies with the temperatures of the faces.
+   type :: law_by_temperature_type
+      !> (rows) ascending mean temperatures of A and B there; unallocated where they are constant
+      real(dp), allocatable :: gas_temperature(:)
+      real(dp), allocatable :: gas_a(:), gas_b(:)
+      !> (columns) ascending mean temperatures, and (rows, columns) omega of the tables there;
+      !> unallocated where the table is of one temperature
+      real(dp), allocatable :: open_temperature(:), open_columns(:, :)
+      real(dp), allocatable :: closed_temperature(:), closed_columns(:, :)
+      real(dp) :: radiance = 0.0_dp        !! sigma eps of two faces [power/(length^2 T^4)]
+      real(dp) :: absolute_zero = 0.0_dp   !! of radiation [temperature]
+   end type law_by_temperature_type
+
    !> The open and the closed law of one surface interaction. Tables are straight lines between
-   !> their rows and hold their end values outside, unless open_ends.
+   !> their rows and hold their end values outside, unless open_ends. Where a law varies with the
+   !> temperatures of the faces, temperature_laws sets the components for given temperatures from
+   !> the last one, which this module does not take.
    type :: conductance_law_type
       integer :: open_kind = law_none      !! law_none, law_gas or law_clearance
       integer :: closed_kind = law_none    !! law_none, law_power or law_pressure
       real(dp) :: gas_a = 0.0_dp           !! A [power/(length temperature)]
       real(dp) :: gas_b = 1.0_dp           !! B [length]
+      real(dp) :: added_length = 0.0_dp    !! JUMP= and ROUGHNESS=, added to B [length]
+      real(dp) :: radiation = 0.0_dp       !! open: added to A/(B + gamma) [omega]
       real(dp) :: power_c0 = 0.0_dp        !! C0 [power/(length^2 temperature)]
       real(dp) :: power_c1 = 0.0_dp        !! C1 [C0/stress^n]
       real(dp) :: power_n = 1.0_dp         !! n [-]
+      logical :: closed_adds = .false.     !! C0 + C1 p^n adds to the open value at gamma = 0
       real(dp), allocatable :: table_gap(:)        !! (rows) ascending gamma >= 0 [length]
       real(dp), allocatable :: open_omega(:)       !! (rows) omega there
       logical :: open_ends = .false.               !! omega is 0 beyond the last of these gaps
       real(dp), allocatable :: table_pressure(:)   !! (rows) ascending p >= 0 [stress]
       real(dp), allocatable :: closed_omega(:)     !! (rows) omega there
+      !> what varies with the temperatures of the faces; unallocated where nothing does
+      type(law_by_temperature_type), allocatable :: by_temperature
    end type conductance_law_type
 
 contains
@@ -51,6 +71,7 @@ contains
       select case (law%closed_kind)
       case (law_power)
          omega = law%power_c0 + law%power_c1*max(pressure, 0.0_dp)**law%power_n
+         if (law%closed_adds) omega = omega + open_law(law, 0.0_dp)
       case (law_pressure)
          omega = line_value(law%table_pressure, law%closed_omega, max(pressure, 0.0_dp))
       case default
@@ -78,7 +99,8 @@ contains
          end if
       else if (.not. closed .and. gap >= 0.0_dp) then
          if (law%open_kind == law_gas) then
-            derivative = -(law%gas_a/(law%gas_b + gap))/(law%gas_b + gap)
+            derivative = law%gas_b + law%added_length + gap
+            derivative = -(law%gas_a/derivative)/derivative
          else if (law%open_kind == law_clearance) then
             derivative = line_slope(law%table_gap, law%open_omega, gap)
          end if
@@ -92,17 +114,20 @@ contains
       logical, intent(in) :: closed                 !! whether the contact point is closed
       real(dp), intent(in) :: omega                 !! [power/(length^2 temperature)]
       real(dp) :: at                                !! gamma [length] or p [stress]
+      real(dp) :: rise
 
       at = -1.0_dp
       if (closed) then
          if (law%closed_kind == law_power) then
-            if (law%power_c1 > 0.0_dp) at = power_root(omega - law%power_c0, law%power_c1, &
-               law%power_n)
+            rise = omega - law%power_c0
+            if (law%closed_adds) rise = rise - open_law(law, 0.0_dp)
+            if (law%power_c1 > 0.0_dp) at = power_root(rise, law%power_c1, law%power_n)
          else if (law%closed_kind == law_pressure) then
             at = line_abscissa(law%table_pressure, law%closed_omega, omega)
          end if
       else if (law%open_kind == law_gas) then
-         if (omega > 0.0_dp) at = law%gas_a/omega - law%gas_b
+         if (omega > law%radiation) at = law%gas_a/(omega - law%radiation) - &
+            (law%gas_b + law%added_length)
       else if (law%open_kind == law_clearance) then
          at = line_abscissa(law%table_gap, law%open_omega, omega)
       end if
@@ -130,16 +155,6 @@ contains
       jump = conductance(law, .true., 0.0_dp, 0.0_dp) - conductance(law, .false., 0.0_dp, 0.0_dp)
    end function law_jump
 
-   !> Whether the law jumps at gamma = p = 0 by more than rounding.
-   elemental function law_jumps(law) result(jumps)
-      type(conductance_law_type), intent(in) :: law
-      logical :: jumps                              !! both sides have values of their own there
-      real(dp), parameter :: rounding = 1.0e-12_dp
-
-      jumps = abs(law_jump(law)) > rounding*max(conductance(law, .true., 0.0_dp, 0.0_dp), &
-         conductance(law, .false., 0.0_dp, 0.0_dp))
-   end function law_jumps
-
    !> What omega loses beyond the last gap of a table that ends there; zero for any other law.
    pure function table_jump(law) result(jump)
       type(conductance_law_type), intent(in) :: law
@@ -149,11 +164,19 @@ contains
       if (law%open_ends) jump = law%open_omega(size(law%open_omega))
    end function table_jump
 
-   !> Whether omega is the same at every gap and pressure.
+   !> Whether omega depends on the temperatures of the faces.
+   elemental logical function varies_with_temperature(law)
+      type(conductance_law_type), intent(in) :: law
+
+      varies_with_temperature = allocated(law%by_temperature)
+   end function varies_with_temperature
+
+   !> Whether omega is the same at every gap, pressure and temperature.
    elemental logical function is_constant(law)
       type(conductance_law_type), intent(in) :: law
 
       is_constant = .false.
+      if (varies_with_temperature(law)) return
       if (abs(law_jump(law)) > 0.0_dp .or. law%open_kind == law_gas) return
       if (law%open_kind == law_clearance) then
          if (.not. is_level(law%open_omega)) return
@@ -182,7 +205,7 @@ contains
 
       omega = 0.0_dp
       if (law%open_kind == law_gas) then
-         omega = law%gas_a/(law%gas_b + gap)
+         omega = law%gas_a/(law%gas_b + law%added_length + gap) + law%radiation
       else if (law%open_kind == law_clearance) then
          omega = line_value(law%table_gap, law%open_omega, gap)
          if (law%open_ends .and. gap > law%table_gap(size(law%table_gap))) omega = 0.0_dp

@@ -1,6 +1,7 @@
 !> What the deck says of contact: surface interactions, interfaces and ties.
 module contact_definitions
    use conductance_laws, only: conductance_law_type
+   use friction_laws, only: friction_law_type
    use kinds, only: dp
    implicit none
    private
@@ -14,7 +15,7 @@ module contact_definitions
    !> One *SURFACE INTERACTION.
    type :: interaction_type
       character(:), allocatable :: name       !! name in upper case
-      real(dp) :: friction = 0.0_dp           !! coefficient of friction mu [-]
+      type(friction_law_type) :: friction     !! Coulomb's law
       type(conductance_law_type) :: law       !! conductance law
    end type interaction_type
 
@@ -28,6 +29,9 @@ module contact_definitions
       integer :: pairing = pairing_by_faces   !! PAIRING=
       logical :: has_clearance = .false.      !! whether *CLEARANCE stands in place of the geometry
       real(dp) :: clearance = 0.0_dp     !! its gap of all contact points, negative overlap [length]
+      logical :: adjusts = .false.            !! ADJUST=: some slave nodes start without a gap
+      real(dp) :: adjusted = 0.0_dp           !! those up to this gap [length]; without a set
+      integer :: adjusted_set = 0             !! index of their node set, 0 for none
       logical :: is_tied = .false.            !! whether they are the faces of a *TIE
    contains
       procedure :: title

@@ -7,7 +7,7 @@ module controls
    public :: start_previous, start_open, start_closed, start_both, start_given
    public :: implicit_scheme, galerkin_scheme, crank_nicolson_scheme, explicit_scheme
    public :: method_picard, method_zaitsev, method_anderson, method_newton, method_names
-   public :: solver_skyline, solver_mumps
+   public :: solver_by_size, solver_skyline, solver_mumps, mumps_from, default_solver
 
    integer, parameter :: method_picard = 1    !! eq. (4.1)
    integer, parameter :: method_zaitsev = 2   !! eq. (4.2)
@@ -15,8 +15,12 @@ module controls
    integer, parameter :: method_newton = 4    !! semismooth Newton
    character(8), parameter :: method_names(4) = [character(8) :: 'PICARD', 'ZAITSEV', 'ANDERSON', &
       'NEWTON']   !! of *FIXED POINT, by the constants above
+   integer, parameter :: solver_by_size = 0   !! the faster of both, until the mesh is known
    integer, parameter :: solver_skyline = 1   !! Crout LDL^T on a skyline
    integer, parameter :: solver_mumps = 2     !! MUMPS with METIS ordering
+
+   !> Unknowns of a model from which MUMPS is the faster solver. Measured, docs/performance.md.
+   integer, parameter :: mumps_from = 5000
 
    integer, parameter :: start_previous = 1   !! from the last increments
    integer, parameter :: start_open = 2       !! from no heat across the contact points
@@ -67,5 +71,14 @@ module controls
    type(thermal_scheme_type), parameter :: explicit_scheme = &
       thermal_scheme_type([1.0_dp, 1.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
       'EXPLICIT')
+
+contains
+
+   !> The solver of a deck without *SOLVER.
+   pure integer function default_solver(unknowns)
+      real(dp), intent(in) :: unknowns   !! displacements of all nodes; without them temperatures
+
+      default_solver = merge(solver_mumps, solver_skyline, unknowns >= mumps_from)
+   end function default_solver
 
 end module controls

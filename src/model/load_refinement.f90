@@ -5,9 +5,9 @@ module load_refinement
    use kinds, only: dp
    use mesh, only: mesh_type
    use mesh_division, only: child_element, division_type, refined_members, refined_values
-   use steps, only: load_body_force, load_body_heat, load_centrifugal, &
-      load_face_heat, load_film_coefficient, load_film_sink, load_gravity, load_pressure, &
-      load_temperature, load_traction, load_type, step_type
+   use steps, only: load_body_force, load_body_heat, load_centrifugal, load_face_heat, &
+      load_film_coefficient, load_film_sink, load_force, load_gravity, load_nodal_heat, &
+      load_pressure, load_temperature, load_traction, load_type, step_type
    implicit none
    private
    public :: refine_loads
@@ -41,7 +41,7 @@ contains
       allocate(refined(4*size(loads) + size(added)))
       n = 0
       do i = 1, size(loads)
-         call find_children(division%elements, mesh%element_kind, loads(i), children, parts)
+         call find_children(division, mesh%element_kind, loads(i), children, parts)
          if (parts == 0) then
             parts = 1
             children(1) = loads(i)%item
@@ -54,9 +54,10 @@ contains
       refined = refined(:n + size(added))
    end subroutine refine_step
 
-   !> Children that a load on an element goes to; none for a load on a node.
-   pure subroutine find_children(elements, kinds, load, children, parts)
-      integer, intent(in) :: elements
+   !> Children that a load on an element goes to; none for a load on a node, or on an element that
+   !> stays.
+   pure subroutine find_children(division, kinds, load, children, parts)
+      type(division_type), intent(in) :: division
       integer, intent(in) :: kinds(:)
       type(load_type), intent(in) :: load
       integer, intent(out) :: children(4)
@@ -66,15 +67,17 @@ contains
       children = 0
       parts = 0
       face = load%component
+      if (any(load%kind == [load_force, load_nodal_heat, load_temperature])) return
+      if (division%rank(load%item) == 0) return
       select case (load%kind)
       case (load_body_force, load_gravity, load_centrifugal, load_body_heat)
          parts = 4
-         children = [(child_element(elements, load%item, child), child=1, 4)]
+         children = [(child_element(division, load%item, child), child=1, 4)]
       case (load_pressure, load_traction, load_face_heat, load_film_coefficient, load_film_sink)
          parts = 2
          ! A traction's component counts two directions a face.
          if (load%kind == load_traction) face = (load%component + 1)/2
-         children(:2) = [child_element(elements, load%item, face), child_element(elements, &
+         children(:2) = [child_element(division, load%item, face), child_element(division, &
             load%item, mod(face, element_corner_count(kinds(load%item))) + 1)]
       case default
          return

@@ -5,7 +5,7 @@
 !> nested dissection have 31/4 n log2 n entries (A. George, Nested dissection of a regular finite
 !> element mesh, 1973). How often entries are held at a time was measured, docs/theory.md.
 module memory_needs
-   use controls, only: solver_mumps
+   use controls, only: default_solver, solver_by_size, solver_mumps
    use element_kinds, only: element_node_count, linear_kind
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -36,6 +36,7 @@ contains
       real(dp) :: bytes                       !! [byte]
       real(dp) :: entries, increments, nodes, points
       integer, allocatable :: kinds(:)
+      integer :: solver
       logical :: heat, mechanics
 
       heat = any(solves_heat(model%steps%analysis))
@@ -51,7 +52,9 @@ contains
          dense_matrices*real_bytes*(3*points)**2
       if (model%estimates_errors .and. size(model%contacts) > 0) bytes = bytes + &
          4*per_fine_entry*entries
-      if (model%solver == solver_mumps) then
+      solver = model%solver
+      if (solver == solver_by_size) solver = default_solver(merge(2, 1, mechanics)*nodes)
+      if (solver == solver_mumps) then
          bytes = bytes + mumps_factor*real_bytes*(dissected(2*nodes, mechanics) + &
             dissected(nodes, heat))
       else

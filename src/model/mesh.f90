@@ -5,7 +5,7 @@ module mesh
    use kinds, only: dp
    implicit none
    private
-   public :: mesh_type, set_type, surface_type, extent_of
+   public :: mesh_type, set_type, surface_type, extent_of, add_node
    public :: nodes_per_element, face_nodes
 
    integer, parameter :: nodes_per_element = 8 !! four corners, then four midside nodes
@@ -39,15 +39,36 @@ module mesh
       integer, allocatable :: element_kind(:)         !! (elements) quad8, ... of element_kinds
       integer, allocatable :: element_plane(:)        !! (elements) plane_strain, ...
       integer, allocatable :: element_section(:)      !! (elements) index into model%sections
+      !> (4, elements) xx, yy, zz, xy, from *INITIAL CONDITIONS. Not allocated: none [stress]
+      real(dp), allocatable :: initial_stress(:, :)
       integer, allocatable :: element_body(:)         !! (elements) 1..body_count: share nodes
       integer, allocatable :: node_body(:)            !! (nodes) body, 0 where no element uses it
       integer :: body_count = 0                       !! number of bodies
+      !> (5, sides) sides of an element beside which two elements of half its size lie: corner,
+      !> middle node, corner, and the midside nodes of the small elements between them, or 0, 0;
+      !> the latter hang, or the middle node if there are none. Not allocated: none
+      integer, allocatable :: hanging_sides(:, :)
       type(set_type), allocatable :: node_sets(:)     !! node sets
       type(set_type), allocatable :: element_sets(:)  !! element sets
       type(surface_type), allocatable :: surfaces(:)  !! surfaces
    end type mesh_type
 
 contains
+
+   !> Adds a node of no element behind all others.
+   pure subroutine add_node(mesh, place)
+      type(mesh_type), intent(inout) :: mesh
+      real(dp), intent(in) :: place(2)            !! [length]
+      real(dp), allocatable :: coordinates(:, :)
+      integer :: n
+
+      n = size(mesh%node_number)
+      allocate (coordinates(2, n + 1))
+      coordinates(:, :n) = mesh%coordinates
+      coordinates(:, n + 1) = place
+      call move_alloc(coordinates, mesh%coordinates)
+      mesh%node_number = [mesh%node_number, maxval(mesh%node_number) + 1]
+   end subroutine add_node
 
    !> Largest extent of the nodes along x or y.
    pure real(dp) function extent_of(coordinates)

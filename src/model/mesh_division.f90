@@ -1,13 +1,16 @@
-!> Division of every element into four of its kind: where the new nodes are, and values there by the
-!> shape functions.
+!> Division of elements into four of their kind: where the new nodes are, and values there by the
+!> shape functions. Where an element on one side of a side is divided and the one on the other is
+!> not, the new nodes of that side hang (hanging_nodes).
 module mesh_division
    use element_kinds, only: element_corner_count, element_node_count, kind_count, quad4, &
-      quad8, quad8_reduced, side_node_count, side_nodes, triangle6
+      quad8, quad8_reduced, triangle6
+   use element_sides, only: element_sides_type, find_sides
+   use hanging_nodes, only: coarse_side, fine_sides, hanging_count, nodes_between
    use kinds, only: dp
    use mesh, only: mesh_type
    implicit none
    private
-   public :: division_type, divide, side_node, inner_node, child_element
+   public :: division_type, divide, hanging_after, side_node, inner_node, child_element
    public :: refined_values, refined_members, restricted_values
 
    !> New nodes inside an element by its kind.
@@ -37,102 +40,126 @@ module mesh_division
    type :: division_type
       integer :: nodes = 0                          !! old nodes
       integer :: elements = 0                       !! old elements
-      integer :: sides = 0                          !! distinct sides of elements
       integer :: nodes_after = 0                    !! old and new nodes
-      integer, allocatable :: ends(:, :)            !! (3, sides) corner, midside node or 0, corner
-      integer, allocatable :: side_start(:)         !! (sides) index before the first new node on it
-      integer, allocatable :: element_sides(:, :)   !! (4, elements) sides, zero beyond the kind's
+      integer :: elements_after = 0                 !! elements afterwards
+      type(element_sides_type) :: sides             !! sides of the old elements
+      !> (2, sides) nodes between the ends of each side, from its first end on: new ones, or old
+      !> ones that hang there; 0 where there are none, the second one also on a side of two nodes
+      integer, allocatable :: between(:, :)
       integer, allocatable :: inner_start(:)        !! (elements) index before the first node inside
+      integer, allocatable :: rank(:) !! (elements) how many are divided up to each, 0 if it is not
+   contains
+      procedure, private :: elements_at
    end type division_type
 
 contains
 
-   !> Divides a conforming mesh; its sides are numbered in the order of the elements. Sides are the
-   !> same if all their nodes are: two faces of a crack may share both ends.
-   pure function divide(mesh) result(division)
+   !> Divides some elements of a mesh; where an element is divided, so must be the ones beside it
+   !> whose sides are twice as long.
+   pure function divide(mesh, chosen) result(division)
       type(mesh_type), intent(in) :: mesh           !! elements of any kinds
+      logical, intent(in) :: chosen(:)              !! (elements) those that are divided
       type(division_type) :: division               !! the division
-      integer :: latest(size(mesh%node_number))     ! side found last at a node as its lower corner
-      integer :: before(4*size(mesh%element_number))! side found before that one there
-      integer :: e, f, ends(3), low, side
+      integer :: e, h, side
 
       division%nodes = size(mesh%node_number)
       division%elements = size(mesh%element_number)
-      allocate(division%ends(3, 4*division%elements), source=0)
-      allocate(division%element_sides(4, division%elements), source=0)
-      latest = 0
-      do e = 1, division%elements
-         do f = 1, element_corner_count(mesh%element_kind(e))
-            ends = side_ends(mesh, e, f)
-            low = min(ends(1), ends(3))
-            side = latest(low)
-            do while (side > 0)
-               if (is_side(division%ends(:, side), ends)) exit
-               side = before(side)
-            end do
-            if (side == 0) then
-               division%sides = division%sides + 1
-               side = division%sides
-               division%ends(:, side) = ends
-               before(side) = latest(low)
-               latest(low) = side
-            end if
-            division%element_sides(f, e) = side
-         end do
+      division%elements_after = division%elements + 3*count(chosen)
+      division%sides = find_sides(mesh)
+      allocate(division%rank(division%elements), source=0)
+      division%rank = unpack([(e, e=1, count(chosen))], chosen, division%rank)
+      allocate(division%between(2, division%sides%count), source=0)
+      do h = 1, hanging_count(mesh)
+         side = division%sides%index_of(coarse_side(mesh, h))
+         division%between(:, side) = nodes_between(mesh, h, division%sides%ends(1, side))
       end do
-      call number_nodes(mesh%element_kind, division)
+      call number_nodes(mesh%element_kind, chosen, division)
    end function divide
 
-   !> First corner, midside node or 0, second corner of a side.
-   pure function side_ends(mesh, element, side) result(ends)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: element, side
-      integer :: ends(3)
-
-      associate (kind => mesh%element_kind(element))
-         associate (local => side_nodes(kind, side))
-            ends = 0
-            ends([1, 3]) = mesh%element_nodes(local([1, side_node_count(kind)]), element)
-            if (side_node_count(kind) == 3) ends(2) = mesh%element_nodes(local(2), element)
-         end associate
-      end associate
-   end function side_ends
-
-   pure logical function is_side(one, other)
-      integer, intent(in) :: one(3), other(3)
-
-      is_side = all(one == other) .or. all(one == other(3:1:-1))
-   end function is_side
-
-   pure subroutine number_nodes(kinds, division)
+   pure subroutine number_nodes(kinds, chosen, division)
       integer, intent(in) :: kinds(:)
+      logical, intent(in) :: chosen(:)
       type(division_type), intent(inout) :: division
       integer :: e, last, s
 
       last = division%nodes
-      allocate(division%side_start(division%sides), division%inner_start(division%elements))
-      do s = 1, division%sides
-         division%side_start(s) = last
-         last = last + merge(2, 1, division%ends(2, s) > 0)
+      allocate(division%inner_start(division%elements))
+      do s = 1, division%sides%count
+         if (division%between(1, s) > 0) cycle
+         if (.not. any(chosen(division%elements_at(s)))) cycle
+         division%between(1, s) = last + 1
+         if (division%sides%ends(2, s) > 0) division%between(2, s) = last + 2
+         last = maxval(division%between(:, s))
       end do
       do e = 1, division%elements
          division%inner_start(e) = last
-         last = last + inner_count(kinds(e))
+         if (chosen(e)) last = last + inner_count(kinds(e))
       end do
       division%nodes_after = last
    end subroutine number_nodes
 
-   !> Index of the new node on a side of an element: next to one of the side's corners where it has
-   !> three nodes, at its middle where it has two.
+   !> Sides where nodes hang afterwards, as in mesh_type.
+   pure function hanging_after(division, mesh) result(hanging)
+      type(division_type), intent(in) :: division
+      type(mesh_type), intent(in) :: mesh           !! the mesh before
+      integer, allocatable :: hanging(:, :)         !! (5, sides)
+      logical :: is_fine(division%sides%count), meet(division%sides%count), stays
+      integer :: h, n, s
+
+      allocate(hanging(5, hanging_count(mesh) + division%sides%count))
+      is_fine = .false.
+      n = 0
+      do h = 1, hanging_count(mesh)
+         associate (sides => division%sides)
+            stays = division%rank(sides%elements(1, sides%index_of(coarse_side(mesh, h)))) == 0
+            associate (halves => fine_sides(mesh, h))
+               is_fine(sides%index_of(halves(:, 1))) = .true.
+               is_fine(sides%index_of(halves(:, 2))) = .true.
+            end associate
+         end associate
+         if (.not. stays) cycle
+         n = n + 1
+         hanging(:, n) = mesh%hanging_sides(:, h)
+      end do
+      do s = 1, division%sides%count
+         associate (around => division%elements_at(s))
+            meet(s) = division%between(1, s) > division%nodes .and. (is_fine(s) .or. &
+               any(division%rank(around) == 0))
+         end associate
+         if (.not. meet(s)) cycle
+         n = n + 1
+         associate (ends => division%sides%ends(:, s), between => division%between(:, s))
+            if (ends(2) > 0) then
+               hanging(:, n) = [ends, between]
+            else
+               hanging(:, n) = [ends(1), between(1), ends(3), 0, 0]
+            end if
+         end associate
+      end do
+      hanging = hanging(:, :n)
+   end function hanging_after
+
+   !> The elements that have a side.
+   pure function elements_at(self, side) result(elements)
+      class(division_type), intent(in) :: self
+      integer, intent(in) :: side                   !! the side
+      integer, allocatable :: elements(:)           !! one or two
+
+      elements = pack(self%sides%elements(:, side), self%sides%elements(:, side) > 0)
+   end function elements_at
+
+   !> Index of the node between the ends of a side of a divided element: next to one of the corners
+   !> where it has three nodes, at its middle where it has two.
    pure integer function side_node(division, element, side, corner)
       type(division_type), intent(in) :: division
       integer, intent(in) :: element                !! the element
       integer, intent(in) :: side                   !! 1..element_corner_count
       integer, intent(in) :: corner                 !! node at the corner
 
-      associate (s => division%element_sides(side, element))
-         side_node = division%side_start(s) + 1
-         if (division%ends(2, s) > 0 .and. division%ends(1, s) /= corner) side_node = side_node + 1
+      associate (s => division%sides%of_element(side, element))
+         side_node = division%between(1, s)
+         if (division%between(2, s) == 0) return
+         if (division%sides%ends(1, s) /= corner) side_node = division%between(2, s)
       end associate
    end function side_node
 
@@ -164,13 +191,13 @@ contains
       end select
    end function inner_weights
 
-   !> Index of a child of an element: the first takes its parent's place.
-   pure integer function child_element(elements, parent, child)
-      integer, intent(in) :: elements   !! number of elements before
+   !> Index of a child of a divided element: the first takes its parent's place.
+   pure integer function child_element(division, parent, child)
+      type(division_type), intent(in) :: division
       integer, intent(in) :: parent     !! the element
       integer, intent(in) :: child      !! the child at that corner; 4 of a triangle: in the middle
 
-      child_element = elements + 3*(parent - 1) + child - 1
+      child_element = division%elements + 3*(division%rank(parent) - 1) + child - 1
       if (child == 1) child_element = parent
    end function child_element
 
@@ -183,17 +210,21 @@ contains
       integer :: e, i, s, corners(2)
 
       refined(:division%nodes) = values
-      do s = 1, division%sides
-         i = division%side_start(s)
-         if (division%ends(2, s) == 0) then
-            corners = division%ends([1, 3], s)
-            refined(i + 1) = 0.5_dp*sum(values(corners))
-         else
-            refined(i + 1) = dot_product(quarter_weights, values(division%ends(:, s)))
-            refined(i + 2) = dot_product(quarter_weights, values(division%ends(3:1:-1, s)))
-         end if
+      do s = 1, division%sides%count
+         i = division%between(1, s)
+         if (i <= division%nodes) cycle
+         associate (ends => division%sides%ends(:, s))
+            if (ends(2) == 0) then
+               corners = ends([1, 3])
+               refined(i) = 0.5_dp*sum(values(corners))
+            else
+               refined(i) = dot_product(quarter_weights, values(ends))
+               refined(i + 1) = dot_product(quarter_weights, values(ends(3:1:-1)))
+            end if
+         end associate
       end do
       do e = 1, division%elements
+         if (division%rank(e) == 0) cycle
          associate (kind => mesh%element_kind(e))
             do i = 1, inner_count(kind)
                refined(inner_node(division, e, i)) = dot_product(inner_weights(kind, i), &
@@ -213,18 +244,20 @@ contains
       integer :: e, i, s
 
       restricted = values(:division%nodes)
-      do s = 1, division%sides
-         i = division%side_start(s)
-         associate (ends => division%ends(:, s))
+      do s = 1, division%sides%count
+         i = division%between(1, s)
+         if (i <= division%nodes) cycle
+         associate (ends => division%sides%ends(:, s))
             if (ends(2) == 0) then
-               restricted(ends([1, 3])) = restricted(ends([1, 3])) + 0.5_dp*values(i + 1)
+               restricted(ends([1, 3])) = restricted(ends([1, 3])) + 0.5_dp*values(i)
             else
-               restricted(ends) = restricted(ends) + quarter_weights*values(i + 1) + &
-                  quarter_weights(3:1:-1)*values(i + 2)
+               restricted(ends) = restricted(ends) + quarter_weights*values(i) + &
+                  quarter_weights(3:1:-1)*values(i + 1)
             end if
          end associate
       end do
       do e = 1, division%elements
+         if (division%rank(e) == 0) cycle
          associate (kind => mesh%element_kind(e), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
             do i = 1, inner_count(kind)
@@ -246,16 +279,18 @@ contains
 
       refined = .false.
       refined(:division%nodes) = member
-      do s = 1, division%sides
-         associate (start => division%side_start(s))
-            if (division%ends(2, s) == 0) then
-               refined(start + 1) = all(member(division%ends([1, 3], s)))
+      do s = 1, division%sides%count
+         associate (i => division%between(1, s), ends => division%sides%ends(:, s))
+            if (i <= division%nodes) cycle
+            if (ends(2) == 0) then
+               refined(i) = all(member(ends([1, 3])))
             else
-               refined(start + 1:start + 2) = all(member(division%ends(:, s)))
+               refined(i:i + 1) = all(member(ends))
             end if
          end associate
       end do
       do e = 1, division%elements
+         if (division%rank(e) == 0) cycle
          associate (kind => mesh%element_kind(e), start => division%inner_start(e))
             refined(start + 1:start + inner_count(kind)) = &
                all(member(mesh%element_nodes(:element_node_count(kind), e)))

@@ -1,17 +1,21 @@
 !> The model: all that the deck says, built once by the deck builder and read-only afterwards.
 module model
+   use accuracy_targets, only: accuracy_request_type
    use amplitudes, only: amplitude_type
    use contact_definitions, only: contact_definition_type, interaction_type, tie_definition_type
    use controls, only: solver_skyline
+   use couplings, only: coupling_type
+   use equations, only: equation_type
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
    use orientations, only: orientation_type
    use steps, only: step_type
    use text, only: string_type
+   use transforms, only: partner_type, transform_type
    implicit none
    private
-   public :: model_type, verify_type, unit_labels_type
+   public :: model_type, physical_constants_type, verify_type, unit_labels_type
 
    !> Labels of the deck's units (*OPTIONS, UNITS=); empty when not given.
    type :: unit_labels_type
@@ -20,6 +24,13 @@ module model
       character(:), allocatable :: power         !! such as W
       character(:), allocatable :: temperature   !! such as C
    end type unit_labels_type
+
+   !> *PHYSICAL CONSTANTS.
+   type :: physical_constants_type
+      logical :: has_radiation = .false.        !! whether both are given
+      real(dp) :: absolute_zero = 0.0_dp        !! [temperature]
+      real(dp) :: stefan_boltzmann = 0.0_dp     !! [power/(length^2 temperature^4)]
+   end type physical_constants_type
 
    !> One *VERIFY data card.
    type :: verify_type
@@ -47,12 +58,20 @@ module model
       type(interaction_type), allocatable :: interactions(:)     !! surface interactions
       type(contact_definition_type), allocatable :: contacts(:)  !! interfaces
       type(tie_definition_type), allocatable :: ties(:)          !! tied faces
+      type(equation_type), allocatable :: equations(:)           !! those of couplings among them
+      type(transform_type), allocatable :: transforms(:)         !! axes of nodes
+      type(partner_type), allocatable :: partners(:)             !! what stands for these nodes
+      type(coupling_type), allocatable :: couplings(:)           !! kinematic couplings
       real(dp), allocatable :: initial_temperature(:)            !! (nodes) [temperature]
       type(step_type), allocatable :: steps(:)                   !! steps in their order
+      !> (data cards of *BOUNDARY, by their running numbers) where each stands, in words
+      type(string_type), allocatable :: boundary_places(:)
       type(verify_type), allocatable :: verifications(:)         !! *VERIFY cards
       type(unit_labels_type) :: units                            !! labels of units
-      integer :: solver = solver_skyline                         !! solver_skyline or solver_mumps
+      type(physical_constants_type) :: constants                 !! *PHYSICAL CONSTANTS
+      integer :: solver = solver_skyline                         !! one of the solver_* constants
       logical :: estimates_errors = .true.                       !! ERRORS= of *OPTIONS
+      type(accuracy_request_type) :: accuracy                    !! *ACCURACY
       real(dp) :: memory_needed = 0.0_dp                         !! estimate for a run [byte]
       integer :: refinement_levels = 0                           !! *REFINE, already applied
       integer :: element_order = 2                               !! *OPTIONS, ORDER=, applied

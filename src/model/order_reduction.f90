@@ -3,6 +3,7 @@
 !> the corners of its side, as the shape functions of the side without it have it.
 module order_reduction
    use element_kinds, only: element_corner_count, linear_kind, side_node_count, side_nodes
+   use hanging_nodes, only: hanging_count, place_hanging
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
@@ -37,6 +38,11 @@ contains
       end if
       if (allocated(model%initial_temperature)) then
          model%initial_temperature = pack(model%initial_temperature, new_index > 0)
+      end if
+      if (allocated(model%equations)) then
+         do i = 1, size(model%equations)
+            call model%equations(i)%replace(corners, new_index)
+         end do
       end if
       if (model%load_node > 0) model%load_node = new_index(model%load_node)
       call reduce_mesh(new_index, model%mesh)
@@ -88,6 +94,13 @@ contains
          mesh%element_nodes(corners + 1:, e) = 0
       end do
       mesh%element_kind = linear_kind(mesh%element_kind)
+      do i = 1, hanging_count(mesh)
+         do e = 1, 5
+            if (mesh%hanging_sides(e, i) > 0) mesh%hanging_sides(e, i) = &
+               new_index(mesh%hanging_sides(e, i))
+         end do
+      end do
+      call place_hanging(mesh)
    end subroutine reduce_mesh
 
    pure subroutine reduce_step(corners, new_index, step)

@@ -22,7 +22,8 @@ module print_requests
       integer, allocatable :: quantities(:)  !! constants above, each once, as on the card
       logical :: each_node = .true.          !! print_force and print_heat of every node
       logical :: totals = .false.            !! sums of them over the set
-      !> Stress and flux along the axes of the section's orientation, else along x and y.
+      !> Stress and flux along the axes of the section's orientation, vectors along those of the
+      !> nodes, else along x and y.
       logical :: local_axes = .false.
    end type print_request_type
 

@@ -33,7 +33,7 @@ module quantity_types
    type :: quantity_type
       character(name_length) :: name           !! of its dataset, in *VERIFY and in tables of errors
       integer :: kind                          !! one of the of_* constants
-      character(24) :: unit                    !! in those of the deck; '-' for a pure number
+      character(32) :: unit                    !! in those of the deck; '-' for a pure number
       integer :: needs = needs_nothing         !! one of the needs_* constants
       integer :: values = 1                    !! numbers of one increment, interface, point, ...
       !> Words before its value in the block of an increment of the listing; blank: not there.
@@ -55,6 +55,9 @@ module quantity_types
       !> Of an edge of a zone: how far it is known on a mesh, in spacings of the contact points
       !> about it; 0 for what is no edge. Errors of edges are bands to both sides.
       real(dp) :: resolution = 0.0_dp
+      ! In the result file, as attributes of its dataset.
+      character(100) :: description = ''       !! what it is, with its sign and codes
+      character(16) :: components = ''         !! their names, where `values` are those of a tensor
    end type quantity_type
 
 contains

@@ -1,5 +1,6 @@
 !> Steps of a model: analysis, increments, loads and supports, output requests.
 module steps
+   use contact_changes, only: contact_changes_type
    use controls, only: fixed_point_type, start_type, thermal_scheme_type, implicit_scheme
    use kinds, only: dp
    use print_requests, only: print_request_type
@@ -82,6 +83,7 @@ module steps
       !> Kinds of loads whose former ones end with this step (OP=NEW).
       logical :: ends_loads(load_kind_count) = .false.
       logical :: ends_boundaries = .false.   !! *BOUNDARY, OP=NEW: former prescribed values end
+      type(contact_changes_type) :: changes                  !! what it changes of contact
       type(fixed_point_type) :: fixed_point                  !! fixed point of this step
       type(start_type) :: start                              !! where its fixed point starts
       type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step

@@ -3,10 +3,11 @@ module variations
    use controls, only: thermal_scheme_type
    use kinds, only: dp
    use model, only: model_type, verify_type
+   use refined_regions, only: element_levels_type, refined_region_type
    use steps, only: solves_heat
    implicit none
    private
-   public :: variation_type, apply_variation, varied_increment
+   public :: variation_type, apply_variation, add_contact_levels, varied_increment
    public :: as_written
 
    integer, parameter :: as_written = -1   !! what the deck says holds
@@ -15,19 +16,24 @@ module variations
    type :: variation_type
       integer :: order = as_written             !! order of the elements, 1 or 2
       integer :: levels = as_written            !! *REFINE, LEVELS=
+      integer :: contact_levels = 0             !! more levels at both faces of all contacts
       integer :: method = as_written            !! one of the method_* constants, in all steps
       integer :: solver = as_written            !! one of the solver_* constants
       integer :: pairing = as_written           !! one of the pairing_* constants, of all contacts
       real(dp) :: tolerance = 0.0_dp            !! of the fixed point, in all steps; 0 as written
       real(dp) :: increments = 1.0_dp           !! factor on the size of all increments
       type(thermal_scheme_type), allocatable :: scheme   !! in all steps; unallocated as written
+      !> divisions after those of the deck, one after the other, each of the elements that the one
+      !> before leaves; unallocated for none
+      type(element_levels_type), allocatable :: divisions(:)
    end type variation_type
 
 contains
 
    !> Varies a model that was built from the cards, before its mesh is made linear or refined.
    !> *VERIFY cards that increments land on still make them land; the others are left out, for a
-   !> fixed increment of another size need not end there.
+   !> fixed increment of another size need not end there. Rounds of a requested accuracy leave all
+   !> out: the first one has judged them.
    pure subroutine apply_variation(variation, order, levels, model)
       type(variation_type), intent(in) :: variation   !! what is other
       integer, intent(inout) :: order                 !! order of the elements
@@ -55,8 +61,26 @@ contains
             step%max_increments = ceiling(step%max_increments/min(variation%increments, 1.0_dp))
          end associate
       end do
-      if (any(model%steps%direct)) call keep_landings(model)
+      if (allocated(variation%divisions)) then
+         deallocate (model%verifications)
+         allocate (model%verifications(0))
+      else if (any(model%steps%direct)) then
+         call keep_landings(model)
+      end if
    end subroutine apply_variation
+
+   !> Refines the contact faces after the regions of the deck.
+   pure subroutine add_contact_levels(variation, model, regions)
+      type(variation_type), intent(in) :: variation   !! what is other
+      type(model_type), intent(in) :: model           !! its contacts
+      type(refined_region_type), allocatable, intent(inout) :: regions(:)   !! receives the faces
+      type(refined_region_type) :: faces
+
+      if (variation%contact_levels == 0) return
+      faces%levels = variation%contact_levels
+      faces%surfaces = [model%contacts%slave, model%contacts%master]
+      regions = [regions, faces]
+   end subroutine add_contact_levels
 
    !> An increment that a factor makes longer or shorter; none is longer than its step.
    elemental function varied_increment(first, period, factor) result(increment)

@@ -5,10 +5,10 @@ module deck_outcomes
    use errors, only: error_type, status_deck, status_internal, status_interrupted, &
       status_no_convergence, status_ok, status_verify
    use kinds, only: dp
-   use messages, only: print_line
+   use messages, only: print_error, print_line
    use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
-   use text, only: counted, to_text
+   use text, only: counted, string_type, to_text
    implicit none
    private
    public :: deck_outcome_type
@@ -37,7 +37,11 @@ module deck_outcomes
       character(:), allocatable :: ending   !! its outcome in words where the status says too little
       !> Why it is not solved, or how well where that is less than TOL; one sentence, or nothing
       character(:), allocatable :: reason
+      ! Of a deck that is solved in this process.
+      type(string_type), allocatable :: summary(:)         !! what it comes to, lines
+      type(string_type), allocatable :: failed_checks(:)   !! one line each
    contains
+      procedure :: begin
       procedure :: note
       procedure :: doubt
       procedure :: note_files
@@ -46,9 +50,18 @@ module deck_outcomes
       procedure :: fail
       procedure :: words
       procedure :: print => print_outcome
+      procedure :: print_failed_checks
    end type deck_outcome_type
 
 contains
+
+   !> Begins a round: what the one before left to be desired counts no longer.
+   pure subroutine begin(self)
+      class(deck_outcome_type), intent(inout) :: self     !! the run
+
+      self%known_to = 0.0_dp
+      if (allocated(self%reason)) deallocate (self%reason)
+   end subroutine begin
 
    !> Counts the passes of an increment, and what is written of it.
    subroutine note(self, record, accepted, files)
@@ -70,7 +83,7 @@ contains
 
       if (floor <= self%known_to .or. self%status /= status_ok) return
       self%known_to = floor
-      self%reason = 'the conductance of the contacts is known to '//to_text(floor)//' only'
+      self%reason = 'the contact conductance is accurate to '//to_text(floor)//' only'
    end subroutine doubt
 
    !> Notes what is written; the process of a deck of a batch reports this and all else.
@@ -135,6 +148,7 @@ contains
       select case (self%status)
       case (status_ok)
          string = 'solved'
+         if (self%increments == 0) string = 'skipped'
       case (status_deck)
          string = 'deck error'
       case (status_no_convergence)
@@ -156,20 +170,38 @@ contains
       character(*), intent(in) :: results             !! path of its results without extension
       character(12) :: seconds
       character(:), allocatable :: doubts
+      integer :: i
 
       write (seconds, '(f12.2)') self%seconds
       doubts = ''
+      if (self%words() == 'skipped') return
       if (self%status == status_ok .and. allocated(self%reason)) then
          if (len(self%reason) > 0) doubts = '; '//self%reason
       end if
       call print_line(output_unit, self%path//': '//self%words()//', '// &
          counted(self%increments, 'increment')//' in '//trim(adjustl(seconds))//' s'// &
          doubts)
+      if (allocated(self%summary)) then
+         do i = 1, size(self%summary)
+            call print_line(output_unit, '  '//self%summary(i)%value)
+         end do
+      end if
+      if (self%files > 0 .and. self%status /= status_deck .and. self%status /= status_internal) then
+         call print_line(output_unit, '  results: '//results//trim(extensions(self%files)))
+      end if
       if (self%verify_passed + self%verify_failed > 0) call print_line(output_unit, '  '// &
          counted(self%verify_passed, 'check')//' passed, '//to_text(self%verify_failed)//' failed')
-      if (self%status == status_deck .or. self%status == status_internal) return
-      if (self%files > 0) call print_line(output_unit, '  results: '//results// &
-         trim(extensions(self%files)))
    end subroutine print_outcome
+
+   !> Prints the checks that failed on stderr, one line each.
+   subroutine print_failed_checks(self)
+      class(deck_outcome_type), intent(in) :: self    !! the run
+      integer :: i
+
+      if (.not. allocated(self%failed_checks)) return
+      do i = 1, size(self%failed_checks)
+         call print_error(self%path, self%failed_checks(i)%value)
+      end do
+   end subroutine print_failed_checks
 
 end module deck_outcomes

@@ -6,6 +6,7 @@ module growing_datasets
       h5dget_space_f, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5p_dataset_create_f, &
       h5screate_simple_f, h5sclose_f, h5sselect_hyperslab_f, h5s_select_set_f, h5s_unlimited_f, &
       h5t_native_double
+   use hdf5_attributes, only: describe
    use hdf5_helpers, only: check_status, stored_type, write_values
    use kinds, only: dp, long
    implicit none
@@ -18,6 +19,9 @@ module growing_datasets
    type :: growing_dataset_type
       private
       character(:), allocatable :: path         !! path in the file
+      character(:), allocatable :: description  !! attributes of the dataset
+      character(:), allocatable :: unit
+      character(:), allocatable :: components
       integer :: storage = 0                    !! as_real, as_integer or as_long
       integer :: width = 0                      !! values in a row; 0: rows are single numbers
       integer(hsize_t) :: chunk_rows = 1        !! rows in a chunk
@@ -26,6 +30,7 @@ module growing_datasets
       integer :: used = 0                       !! values in the buffer
       real(dp), allocatable :: buffer(:)        !! the rows that are not in the file yet
    contains
+      procedure :: describe_as
       procedure :: append
       procedure :: flush => flush_rows
    end type growing_dataset_type
@@ -43,6 +48,9 @@ contains
       integer(long) :: append_bytes, appends
 
       dataset%path = path
+      dataset%description = ''
+      dataset%unit = '-'
+      dataset%components = ''
       dataset%storage = storage
       dataset%width = width
       append_bytes = 8_long*max(width, 1)*rows_at_once
@@ -50,6 +58,18 @@ contains
       dataset%chunk_rows = appends*rows_at_once
       allocate(dataset%buffer(max(width, 1)*rows_at_once))
    end function growing_dataset
+
+   !> Says what the dataset is.
+   pure subroutine describe_as(self, description, unit, components)
+      class(growing_dataset_type), intent(inout) :: self
+      character(*), intent(in) :: description             !! what it is
+      character(*), intent(in) :: unit                    !! its unit; '-' for a pure number
+      character(*), intent(in) :: components              !! names of those; empty: none
+
+      self%description = description
+      self%unit = unit
+      self%components = components
+   end subroutine describe_as
 
    !> Adds rows.
    pure subroutine append(self, values)
@@ -121,6 +141,8 @@ contains
       end if
       if (status(1) >= 0) call h5dclose_f(dataset, status(1))
       call check_status(status, 'cannot write dataset '//self%path, error)
+      if (.not. (allocated(error) .or. self%in_file)) call describe(file, self%path, &
+         self%description, self%unit, error, self%components)
       self%in_file = .true.
       self%rows_in_file = whole(2)
       self%used = 0

@@ -10,7 +10,7 @@ module hdf5_attributes
    use kinds, only: dp, long
    implicit none
    private
-   public :: write_attribute, write_fixed_text
+   public :: write_attribute, write_fixed_text, describe
 
    !> Writes an attribute.
    interface write_attribute
@@ -30,6 +30,24 @@ module hdf5_attributes
    end type stored_value_type
 
 contains
+
+   !> Writes what a dataset is: `description`, `unit`, and `components` where there are such.
+   !> Error: status_internal, when an attribute cannot be written.
+   subroutine describe(file, path, description, unit, error, components)
+      integer(hid_t), intent(in) :: file                  !! the open file
+      character(*), intent(in) :: path                    !! path of the dataset
+      character(*), intent(in) :: description             !! what it is
+      character(*), intent(in) :: unit                    !! its unit; '-' for a pure number
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      character(*), intent(in), optional :: components    !! their names; empty or absent: none
+
+      call write_attribute(file, path, 'description', trim(description), error)
+      if (allocated(error)) return
+      call write_attribute(file, path, 'unit', trim(unit), error)
+      if (allocated(error) .or. .not. present(components)) return
+      if (len_trim(components) > 0) call write_attribute(file, path, 'components', &
+         trim(components), error)
+   end subroutine describe
 
    !> Error: status_internal, when the attribute cannot be written.
    subroutine write_integer_attribute(file, path, name, value, error)

@@ -1,22 +1,28 @@
-!> The print file `NAME.lst`: what was read, what is modelled and why, every increment, the zone
-!> diagrams, the verdicts.
+!> The print file `NAME.lst`: a summary, what is modelled and why, every increment, the verdicts,
+!> the zone diagrams, all warnings, and the deck.
+!>
+!> The summary is known at the end only: its lines are blank until then, and written over.
 module listing
+   use accuracy_lines, only: add_accuracy
    use contact_points, only: contact_points_type, never_approached
    use due_output, only: table_is_due
    use errors, only: error_type
-   use file_calls, only: append_to_file, empty_file, lock_file, unlock_file
+   use file_calls, only: append_to_file, empty_file, lock_file, overwrite_in_file, &
+      unlock_file
    use listing_errors, only: print_body_errors, print_interface_errors
    use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
    use listing_prints, only: print_requested
    use listing_tables, only: print_contact_table, print_iterations, print_verdicts
+   use listing_summary, only: checks, ending, summary_block, warnings_below
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
    use printed_text, only: printed_text_type
-   use records, only: contact_record_type, increment_record_type
+   use records, only: increment_record_type
    use run_summaries, only: or_blank, run_summary_type
+   use summary, only: summary_type
    use text, only: append, string_type, to_text
-   use verification, only: outcome_type
+   use verification, only: verifier_type
    use zone_diagram, only: zone_diagram_type
    implicit none
    private
@@ -31,7 +37,8 @@ module listing
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       character(:), allocatable :: failure                     !! why the run ended early
       type(string_type), allocatable :: warnings(:)            !! of the run
-      type(contact_record_type), allocatable :: contacts(:)    !! contact at the last increment
+      type(summary_type), public :: summary                    !! what the run comes to
+      integer :: summary_start = 0                             !! bytes before it
    contains
       procedure :: reserve
       procedure :: open => open_listing
@@ -58,15 +65,16 @@ contains
       call lock_file(path, self%descriptor, has_lock, error)
    end subroutine reserve
 
-   !> Begins the reserved listing: heading, echo of the deck, defaults, what is modelled.
+   !> Begins the reserved listing: heading, room for the summary, defaults, what is modelled.
    !> Error: status_internal, when the file cannot be written.
-   subroutine open_listing(self, model, interfaces, cards, run, error)
+   subroutine open_listing(self, model, interfaces, run, error)
       class(listing_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
-      type(string_type), intent(in) :: cards(:)           !! card images as read
       type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
+      character(:), allocatable :: lines
+      type(string_type), allocatable :: running(:)
 
       call empty_file(self%descriptor, self%path, error)
       if (allocated(error)) return
@@ -74,8 +82,15 @@ contains
       if (allocated(error)) return
       allocate(self%diagrams(size(interfaces)), self%warnings(0))
       call print_heading(self%text%unit, model, run)
-      call print_deck(self%text%unit, cards)
-      call print_list(self%text%unit, 'DEFAULTS AND CARDS NOT NEEDED', model%notes)
+      call print_title(self%text%unit, 'SUMMARY')
+      call self%text%take(lines)
+      self%summary_start = len(lines)
+      allocate (running(0))
+      call append(running, 'not finished: the run is still going on, or was killed')
+      lines = lines//summary_block(running, size(interfaces))
+      call append_to_file(self%descriptor, self%path, lines, error)
+      if (allocated(error)) return
+      call print_list(self%text%unit, 'DEFAULTS AND IGNORED CARDS', model%notes)
       call print_model(self%text%unit, model, interfaces, run)
       call print_title(self%text%unit, 'INCREMENTS')
       call write_text(self, error)
@@ -109,6 +124,7 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
 
+      call self%summary%take(record)
       call print_increment(self%text%unit, record)
       do i = 1, size(interfaces)
          call print_interface(self%text%unit, interfaces(i), record%contacts(i))
@@ -117,7 +133,6 @@ contains
       call print_balances(self%text%unit, record, model%steps(record%step)%analysis)
       call print_body_errors(self%text%unit, record)
       call print_warnings(self, record)
-      self%contacts = record%contacts
       if (allocated(record%errors)) then
          do i = 1, size(interfaces)
             call print_interface_errors(self%text%unit, interfaces(i)%name, record%errors(i))
@@ -174,35 +189,47 @@ contains
       end do
    end subroutine warn
 
-   !> Ends the listing that is open: verdicts, times, zone diagrams, all warnings again.
+   !> Ends the listing that is open: verdicts, zone diagrams, all warnings again, times, the deck;
+   !> then the summary in the room that was left for it.
    !> Error: status_internal, when its end cannot be written.
-   subroutine finish(self, model, interfaces, outcomes, run, error)
+   subroutine finish(self, model, interfaces, cards, verifier, run, error)
       class(listing_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
-      type(outcome_type), intent(in) :: outcomes(:)       !! what came of the *VERIFY cards
+      type(string_type), intent(in) :: cards(:)           !! card images as read
+      type(verifier_type), intent(in) :: verifier         !! what came of the *VERIFY cards
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(string_type), allocatable :: warnings(:)
+      type(string_type), allocatable :: accuracy(:), lines(:), warnings(:)
+      character(:), allocatable :: block
       integer :: i
 
-      if (size(outcomes) > 0) call print_verdicts(self%text%unit, model%verifications, outcomes)
-      call print_times(self%text%unit, run)
+      if (size(verifier%outcomes) > 0) call print_verdicts(self%text%unit, model%verifications, &
+         verifier%outcomes)
       do i = 1, size(interfaces)
          call self%diagrams(i)%print(self%text%unit, interfaces(i))
       end do
-      call print_unapproached(self, model%mesh%node_number, interfaces)
+      allocate (accuracy(0))
+      call add_accuracy(run%accuracy, interfaces, accuracy)
+      call print_list(self%text%unit, 'REQUESTED ACCURACY', accuracy)
+      call print_unapproached(self%text%unit, model%mesh%node_number, interfaces, self%summary)
       warnings = model%warnings
       do i = 1, size(self%warnings)
          call append(warnings, self%warnings(i)%value)
       end do
       call print_list(self%text%unit, 'WARNINGS', warnings)
       if (size(warnings) == 0) write (self%text%unit, '(/, a)') 'No warnings.'
-      if (allocated(self%failure)) then
-         call print_title(self%text%unit, 'ENDED EARLY')
-         call print_wrapped(self%text%unit, '   ', self%failure)
-      end if
+      call print_times(self%text%unit, run)
+      call print_deck(self%text%unit, cards)
       call write_text(self, error)
+      if (allocated(error)) return
+      allocate (lines(0))
+      call append(lines, ending(allocated(self%failure), self%summary%increment))
+      call append(lines, checks(verifier))
+      call append(lines, warnings_below(size(warnings)))
+      call self%summary%add_lines(model, interfaces, lines)
+      block = summary_block(lines, size(interfaces))
+      call overwrite_in_file(self%descriptor, self%path, self%summary_start, block, error)
    end subroutine finish
 
    !> Frees the file; one in which nothing was written is removed. One that is not reserved stays.
@@ -247,23 +274,24 @@ contains
    end subroutine print_warnings
 
    !> Prints the contact points of each interface that never came nearer than they were.
-   subroutine print_unapproached(self, node_number, interfaces)
-      class(listing_type), intent(in) :: self
+   subroutine print_unapproached(unit, node_number, interfaces, summary)
+      integer, intent(in) :: unit
       integer, intent(in) :: node_number(:)
       type(contact_points_type), intent(in) :: interfaces(:)
+      type(summary_type), intent(in) :: summary
       integer, parameter :: most = 20
       integer, allocatable :: far(:)
       character(:), allocatable :: line
       integer :: i, k
 
-      if (.not. allocated(self%contacts)) return
+      if (.not. allocated(summary%contacts)) return
       do i = 1, size(interfaces)
          associate (m => size(interfaces(i)%slave_node))
             far = pack([(k, k=1, m)], never_approached(interfaces(i)%initial_gap, &
-               self%contacts(i)%smallest_gap))
+               summary%contacts(i)%smallest_gap))
             if (size(far) == 0) cycle
-            call print_title(self%text%unit, 'PAIRS THAT NEVER APPROACHED: '//to_text(size(far))// &
-               ' of '//to_text(m)//' of '//interfaces(i)%name)
+            call print_title(unit, 'CONTACT POINTS THAT NEVER APPROACHED: '// &
+               to_text(size(far))//' of '//to_text(m)//' of '//interfaces(i)%name)
          end associate
          line = 'slave and master nodes'
          do k = 1, min(size(far), most)
@@ -271,7 +299,7 @@ contains
                to_text(node_number(interfaces(i)%master_node(far(k))))
          end do
          if (size(far) > most) line = line//' and '//to_text(size(far) - most)//' more'
-         call print_wrapped(self%text%unit, '   ', line)
+         call print_wrapped(unit, '   ', line)
       end do
    end subroutine print_unapproached
 

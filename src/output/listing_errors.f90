@@ -57,9 +57,9 @@ contains
       width = maxval(len_trim(estimated%name))
       total = total_errors(errors)
       write (unit, '(/, 3a)') '   ESTIMATED ERRORS OF ', name, &
-         ': what is missing to the exact value (+-: to either side)'
+         ': exact value minus the value found (+-: of either sign)'
       write (unit, '(4x, a, a14, a13, 2a14, a12, a11, a14)') repeat(' ', width), 'value', &
-         'mesh', 'increments', 'iteration', 'together', '%', 'largest part'
+         'mesh', 'increments', 'iteration', 'total', '%', 'largest part'
       do q = 1, size(estimated)
          associate (value => errors%value(q))
             if (.not. is_worth_telling(value, total(q))) cycle

@@ -150,7 +150,7 @@ contains
       if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
       associate (work => record%work)
          if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &
-            'factored again ', work%columns_again, ' of ', work%columns_full, ' columns (', &
+            'refactored ', work%columns_again, ' of ', work%columns_full, ' columns (', &
             100.0_dp*work%columns_again/work%columns_full, ' %), ', work%flops_again, ' of ', &
             work%flops_full, ' flops (', 100.0_dp*work%flops_again/max(1.0_dp, &
             real(work%flops_full, dp)), ' %)'

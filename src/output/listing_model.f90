@@ -1,14 +1,15 @@
 !> The listing's summary of the model: what will be modelled and why, sizes, interfaces.
 module listing_model
    use contact_points, only: contact_points_type
+   use hanging_nodes, only: hanging_count
    use kinds, only: dp
    use listing_text, only: print_title, print_wrapped
    use model, only: model_type
    use model_words, only: closed_law_words, friction_words, material_words, &
-      open_law_words, open_words, pairing_words, points_words
+      open_law_words, open_words, pairing_words, points_words, section_words
    use steps, only: analysis_heat, analysis_static, solves_heat
    use run_summaries, only: or_blank, run_summary_type
-   use text, only: to_text
+   use text, only: string_type, to_text
    implicit none
    private
    public :: print_model
@@ -21,9 +22,10 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run
+      type(string_type), allocatable :: sections(:)
       integer :: i
 
-      call print_title(unit, 'WHAT IS MODELLED')
+      call print_title(unit, 'PHYSICS')
       call print_wrapped(unit, '   ', or_blank(run%modelled))
       if (or_blank(run%reasons) /= '') call print_wrapped(unit, '   ', run%reasons)
       call print_title(unit, 'MODEL')
@@ -31,6 +33,8 @@ contains
       call print_count(unit, 'nodes', size(model%mesh%node_number))
       call print_count(unit, 'elements', size(model%mesh%element_number))
       call print_count(unit, 'uniform refinements', model%refinement_levels)
+      if (hanging_count(model%mesh) > 0) call print_count(unit, 'sides with hanging nodes', &
+         hanging_count(model%mesh))
       if (model%element_order == 1) call print_entry(unit, 'order of the elements', &
          '1 (*OPTIONS, ORDER=1)')
       call print_count(unit, 'steps', size(model%steps))
@@ -44,6 +48,10 @@ contains
          ' of its diagonal entry')
       call print_entry(unit, 'load axis', or_blank(model%load_label))
       if (run%has_biot) call print_entry(unit, 'contact Biot number', from_to(run%contact_biot))
+      sections = section_words(model)
+      do i = 1, size(sections)
+         call print_entry(unit, 'section '//to_text(i), sections(i)%value)
+      end do
       do i = 1, size(model%materials)
          call print_entry(unit, 'material '//model%materials(i)%name, &
             material_words(model%materials(i)))
@@ -60,7 +68,7 @@ contains
 
       has_heat = any(solves_heat(model%steps%analysis))
       do i = 1, size(interfaces)
-         write (unit, '(/, 3x, 2a)') 'CONTACT PAIR ', interfaces(i)%name
+         write (unit, '(/, 3x, 2a)') 'INTERFACE ', interfaces(i)%name
          call print_entry(unit, 'pairing', pairing_words(model%contacts(i)%pairing, interfaces(i)))
          call print_count(unit, points_words(interfaces(i)), size(interfaces(i)%slave_node))
          if (len(open_words(interfaces(i))) > 0) call print_entry(unit, 'note', &
@@ -77,7 +85,7 @@ contains
       end do
    end subroutine print_interfaces
 
-   !> Analysis and scheme of (3.4) of every step; steps that are alike stand together.
+   !> Analysis and scheme of (3.4) of every step; equal steps in one line.
    subroutine print_steps(unit, model)
       integer, intent(in) :: unit
       type(model_type), intent(in) :: model

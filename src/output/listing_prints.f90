@@ -8,6 +8,7 @@ module listing_prints
       print_position, print_request_type, print_stress, print_temperature
    use records, only: element_points_record_type, field_record_type, increment_record_type
    use text, only: append, string_type
+   use transforms, only: axes_at
    implicit none
    private
    public :: print_requested
@@ -59,6 +60,8 @@ contains
                end if
                if (request%each_node .or. .not. is_summed(quantity)) then
                   call add_nodal(quantity, fields, nodes, columns, names)
+                  if (request%local_axes .and. any(quantity == [print_displacement, &
+                     print_force])) call turn(model, nodes, columns(:, size(names) - 1:size(names)))
                end if
                if (request%totals .and. is_summed(quantity)) then
                   call add_nodal(quantity, fields, nodes, sums, sum_names)
@@ -81,6 +84,25 @@ contains
          end if
       end associate
    end subroutine print_nodes
+
+   !> Takes the components of vectors along the axes of their nodes.
+   pure subroutine turn(model, nodes, vectors)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: nodes(:)
+      real(dp), intent(inout) :: vectors(:, :)    ! (nodes, 2)
+      integer :: i, k
+
+      if (.not. allocated(model%transforms)) return
+      do i = 1, size(model%transforms)
+         associate (transform => model%transforms(i))
+            do k = 1, size(nodes)
+               if (all(model%mesh%node_sets(transform%set)%members /= nodes(k))) cycle
+               vectors(k, :) = matmul(vectors(k, :), axes_at(transform, &
+                  model%mesh%coordinates(:, nodes(k))))
+            end do
+         end associate
+      end do
+   end subroutine turn
 
    pure logical function is_summed(quantity)
       integer, intent(in) :: quantity

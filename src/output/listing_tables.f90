@@ -42,8 +42,8 @@ contains
             values(:, i) = contact_values(columns(i)%name, points, contact)
          end if
       end do
-      write (unit, '(/, 2a)') '   CONTACT PAIRS OF ', points%name
-      write (unit, '(*(a))') 'pair', (table_head(columns(i)), i=1, n)
+      write (unit, '(/, 2a)') '   CONTACT POINTS OF ', points%name
+      write (unit, '(*(a))') ' no.', (table_head(columns(i)), i=1, n)
       do k = 1, size(values, 1)
          write (unit, '(i4, *(a))') k, (table_cell(columns(i), values(k, i)), i=1, n)
       end do

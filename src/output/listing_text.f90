@@ -1,7 +1,7 @@
 !> Text of the listing: titles, wrapped lines, numbers in columns, the echo of the deck.
 module listing_text
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use kinds, only: dp
+   use kinds, only: dp, long
    use quantity_types, only: quantity_type
    use text, only: string_type, to_text
    use zone_diagram, only: zone_numeral
@@ -32,6 +32,7 @@ contains
       character(40) :: buffer
       character(10) :: edit
       integer :: digits, places
+      logical :: is_sure
 
       if (.not. ieee_is_finite(value)) then
          write (buffer, '(es40.2)') value
@@ -45,6 +46,11 @@ contains
       ! Beside the places there are a blank, a minus, a digit, the point, E and a sign.
       places = min(decimals, width - digits - merge(6, 5, value < 0.0_dp))
       if (abs(value) > 0.0_dp) then
+         call write_digits(value, places, buffer, is_sure)
+         if (is_sure) then
+            string = buffer(41 - width:)
+            return
+         end if
          edit = '(es40.#e#)'
          edit(7:7) = digit(places)
          edit(9:9) = digit(digits)
@@ -55,6 +61,39 @@ contains
       end if
       string = buffer(41 - width:)
    end function column
+
+   !> A number as es40 writes it, by arithmetic: tables are thousands of numbers, and Fortran's
+   !> statement takes fifty times as long. Not sure of numbers of extreme size and where rounding of
+   !> the arithmetic might show.
+   pure subroutine write_digits(value, places, buffer, is_sure)
+      real(dp), intent(in) :: value
+      integer, intent(in) :: places        !! digits behind the point, at most 9
+      character(40), intent(out) :: buffer
+      logical, intent(out) :: is_sure
+      real(dp), parameter :: sizes(2) = [1.0e-30_dp, 1.0e30_dp], near_tie = 1.0e-3_dp
+      real(dp) :: scaled
+      integer :: exponent, i
+      integer(long) :: rest
+
+      buffer = ''
+      is_sure = abs(value) > sizes(1) .and. abs(value) < sizes(2)
+      if (.not. is_sure) return
+      exponent = floor(log10(abs(value)))
+      scaled = abs(value)*10.0_dp**(places - exponent)
+      rest = nint(scaled, long)
+      is_sure = abs(scaled - aint(scaled) - 0.5_dp) > near_tie .and. rest >= 10_long**places .and. &
+         rest < 10_long**(places + 1)
+      if (.not. is_sure) return
+      buffer(37:40) = 'E'//merge('-', '+', exponent < 0)//digit(abs(exponent)/10)// &
+         digit(mod(abs(exponent), 10))
+      do i = 36, 37 - places, -1
+         buffer(i:i) = digit(int(mod(rest, 10_long)))
+         rest = rest/10
+      end do
+      buffer(36 - places:36 - places) = '.'
+      buffer(35 - places:35 - places) = digit(int(rest))
+      if (value < 0.0_dp) buffer(34 - places:34 - places) = '-'
+   end subroutine write_digits
 
    !> A number below 10 as a character.
    pure character function digit(number)

@@ -4,14 +4,50 @@ module model_words
    use contact_definitions, only: pairing_by_faces, pairing_name, pairing_nodes
    use contact_points, only: contact_points_type
    use kinds, only: dp
+   use element_kinds, only: axisymmetric, plane_stress
+   use friction_laws, only: friction_law_type, rough_coefficient, unlimited
    use materials, only: constant_type, material_type
-   use text, only: to_text
+   use model, only: model_type
+   use text, only: append, counted, string_type, to_text
    implicit none
    private
    public :: material_words, friction_words, open_law_words, closed_law_words
-   public :: open_words, pairing_words, points_words
+   public :: open_words, pairing_words, points_words, section_words
 
 contains
+
+   !> The sections of a model: material, plane, thickness, one line each.
+   pure function section_words(model) result(lines)
+      type(model_type), intent(in) :: model
+      type(string_type), allocatable :: lines(:)
+      integer :: i, plane, elements
+
+      allocate (lines(0))
+      do i = 1, size(model%sections)
+         associate (section => model%sections(i), mesh => model%mesh)
+            elements = count(mesh%element_section == i)
+            if (elements == 0) cycle
+            plane = mesh%element_plane(findloc(mesh%element_section, i, dim=1))
+            call append(lines, 'material '//model%materials(section%material)%name//', '// &
+               plane_words(plane, section%thickness)//', '//counted(elements, 'element'))
+         end associate
+      end do
+   end function section_words
+
+   pure function plane_words(plane, thickness) result(words)
+      integer, intent(in) :: plane
+      real(dp), intent(in) :: thickness
+      character(:), allocatable :: words
+
+      select case (plane)
+      case (axisymmetric)
+         words = 'axisymmetric, full circumference'
+      case (plane_stress)
+         words = 'plane stress, thickness '//to_text(thickness)
+      case default
+         words = 'plane strain, thickness '//to_text(thickness)
+      end select
+   end function plane_words
 
    !> What contact points are.
    pure function points_words(points) result(words)
@@ -69,13 +105,16 @@ contains
       words = trim(constant%name)//' '//to_text(constant%value)
    end function constant_words
 
-   !> A coefficient of friction.
+   !> A law of friction.
    pure function friction_words(friction) result(words)
-      real(dp), intent(in) :: friction     !! coefficient of friction, 0 for none
-      character(:), allocatable :: words   !! such as 0.155
+      type(friction_law_type), intent(in) :: friction
+      character(:), allocatable :: words   !! such as 0.155, no shear above 20
 
       words = 'none'
-      if (friction > 0.0_dp) words = to_text(friction)
+      if (friction%coefficient > 0.0_dp) words = to_text(friction%coefficient)
+      if (friction%coefficient >= rough_coefficient) words = 'rough, no slip'
+      if (friction%largest_shear < unlimited) words = words//', no shear above '// &
+         to_text(friction%largest_shear)
    end function friction_words
 
    !> The open side of a law.
@@ -85,9 +124,11 @@ contains
 
       select case (law%open_kind)
       case (law_gas)
-         words = 'A/(B + gap), A = '//to_text(law%gas_a)//', B = '//to_text(law%gas_b)
+         words = gas_words(law)
       case (law_clearance)
          words = 'table over the gap: '//table_words(law%open_omega, law%table_gap)
+         if (allocated(law%by_temperature)) words = words//temperature_words( &
+            law%by_temperature%open_temperature, law%by_temperature%open_columns, law%table_gap)
          if (law%open_ends) words = words//', 0 beyond'
       case default
          words = 'not given'
@@ -103,12 +144,68 @@ contains
       case (law_power)
          words = 'C0 + C1 p^n, C0 = '//to_text(law%power_c0)//', C1 = '//to_text(law%power_c1)// &
             ', n = '//to_text(law%power_n)
+         if (law%closed_adds) words = 'C1 p^n, C1 = '//to_text(law%power_c1)//', n = '// &
+            to_text(law%power_n)//', added to the open value at gap 0'
       case (law_pressure)
          words = 'table over the pressure: '//table_words(law%closed_omega, law%table_pressure)
+         if (allocated(law%by_temperature)) words = words//temperature_words( &
+            law%by_temperature%closed_temperature, law%by_temperature%closed_columns, &
+            law%table_pressure)
       case default
          words = 'not given'
       end select
    end function closed_law_words
+
+   !> The law of a gas, with what is added to it.
+   pure function gas_words(law) result(words)
+      type(conductance_law_type), intent(in) :: law
+      character(:), allocatable :: words
+      integer :: i
+
+      if (law%added_length > 0.0_dp) then
+         words = 'A/(B + '//to_text(law%added_length)//' + gap)'
+      else
+         words = 'A/(B + gap)'
+      end if
+      if (.not. allocated(law%by_temperature)) then
+         words = words//constants(law%gas_a, law%gas_b)
+         return
+      end if
+      associate (rows => law%by_temperature)
+         if (rows%radiance > 0.0_dp) words = words//' + '//to_text(rows%radiance)// &
+            ' (T1^2 + T2^2) (T1 + T2), absolute zero '//to_text(rows%absolute_zero)
+         words = words//constants(law%gas_a, law%gas_b)
+         if (.not. allocated(rows%gas_temperature)) return
+         words = words//' at mean temperature '//to_text(rows%gas_temperature(1))
+         do i = 2, size(rows%gas_temperature)
+            words = words//constants(rows%gas_a(i), rows%gas_b(i))//' at '// &
+               to_text(rows%gas_temperature(i))
+         end do
+      end associate
+   contains
+      pure function constants(a, b) result(words)
+         real(dp), intent(in) :: a, b
+         character(:), allocatable :: words
+
+         words = ', A = '//to_text(a)//', B = '//to_text(b)
+      end function constants
+   end function gas_words
+
+   !> The columns of a table behind the first; empty for a table of one temperature.
+   pure function temperature_words(temperature, columns, abscissas) result(words)
+      real(dp), allocatable, intent(in) :: temperature(:), columns(:, :)
+      real(dp), intent(in) :: abscissas(:)
+      character(:), allocatable :: words
+      integer :: i
+
+      words = ''
+      if (.not. allocated(temperature)) return
+      words = ' at mean temperature '//to_text(temperature(1))
+      do i = 2, size(temperature)
+         words = words//'; '//table_words(columns(:, i), abscissas)//' at '// &
+            to_text(temperature(i))
+      end do
+   end function temperature_words
 
    pure function table_words(omega, abscissas) result(words)
       real(dp), intent(in) :: omega(:), abscissas(:)

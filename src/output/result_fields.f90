@@ -5,37 +5,37 @@ module result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
+   use element_kinds, only: axisymmetric
    use errors, only: error_type
    use field_quantities, only: element_values, point_values
+   use grid_steps, only: grid_steps_type
    use growing_datasets, only: growing_dataset, growing_dataset_type
    use hdf5, only: hid_t
-   use hdf5_attributes, only: write_attribute
-   use hdf5_helpers, only: as_long, as_real, create_group, link_dataset
+   use hdf5_helpers, only: as_real
    use kinds, only: dp
+   use model, only: model_type
    use quantity_types, only: of_elements, of_contact_points, of_points, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets
-   use result_mesh, only: cell_data_names, cell_group, point_group, steps_group
+   use result_mesh, only: cell_data_names, cell_group, point_group
+   use unit_labels, only: unit_in_words
    implicit none
    private
    public :: field_results_type
 
-   !> Growing datasets of Steps; those of the same content are links to these.
-   integer, parameter :: at_values = 1, at_zero = 2, at_zero_column = 3, at_one = 4, at_offset = 5
-   integer, parameter :: at_cell_offset = 6
-   integer, parameter :: step_sets = 6
-
    character(*), parameter :: mark = 'contact_'   !! before names of quantities of contact points
 
-   !> Fields of the result file. `sets` holds those of Steps, then one for each of `point_data`,
-   !> then one for each of `cell_data`.
+   !> Fields of the result file. `sets` holds one for each of `point_data`, then one for each of
+   !> `cell_data`.
    type :: field_results_type
       private
       integer, allocatable, public :: point_node(:)              !! (points) node index
       integer, allocatable :: face_point(:)                      !! points on contact faces
       integer, allocatable :: face_interface(:)                  !! their interface
       integer, allocatable :: face_row(:)                        !! their row of its at_face_nodes
-      integer :: increments = 0                                  !! increments appended
+      !> (2, points) unit vectors away from the origin in plane models; else unallocated
+      real(dp), allocatable :: radial(:, :)
+      type(grid_steps_type), public :: steps                     !! times
       type(quantity_type), allocatable :: point_data(:)          !! point data that varies
       type(quantity_type), allocatable :: cell_data(:)           !! cell data that varies
       integer :: cells = 0                                       !! number of cells
@@ -43,51 +43,68 @@ module result_fields
    contains
       procedure :: start
       procedure :: append
-      procedure :: create_groups
       procedure :: write_links
-      procedure :: write_count
    end type field_results_type
 
 contains
 
    !> Prepares the datasets.
-   subroutine start(self, interfaces, point_node, cells, has, expected)
+   subroutine start(self, model, interfaces, point_node, has, expected)
       class(field_results_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: point_node(:)               !! (points) node index of each point
-      integer, intent(in) :: cells                       !! number of elements
       logical, intent(in) :: has(0:)                     !! what the deck solves, by needs_*
       integer, intent(in) :: expected                    !! increments that are expected
-      integer :: i, width
+      integer :: cells, i, width
 
       self%point_node = point_node
+      cells = size(model%mesh%element_kind)
+      if (all(model%mesh%element_plane /= axisymmetric)) self%radial = &
+         directions(model%mesh%coordinates(:, point_node))
       call find_faces(self, interfaces)
       self%point_data = datasets(of_points, has)
       if (size(interfaces) > 0) self%point_data = [self%point_data, &
          on_faces(datasets(of_contact_points, has))]
       self%cells = cells
       self%cell_data = datasets(of_elements, has)
-      allocate(self%sets(step_sets + size(self%point_data) + size(self%cell_data)))
-      self%sets(at_values) = growing_dataset(steps_group//'Values', as_real, 0, 1, expected)
-      self%sets(at_zero) = growing_dataset(steps_group//'PartOffsets', as_long, 0, 1, expected)
-      self%sets(at_zero_column) = growing_dataset(steps_group//'CellOffsets', as_long, 1, 1, &
-         expected)
-      self%sets(at_one) = growing_dataset(steps_group//'NumberOfParts', as_long, 0, 1, expected)
-      self%sets(at_offset) = growing_dataset(steps_group//'PointDataOffsets/'// &
-         trim(self%point_data(1)%name), as_long, 0, 1, expected)
-      self%sets(at_cell_offset) = growing_dataset(steps_group//'CellDataOffsets/'// &
-         trim(self%cell_data(1)%name), as_long, 0, 1, expected)
+      allocate(self%sets(size(self%point_data) + size(self%cell_data)))
+      call self%steps%start(trim(self%point_data(1)%name), trim(self%cell_data(1)%name), expected)
       do i = 1, size(self%point_data)
          width = self%point_data(i)%values
          if (width == 1) width = 0
-         self%sets(step_sets + i) = growing_dataset(point_group// &
-            trim(self%point_data(i)%name), as_real, width, size(point_node), expected)
+         self%sets(i) = field_set(point_group, self%point_data(i), width, &
+            size(point_node))
       end do
       do i = 1, size(self%cell_data)
-         self%sets(step_sets + size(self%point_data) + i) = growing_dataset(cell_group// &
-            trim(self%cell_data(i)%name), as_real, 0, cells, expected)
+         self%sets(size(self%point_data) + i) = field_set(cell_group, &
+            self%cell_data(i), 0, cells)
       end do
+   contains
+      function field_set(group, quantity, values, rows) result(set)
+         character(*), intent(in) :: group
+         type(quantity_type), intent(in) :: quantity
+         integer, intent(in) :: values, rows
+         type(growing_dataset_type) :: set
+
+         set = growing_dataset(group//trim(quantity%name), as_real, values, rows, expected)
+         call set%describe_as(trim(quantity%description), unit_in_words(quantity%unit, &
+            model%units), trim(quantity%components))
+      end function field_set
    end subroutine start
+
+   !> Unit vectors from the origin to points; along x at the origin itself.
+   pure function directions(coordinates) result(radial)
+      real(dp), intent(in) :: coordinates(:, :)
+      real(dp) :: radial(2, size(coordinates, 2)), radius
+      integer :: i
+
+      do i = 1, size(radial, 2)
+         radius = hypot(coordinates(1, i), coordinates(2, i))
+         radial(:, i) = [1.0_dp, 0.0_dp]
+         if (radius > 0.0_dp) radial(:, i) = coordinates(:, i)/radius
+      end do
+   end function directions
 
    !> Adds the fields of an increment.
    subroutine append(self, record, interfaces)
@@ -96,36 +113,16 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer :: i
 
-      call self%sets(at_values)%append([record%time])
-      call self%sets(at_zero)%append([0.0_dp])
-      call self%sets(at_zero_column)%append([0.0_dp])
-      call self%sets(at_one)%append([1.0_dp])
-      call self%sets(at_offset)%append([real(self%increments, dp)*size(self%point_node)])
-      call self%sets(at_cell_offset)%append([real(self%increments, dp)*self%cells])
+      call self%steps%append(record%time, size(self%point_node), self%cells)
       do i = 1, size(self%point_data)
-         call self%sets(step_sets + i)%append(field_values(self, self%point_data(i), record, &
+         call self%sets(i)%append(field_values(self, self%point_data(i), record, &
             interfaces))
       end do
       do i = 1, size(self%cell_data)
-         call self%sets(step_sets + size(self%point_data) + i)%append(or_nan(element_values( &
+         call self%sets(size(self%point_data) + i)%append(or_nan(element_values( &
             self%cell_data(i)%name, record), self%cells))
       end do
-      self%increments = self%increments + 1
    end subroutine append
-
-   !> Creates the groups that the datasets go into.
-   !> Error: status_internal, when HDF5 refuses.
-   subroutine create_groups(self, file, error)
-      class(field_results_type), intent(in) :: self
-      integer(hid_t), intent(in) :: file                  !! the open file
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
-
-      call create_group(file, steps_group, error)
-      if (allocated(error)) return
-      if (size(self%point_data) > 0) call create_group(file, steps_group//'PointDataOffsets', error)
-      if (allocated(error)) return
-      call create_group(file, steps_group//'CellDataOffsets', error)
-   end subroutine create_groups
 
    !> Gives the offsets of Steps all their names, once their datasets are in the file.
    !> Error: status_internal, when HDF5 refuses.
@@ -133,43 +130,16 @@ contains
       class(field_results_type), intent(in) :: self
       integer(hid_t), intent(in) :: file                  !! the open file
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      character(*), parameter :: zeros = steps_group//'PartOffsets'
-      character(*), parameter :: points = steps_group//'PointDataOffsets/'
-      character(*), parameter :: cells = steps_group//'CellDataOffsets/'
-      integer :: i
+      character(len(self%point_data%name) + 1) :: points(1 + size(self%point_data))
+      character(len(self%cell_data%name) + 1) :: cells(size(cell_data_names) + &
+         size(self%cell_data))
 
-      call link_dataset(file, zeros, steps_group//'PointOffsets', error)
-      if (allocated(error)) return
-      call link_dataset(file, steps_group//'CellOffsets', steps_group//'ConnectivityIdOffsets', &
-         error)
-      if (allocated(error)) return
-      call link_dataset(file, zeros, points//'node_id', error)
-      if (allocated(error)) return
-      do i = 2, size(self%point_data)
-         call link_dataset(file, points//trim(self%point_data(1)%name), &
-            points//trim(self%point_data(i)%name), error)
-         if (allocated(error)) return
-      end do
-      do i = 2, size(self%cell_data)
-         call link_dataset(file, cells//trim(self%cell_data(1)%name), &
-            cells//trim(self%cell_data(i)%name), error)
-         if (allocated(error)) return
-      end do
-      do i = 1, size(cell_data_names)
-         call link_dataset(file, zeros, cells//trim(cell_data_names(i)), error)
-         if (allocated(error)) return
-      end do
+      points(1) = ' node_id'
+      points(2:) = self%point_data%name
+      cells(:size(cell_data_names)) = ' '//cell_data_names
+      cells(size(cell_data_names) + 1:) = self%cell_data%name
+      call self%steps%write_links(file, points, cells, error)
    end subroutine write_links
-
-   !> Writes the number of increments that the file holds.
-   !> Error: status_internal, when HDF5 refuses.
-   subroutine write_count(self, file, error)
-      class(field_results_type), intent(in) :: self
-      integer(hid_t), intent(in) :: file                  !! the open file
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
-
-      call write_attribute(file, steps_group, 'NSteps', self%increments, error)
-   end subroutine write_count
 
    !> The quantities of contact points that are fields too, by their names as such.
    pure function on_faces(of_interface) result(fields)
@@ -180,6 +150,7 @@ contains
       fields = pack(of_interface, of_interface%is_on_faces)
       do i = 1, size(fields)
          fields(i)%name = mark//trim(fields(i)%name)
+         fields(i)%description = trim(fields(i)%description)//'; on both faces, else NaN'
       end do
    end function on_faces
 
@@ -213,8 +184,8 @@ contains
          values = face_values(self, quantity%name(len(mark) + 1:), quantity%is_integer, record, &
             interfaces)
       else
-         values = or_nan(point_values(quantity%name, record%fields, self%point_node), &
-            quantity%values*size(self%point_node))
+         values = or_nan(point_values(quantity%name, record%fields, self%point_node, &
+            self%radial), quantity%values*size(self%point_node))
       end if
    end function field_values
 

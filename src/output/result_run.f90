@@ -11,6 +11,7 @@ module result_run
    public :: write_run
 
    character(*), parameter :: group = '/run'
+   integer, parameter :: format_version = 1   !! of the result file; grows where old readers fail
 
 contains
 
@@ -36,6 +37,8 @@ contains
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
 
+      call write_attribute(file, group, 'format_version', format_version, error)
+      if (allocated(error)) return
       call write_attribute(file, group, 'version', or_blank(run%version), error)
       if (allocated(error)) return
       call write_attribute(file, group, 'heading', or_blank(model%heading), error)

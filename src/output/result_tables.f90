@@ -7,15 +7,17 @@ module result_tables
    use errors, only: error_type
    use growing_datasets, only: growing_dataset, growing_dataset_type
    use hdf5, only: hid_t
-   use hdf5_attributes, only: write_attribute
+   use hdf5_attributes, only: describe, write_attribute
    use hdf5_helpers, only: as_integer, as_real, create_group, write_array
    use increment_quantities, only: body_values, history_value, pass_value
    use kinds, only: dp
+   use model, only: unit_labels_type
    use quantity_types, only: of_bodies, of_history, of_interface, of_contact_points, of_passes, &
       quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use reported_quantities, only: datasets, quantities
    use solution_report, only: iteration_record_type
+   use unit_labels, only: load_unit, unit_in_words
    implicit none
    private
    public :: history_results_type, convergence_results_type, contact_results_type
@@ -66,11 +68,12 @@ module result_tables
 contains
 
    !> Prepares the datasets.
-   subroutine start_history(self, has, bodies, expected)
+   subroutine start_history(self, has, bodies, expected, labels)
       class(history_results_type), intent(inout) :: self  !! the group
       logical, intent(in) :: has(0:)                      !! what the deck solves, by needs_*
       integer, intent(in) :: bodies                       !! number of bodies
       integer, intent(in) :: expected                     !! increments that are expected
+      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       integer :: i
 
       self%bodies = bodies
@@ -78,19 +81,22 @@ contains
       allocate(self%sets(size(self%quantities)))
       do i = 1, size(self%sets)
          self%sets(i) = dataset('/history/', self%quantities(i), &
-            merge(bodies, 0, self%quantities(i)%kind == of_bodies), expected)
+            merge(bodies, 0, self%quantities(i)%kind == of_bodies), expected, labels)
       end do
    end subroutine start_history
 
    !> The dataset of a quantity: rows of `width` numbers, of single ones where that is 0.
-   pure function dataset(group, quantity, width, expected) result(set)
+   pure function dataset(group, quantity, width, expected, labels) result(set)
       character(*), intent(in) :: group
       type(quantity_type), intent(in) :: quantity
       integer, intent(in) :: width, expected
+      type(unit_labels_type), intent(in) :: labels
       type(growing_dataset_type) :: set
 
       set = growing_dataset(group//trim(quantity%name), merge(as_integer, as_real, &
          quantity%is_integer), width, 1, expected)
+      call set%describe_as(trim(quantity%description), unit_in_words(quantity%unit, labels), &
+         trim(quantity%components))
    end function dataset
 
    !> Adds an increment.
@@ -114,25 +120,30 @@ contains
 
    !> Labels the load axis.
    !> Error: status_internal, when HDF5 refuses.
-   subroutine write_history_static(file, load_label, error)
+   subroutine write_history_static(file, load_label, labels, error)
       integer(hid_t), intent(in) :: file                  !! the open file
       character(*), intent(in) :: load_label              !! label of the load axis
+      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       type(error_type), allocatable, intent(out) :: error !! what went wrong
+      character(*), parameter :: path = '/history/load'
 
-      call write_attribute(file, '/history/load', 'label', load_label, error)
+      call write_attribute(file, path, 'label', load_label, error)
+      if (allocated(error)) return
+      call write_attribute(file, path, 'unit', unit_in_words(load_unit(load_label), labels), error)
    end subroutine write_history_static
 
    !> Prepares the datasets.
-   subroutine start_convergence(self, has, expected)
+   subroutine start_convergence(self, has, expected, labels)
       class(convergence_results_type), intent(inout) :: self  !! the group
       logical, intent(in) :: has(0:)                          !! what the deck solves, by needs_*
       integer, intent(in) :: expected                         !! iterations that are expected
+      type(unit_labels_type), intent(in) :: labels            !! units of the deck
       integer :: i
 
       self%quantities = datasets(of_passes, has)
       allocate(self%sets(size(self%quantities)))
       do i = 1, size(self%sets)
-         self%sets(i) = dataset('/convergence/', self%quantities(i), 0, expected)
+         self%sets(i) = dataset('/convergence/', self%quantities(i), 0, expected, labels)
       end do
    end subroutine start_convergence
 
@@ -148,11 +159,12 @@ contains
    end subroutine append_convergence
 
    !> Prepares the datasets.
-   subroutine start_contact(self, points, has, expected)
+   subroutine start_contact(self, points, has, expected, labels)
       class(contact_results_type), intent(inout) :: self  !! the group
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       logical, intent(in) :: has(0:)                      !! what the deck solves, by needs_*
       integer, intent(in) :: expected                     !! increments that are expected
+      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       integer :: i, width
 
       self%quantities = [datasets(of_contact_points, has), datasets(of_interface, has)]
@@ -161,7 +173,8 @@ contains
          associate (quantity => self%quantities(i))
             width = merge(quantity%values, 0, quantity%values > 1)
             if (quantity%kind == of_contact_points) width = size(points%slave_node)
-            self%sets(i) = dataset('/contact/'//points%name//'/', quantity, width, expected)
+            self%sets(i) = dataset('/contact/'//points%name//'/', quantity, width, expected, &
+               labels)
          end associate
       end do
    end subroutine start_contact
@@ -180,11 +193,12 @@ contains
 
    !> Creates the group, with the geometry of the contact points.
    !> Error: status_internal, when HDF5 refuses.
-   subroutine write_contact_static(file, points, node_number, friction, error)
+   subroutine write_contact_static(file, points, node_number, friction, labels, error)
       integer(hid_t), intent(in) :: file                  !! the open file
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
       real(dp), intent(in) :: friction                    !! coefficient of friction [-]
+      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(:), allocatable :: group, path
       real(dp), allocatable :: values(:)
@@ -207,15 +221,19 @@ contains
             call write_array(file, path, values, error)
          end if
          if (allocated(error)) return
+         call describe(file, path, quantities(i)%description, &
+            unit_in_words(quantities(i)%unit, labels), error)
+         if (allocated(error)) return
       end do
    end subroutine write_contact_static
 
    !> Prepares the datasets; none without an interface or without estimates.
-   subroutine start_errors(self, has_estimates, interfaces, steps)
+   subroutine start_errors(self, has_estimates, interfaces, steps, labels)
       class(error_results_type), intent(inout) :: self    !! the group
       logical, intent(in) :: has_estimates                !! whether errors are estimated
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: steps                        !! steps of the deck
+      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       integer :: i, q
 
       if (size(interfaces) == 0 .or. .not. has_estimates) then
@@ -224,10 +242,16 @@ contains
       end if
       allocate(self%sets(1 + size(estimated)*size(interfaces)))
       self%sets(1) = growing_dataset('/errors/time', as_real, 0, 1, steps)
+      call self%sets(1)%describe_as('total time at the end of the step', 'time', '')
       do i = 1, size(interfaces)
          do q = 1, size(estimated)
-            self%sets(1 + (i - 1)*size(estimated) + q) = growing_dataset('/errors/'// &
-               interfaces(i)%name//'/'//trim(estimated(q)%name), as_real, error_columns, 1, steps)
+            associate (set => self%sets(1 + (i - 1)*size(estimated) + q))
+               set = growing_dataset('/errors/'//interfaces(i)%name//'/'// &
+                  trim(estimated(q)%name), as_real, error_columns, 1, steps)
+               call set%describe_as('value and its estimated errors: '// &
+                  trim(estimated(q)%description), unit_in_words(estimated(q)%unit, labels), &
+                  'value mesh increments iteration')
+            end associate
          end do
       end do
    end subroutine start_errors

@@ -6,16 +6,19 @@
 !> end, and in between whenever that costs less than a tenth of the time, or an increment was long.
 !> The first publishing replaces the files of an earlier run.
 module results
+   use contact_grid, only: contact_grid_type
    use contact_points, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
    use growing_datasets, only: bytes_in, flush_sets
+   use hdf5_attributes, only: describe
    use hdf5_helpers, only: close_hdf5, create_group, open_hdf5, write_strings
    use kinds, only: dp, long
    use model, only: model_type
    use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, needs_nothing, &
       needs_temperature
    use records, only: increment_record_type
+   use result_accuracy, only: write_accuracy
    use result_fields, only: field_results_type
    use result_mesh, only: write_result_mesh
    use result_run, only: write_run
@@ -45,6 +48,9 @@ module results
       type(convergence_results_type) :: convergence           !! `/convergence`
       type(contact_results_type), allocatable :: contacts(:)  !! `/contact/<name>`
       type(error_results_type) :: errors                      !! `/errors`
+      type(working_file_type) :: contact_file                 !! `NAME.contact.vtkhdf`
+      type(contact_grid_type) :: contact_grid                 !! its contents
+      logical :: has_contact = .false.                        !! whether there is such a file
       integer, allocatable :: element_points(:, :)            !! (8, elements)
       type(string_type), allocatable :: cards(:)              !! card images
       logical :: is_broken = .false.                          !! whether writing has failed
@@ -68,6 +74,7 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call self%file%start(path//'.vtkhdf')
+      call self%contact_file%start(path//'.contact.vtkhdf')
       call self%increments%start_increments(path//'.sta')
       call self%passes%start_iterations(path//'.cvg')
       call self%increments%reserve(error)
@@ -75,6 +82,8 @@ contains
       call self%passes%reserve(error)
       if (allocated(error)) return
       call self%file%reserve(has_lock, error)
+      if (allocated(error)) return
+      call self%contact_file%reserve(has_lock, error)
    end subroutine reserve
 
    !> Prepares the results of a run, whose files are reserved; none is touched yet.
@@ -96,13 +105,15 @@ contains
       self%cards = cards
       has = what_is_solved(model, size(interfaces) > 0)
       expected = expected_increments(model)
-      call self%fields%start(interfaces, point_node, size(model%mesh%element_kind), has, expected)
-      call self%history%start(has, model%mesh%body_count, expected)
-      call self%convergence%start(has, 8*expected)
-      call self%errors%start(model%estimates_errors, interfaces, size(model%steps))
+      call self%fields%start(model, interfaces, point_node, has, expected)
+      call self%history%start(has, model%mesh%body_count, expected, model%units)
+      call self%convergence%start(has, 8*expected, model%units)
+      call self%errors%start(model%estimates_errors, interfaces, size(model%steps), model%units)
       allocate(self%contacts(size(interfaces)))
+      self%has_contact = size(interfaces) > 0
+      if (self%has_contact) call self%contact_grid%start(interfaces, has, expected, model%units)
       do i = 1, size(interfaces)
-         call self%contacts(i)%start(interfaces(i), has, expected)
+         call self%contacts(i)%start(interfaces(i), has, expected, model%units)
       end do
    end subroutine open_results
 
@@ -131,15 +142,20 @@ contains
       do i = 1, size(interfaces)
          call self%contacts(i)%append(interfaces(i), record%contacts(i))
       end do
+      if (self%has_contact) call self%contact_grid%append(record, interfaces)
       if (allocated(record%errors)) call self%errors%append(record%time, record%errors)
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
       is_due = self%file%is_due()
       ends_run = record%last_of_step .and. record%step == size(model%steps)
       if ((record%last_of_step .or. is_due) .and. .not. ends_run) then
-         call publish(self, model, interfaces, run, error)
+         call publish(self, model, interfaces, run, error, ends_run)
       else if (waiting_bytes(self) > memory_limit) then
          call flush_all(self, model, interfaces, error)
          call self%file%explain(error)
+         if (self%has_contact .and. .not. allocated(error)) then
+            call flush_contact(self, model, interfaces, error)
+            call self%contact_file%explain(error)
+         end if
          call self%file%charge(since, ended=.false.)
       end if
       if (allocated(error)) call give_up(self)
@@ -160,7 +176,7 @@ contains
       call self%convergence%append(failed)
       call self%passes%add_iterations(failed)
       if (self%accepted > 0) then
-         call publish(self, model, interfaces, run, error)
+         call publish(self, model, interfaces, run, error, ends_run=.true.)
       else
          call self%passes%empty(error)
          if (.not. allocated(error)) call self%passes%write_waiting(error)
@@ -181,6 +197,7 @@ contains
 
       self%is_broken = .true.
       call self%file%discard()
+      call self%contact_file%discard()
       call self%increments%close()
       call self%passes%close()
    end subroutine give_up
@@ -218,17 +235,19 @@ contains
 
       bytes = bytes_in(self%fields%sets) + bytes_in(self%history%sets) &
          + bytes_in(self%convergence%sets)
+      if (self%has_contact) bytes = bytes + self%contact_grid%waiting_bytes()
       do i = 1, size(self%contacts)
          bytes = bytes + bytes_in(self%contacts(i)%sets)
       end do
    end function waiting_bytes
 
-   subroutine publish(self, model, interfaces, run, error)
+   subroutine publish(self, model, interfaces, run, error, ends_run)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in) :: ends_run
       real(dp) :: since
       logical :: is_first
 
@@ -237,8 +256,12 @@ contains
       call flush_all(self, model, interfaces, error)
       if (.not. allocated(error)) call write_run(self%file%id, run, model, &
          wall_seconds() - since, error)
+      if (.not. allocated(error) .and. ends_run) call write_accuracy(self%file%id, run%accuracy, &
+         interfaces, model%units, error)
       if (.not. allocated(error)) call self%file%close(error)
       call self%file%explain(error)
+      if (allocated(error)) return
+      call publish_contact(self, model, interfaces, error)
       if (allocated(error)) return
       if (is_first) then
          call self%increments%empty(error)
@@ -255,6 +278,37 @@ contains
       call self%file%charge(since, ended=.true.)
    end subroutine publish
 
+   !> The file of the contact points; one of an earlier run of a deck with contact goes with it.
+   subroutine publish_contact(self, model, interfaces, error)
+      class(results_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      if (.not. self%has_contact) then
+         call self%contact_file%remove()
+         return
+      end if
+      call flush_contact(self, model, interfaces, error)
+      if (.not. allocated(error)) call self%contact_file%close(error)
+      call self%contact_file%explain(error)
+      if (.not. allocated(error)) call self%contact_file%put_in_place(error)
+   end subroutine publish_contact
+
+   subroutine flush_contact(self, model, interfaces, error)
+      class(results_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:)
+      type(error_type), allocatable, intent(out) :: error
+      logical :: is_new
+
+      call self%contact_file%open(is_new, error)
+      if (allocated(error)) return
+      if (is_new) call self%contact_grid%write_head(self%contact_file%id, interfaces, &
+         model%mesh%node_number, error)
+      if (.not. allocated(error)) call self%contact_grid%flush(self%contact_file%id, is_new, error)
+   end subroutine flush_contact
+
    subroutine flush_all(self, model, interfaces, error)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -269,7 +323,9 @@ contains
       if (allocated(error)) return
       call flush_sets(self%fields%sets, self%file%id, error)
       if (allocated(error)) return
-      call self%fields%write_count(self%file%id, error)
+      call flush_sets(self%fields%steps%sets, self%file%id, error)
+      if (allocated(error)) return
+      call self%fields%steps%write_count(self%file%id, error)
       if (allocated(error)) return
       call flush_sets(self%history%sets, self%file%id, error)
       if (allocated(error)) return
@@ -284,7 +340,7 @@ contains
       if (is_new) call self%fields%write_links(self%file%id, error)
       if (allocated(error)) return
       if (is_new) call self%history%write_static(self%file%id, or_blank(model%load_label), &
-         error)
+         model%units, error)
    end subroutine flush_all
 
    subroutine write_heads(self, model, interfaces, error)
@@ -297,7 +353,7 @@ contains
       call write_result_mesh(self%file%id, model, self%fields%point_node, self%element_points, &
          error)
       if (allocated(error)) return
-      call self%fields%create_groups(self%file%id, error)
+      call self%fields%steps%create_groups(self%file%id, error)
       if (allocated(error)) return
       call create_group(self%file%id, '/history', error)
       if (allocated(error)) return
@@ -309,12 +365,15 @@ contains
       if (allocated(error)) return
       do i = 1, size(interfaces)
          call self%contacts(i)%write_static(self%file%id, interfaces(i), model%mesh%node_number, &
-            model%interactions(model%contacts(i)%interaction)%friction, error)
+            model%interactions(model%contacts(i)%interaction)%friction%coefficient, &
+            model%units, error)
          if (allocated(error)) return
       end do
       call create_group(self%file%id, '/run', error)
       if (allocated(error)) return
       call write_strings(self%file%id, '/deck', self%cards, error)
+      if (allocated(error)) return
+      call describe(self%file%id, '/deck', 'card images as read', '-', error)
    end subroutine write_heads
 
 end module results

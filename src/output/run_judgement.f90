@@ -150,7 +150,7 @@ contains
          'no heat is loaded: all temperatures keep their initial values in all increments')
    end function warnings
 
-   !> A strain in percent, a rotation in radian.
+   !> A strain in percent, a rotation in percent of a radian.
    pure function amount(i, value) result(words)
       integer, intent(in) :: i            ! of_strain or of_rotation
       real(dp), intent(in) :: value

@@ -2,6 +2,7 @@
 !> line.
 module run_output
    use, intrinsic :: iso_fortran_env, only: error_unit
+   use accuracy_lines, only: add_accuracy
    use contact_points, only: contact_points_type
    use errors, only: error_type
    use kinds, only: dp
@@ -15,7 +16,7 @@ module run_output
    use run_summaries, only: or_blank, run_summary_type
    use clock, only: wall_seconds
    use solution_report, only: iteration_record_type
-   use text, only: append, string_type, to_text
+   use text, only: append, counted, string_type, to_text
    use verification, only: verifier_type
    implicit none
    private
@@ -48,6 +49,7 @@ module run_output
       procedure :: published
       procedure :: written
       procedure :: failed_checks
+      procedure :: summary_lines
    end type run_output_type
 
 contains
@@ -85,7 +87,7 @@ contains
       self%point_node = point_node
       allocate(self%failed(0))
       call self%verifier%start(model)
-      call self%listing%open(model, interfaces, cards, self%run, error)
+      call self%listing%open(model, interfaces, self%run, error)
       if (allocated(error)) return
       call self%results%open(model, interfaces, point_node, element_points, cards, error)
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
@@ -139,10 +141,11 @@ contains
    !> Ends the output: publishes what is left, then closes the listing. `run` then holds the
    !> verdicts.
    !> Error: status_internal, when a file cannot be written.
-   subroutine finish(self, model, interfaces, error)
+   subroutine finish(self, model, interfaces, cards, error)
       class(run_output_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: warnings(:)
       real(dp) :: since
@@ -159,8 +162,8 @@ contains
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
       warnings = self%judgement%warnings(model, interfaces)
       call self%listing%warn(warnings)
-      call self%listing%finish(model, interfaces, self%verifier%outcomes, self%run, error)
-      call print_warnings(self, warnings)
+      call self%listing%finish(model, interfaces, cards, self%verifier, self%run, error)
+      if (.not. self%run%accuracy%goes_on) call print_warnings(self, warnings)
    end subroutine finish
 
    !> Ends the listing with the reason why the other files could not be written.
@@ -179,22 +182,38 @@ contains
       call self%listing%close()
    end subroutine close_output
 
-   !> One line for each *VERIFY card that failed.
+   !> What the run comes to at its last accepted increment.
+   function summary_lines(self, model, interfaces) result(lines)
+      class(run_output_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(string_type), allocatable :: lines(:)
+
+      allocate (lines(0))
+      call self%listing%summary%add_lines(model, interfaces, lines)
+      call add_accuracy(self%run%accuracy, interfaces, lines)
+   end function summary_lines
+
+   !> One line for each *VERIFY card that failed, and one for all that could not be judged.
    function failed_checks(self, model) result(lines)
       class(run_output_type), intent(in) :: self        !! the output, finished
       type(model_type), intent(in) :: model
       type(string_type), allocatable :: lines(:)        !! what was expected and what was found
-      integer :: i
+      integer :: i, unjudged
 
       allocate(lines(0))
       do i = 1, size(model%verifications)
          associate (check => model%verifications(i), outcome => self%verifier%outcomes(i))
-            if (outcome%passed) cycle
+            if (outcome%passed .or. .not. outcome%judged) cycle
             call append(lines, '*VERIFY on card '//to_text(check%line)//' failed: '// &
                trim(check%quantity//' '//check%where)//', expected '//to_text(check%value)// &
                finding(outcome%reason, ', found '//to_text(outcome%found)))
          end associate
       end do
+      unjudged = self%verifier%unjudged_count()
+      if (unjudged > 0) call append(lines, counted(unjudged, '*VERIFY check')// &
+         ' could not be judged: the run ended before '//merge('its time   ', 'their times', &
+         unjudged == 1))
    end function failed_checks
 
    !> What a check found: a value, or the reason why there is none.

@@ -1,5 +1,6 @@
 !> What is known of a run as a whole: for the listing's summary and the result file's `/run`.
 module run_summaries
+   use accuracy_rounds, only: accuracy_rounds_type
    use kinds, only: dp, long
    implicit none
    private
@@ -27,6 +28,7 @@ module run_summaries
       real(dp) :: seconds_write = 0.0_dp         !! writing; the output layer adds to it [s]
       integer :: verify_passed = 0               !! *VERIFY checks that passed
       integer :: verify_failed = 0               !! *VERIFY checks that failed
+      type(accuracy_rounds_type) :: accuracy     !! rounds of a requested accuracy
    end type run_summary_type
 
 contains

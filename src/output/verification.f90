@@ -28,6 +28,7 @@ module verification
       procedure :: judge
       procedure :: passed_count
       procedure :: failed_count
+      procedure :: unjudged_count
    end type verifier_type
 
 contains
@@ -71,13 +72,21 @@ contains
       number = count(self%outcomes%passed)
    end function passed_count
 
-   !> Number of checks that failed or were never reached.
+   !> Number of checks that failed.
    pure function failed_count(self) result(number)
       class(verifier_type), intent(in) :: self   !! the checks
-      integer :: number                          !! the others
+      integer :: number                          !! those that failed
 
-      number = size(self%outcomes) - self%passed_count()
+      number = count(self%outcomes%judged .and. .not. self%outcomes%passed)
    end function failed_count
+
+   !> Number of checks that could not be judged, because the run ended before their times.
+   pure function unjudged_count(self) result(number)
+      class(verifier_type), intent(in) :: self   !! the checks
+      integer :: number                          !! those that were never reached
+
+      number = count(.not. self%outcomes%judged)
+   end function unjudged_count
 
    pure function outcome_of(check, values, reason) result(outcome)
       type(verify_type), intent(in) :: check

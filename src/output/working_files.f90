@@ -42,6 +42,7 @@ module working_files
       procedure :: charge
       procedure :: explain
       procedure :: discard
+      procedure :: remove
    end type working_file_type
 
 contains
@@ -164,6 +165,13 @@ contains
       if (len(reason) == 0) reason = error%message
       error%message = cannot_write(self%path, reason)
    end subroutine explain
+
+   !> Removes the file in place, where there is one.
+   subroutine remove(self)
+      class(working_file_type), intent(in) :: self
+
+      call remove_file(self%path)
+   end subroutine remove
 
    !> Drops the working copy, where there is one.
    subroutine discard(self)

@@ -92,7 +92,7 @@ contains
 
       m = size(points%slave_node)
       write (unit, '(/, 3a, i0, 2a, /, a)') 'ZONE DIAGRAM OF ', points%name, ': ', m, &
-         ' pairs in columns, from s = 0 to s = ', to_text(points%arc_length(m)), &
+         ' contact points in columns, from s = 0 to s = ', to_text(points%arc_length(m)), &
          'I gap, II slip, III stick'
       panels = (m + panel_columns - 1)/panel_columns
       width = (m + panels - 1)/panels

@@ -15,41 +15,58 @@ module contact_quantities
    ! PRINT.
    type(quantity_type), parameter :: contact_table(*) = [ &
       quantity_type('normal_force', of_interface, 'stress length^2', label='normal force', &
-      head='force', is_estimated=.true., is_traded=.true.), &
+      head='force', is_estimated=.true., is_traded=.true., &
+      description='sum of the normal contact forces; compression is positive'), &
       quantity_type('shear_force', of_interface, 'stress length^2', label='shear force', &
-      is_estimated=.true., is_path_dependent=.true.), &
+      is_estimated=.true., is_path_dependent=.true., &
+      description='sum of the shear forces on the slave towards growing s'), &
       quantity_type('heat_rate', of_interface, 'power', needs_heat, label='heat rate', &
-      head='heat', is_estimated=.true., is_traded=.true.), &
+      head='heat', is_estimated=.true., is_traded=.true., &
+      description='heat that crosses from slave to master'), &
       quantity_type('peak_pressure', of_interface, 'stress', head='peak', is_estimated=.true., &
-      is_traded=.true., is_published=.false.), &
+      is_traded=.true., is_published=.false., description='largest contact pressure'), &
       quantity_type('edge_contact', of_interface, 'length', label='edge of contact s =', &
-      head='contact', is_estimated=.true., is_traded=.true., resolution=0.1_dp), &
-      quantity_type('edge_stick', of_interface, 'length', label='of stick s =', &
-      head='stick', is_estimated=.true., is_traded=.true., resolution=0.6_dp), &
-      quantity_type('edges_contact', of_interface, 'length', values=edges_kept), &
-      quantity_type('edges_stick', of_interface, 'length', values=edges_kept), &
+      head='contact', is_estimated=.true., is_traded=.true., resolution=0.1_dp, &
+      description='outer edge of the contact zone with the largest s; NaN: none'), &
+      quantity_type('edge_stick', of_interface, 'length', label='of stick s =', head='stick', &
+      is_estimated=.true., is_traded=.true., resolution=0.6_dp, &
+      description='outer edge of the widest stick zone; NaN: none'), &
+      quantity_type('edges_contact', of_interface, 'length', values=edges_kept, &
+      description='s of all edges of contact, ascending, padded with NaN'), &
+      quantity_type('edges_stick', of_interface, 'length', values=edges_kept, &
+      description='s of all edges of stick, ascending, padded with NaN'), &
       quantity_type('slave_node', of_contact_points, '-', head='slave', width=8, &
-      is_integer=.true., is_geometry=.true.), &
+      is_integer=.true., is_geometry=.true., description='number of the slave node in the deck'), &
       quantity_type('master_node', of_contact_points, '-', head='master', width=8, &
-      is_integer=.true., is_geometry=.true.), &
-      quantity_type('x', of_contact_points, 'length', head='x', width=11, is_geometry=.true.), &
-      quantity_type('y', of_contact_points, 'length', head='y', width=11, is_geometry=.true.), &
-      quantity_type('s', of_contact_points, 'length', is_geometry=.true.), &
-      quantity_type('weight', of_contact_points, 'length^2', is_geometry=.true.), &
+      is_integer=.true., is_geometry=.true., &
+      description='number of the master node that is opposite or nearest'), &
+      quantity_type('x', of_contact_points, 'length', head='x', width=11, is_geometry=.true., &
+      description='x of the contact point on the undeformed slave'), &
+      quantity_type('y', of_contact_points, 'length', head='y', width=11, is_geometry=.true., &
+      description='y of the contact point on the undeformed slave'), &
+      quantity_type('s', of_contact_points, 'length', is_geometry=.true., &
+      description='arc length along the slave from the first contact point'), &
+      quantity_type('weight', of_contact_points, 'length^2', is_geometry=.true., &
+      description='area of the contact point; times pressure it is the normal force'), &
       quantity_type('status', of_contact_points, '-', head='zone', width=5, is_integer=.true., &
-      is_on_faces=.true.), &
-      quantity_type('gap', of_contact_points, 'length', head='gap', width=10, is_on_faces=.true.), &
+      is_on_faces=.true., &
+      description='contact state: 0 open, 1 slip, 2 stick; 1 where closed without friction'), &
+      quantity_type('gap', of_contact_points, 'length', head='gap', width=10, is_on_faces=.true., &
+      description='gap, >= 0'), &
       quantity_type('pressure', of_contact_points, 'stress', head='p', width=10, &
-      is_on_faces=.true.), quantity_type('shear', of_contact_points, 'stress', head='tau', &
-      width=11, is_on_faces=.true.), quantity_type('slip', of_contact_points, 'length', &
-      head='slip', width=11), quantity_type('slave_temperature', of_contact_points, 'temperature', &
-      needs_heat, head='T1', width=11), &
+      is_on_faces=.true., description='contact pressure, >= 0 in compression'), &
+      quantity_type('shear', of_contact_points, 'stress', head='tau', width=11, &
+      is_on_faces=.true., description='shear traction on the slave towards growing s'), &
+      quantity_type('slip', of_contact_points, 'length', head='slip', width=11, &
+      description='displacement of the slave along s against the master since closing'), &
+      quantity_type('slave_temperature', of_contact_points, 'temperature', needs_heat, head='T1', &
+      width=11, description='temperature of the slave'), &
       quantity_type('master_temperature', of_contact_points, 'temperature', needs_heat, head='T2', &
-      width=11), &
-      quantity_type('conductance', of_contact_points, 'power/(length^2 temp.)', needs_heat, &
-      head='omega', width=10, is_on_faces=.true.), &
+      width=11, description='temperature of the master'), &
+      quantity_type('conductance', of_contact_points, 'power/(length^2 temperature)', needs_heat, &
+      head='omega', width=10, is_on_faces=.true., description='conductance of the contact'), &
       quantity_type('heat_flux', of_contact_points, 'power/length^2', needs_heat, head='q', &
-      width=11, is_on_faces=.true.)]
+      width=11, is_on_faces=.true., description='heat flux from slave to master')]
 
    !> Those with an estimated error; components of interface_errors_type are in this order.
    type(quantity_type), parameter :: estimated(*) = pack(contact_table, contact_table%is_estimated)
@@ -73,7 +90,7 @@ contains
       case ('heat_rate')
          values = [contact%heat_rate]
       case ('peak_pressure')
-         values = [maxval(contact%pressure)]
+         values = [maxval(or_nan(contact%pressure, size(points%slave_node)))]
       case ('edge_contact')
          values = [contact%edge_contact]
       case ('edge_stick')

@@ -23,22 +23,36 @@ module field_quantities
       quantity_type('RF1', of_nodes, 'stress length^2', needs_mechanics), &
       quantity_type('RF2', of_nodes, 'stress length^2', needs_mechanics), &
       quantity_type('RFL', of_nodes, 'power', needs_heat), &
-      quantity_type('displacement', of_points, 'length', needs_mechanics, values=3), &
-      quantity_type('stress', of_points, 'stress', needs_mechanics, values=4), &
-      quantity_type('von_mises', of_points, 'stress', needs_mechanics), &
+      quantity_type('displacement', of_points, 'length', needs_mechanics, values=3, &
+      description='displacement', components='x y z'), &
+      quantity_type('stress', of_points, 'stress', needs_mechanics, values=4, &
+      description='stress, averaged per body and section', components='xx yy zz xy'), &
+      quantity_type('von_mises', of_points, 'stress', needs_mechanics, &
+      description='equivalent stress of von Mises'), &
+      quantity_type('principal_stress', of_points, 'stress', needs_mechanics, values=3, &
+      description='principal stresses, the largest first', components='1 2 3'), &
+      quantity_type('radial_stress', of_points, 'stress', needs_mechanics, &
+      description='stress along the radius: from the axis, in plane models from the origin'), &
+      quantity_type('hoop_stress', of_points, 'stress', needs_mechanics, &
+      description='stress around the axis, in plane models around the origin'), &
       quantity_type('temperature', of_points, 'temperature', needs_temperature, head='temp.', &
-      is_traded=.true.), &
-      quantity_type('heat_flux', of_points, 'power/length^2', needs_heat, values=3), &
-      quantity_type('stress_error', of_elements, 'stress', needs_mechanics), &
-      quantity_type('heat_flux_error', of_elements, 'power/length^2', needs_heat)]
+      is_traded=.true., description='temperature'), &
+      quantity_type('heat_flux', of_points, 'power/length^2', needs_heat, values=3, &
+      description='heat flux, averaged per body and section', components='x y z'), &
+      quantity_type('stress_error', of_elements, 'stress', needs_mechanics, &
+      description='estimated error of the stress by the mesh, rms in the element'), &
+      quantity_type('heat_flux_error', of_elements, 'power/length^2', needs_heat, &
+      description='estimated error of the heat flux by the mesh, rms in the element')]
 
 contains
 
    !> A quantity at every point.
-   pure function point_values(name, fields, point_node) result(values)
+   pure function point_values(name, fields, point_node, radial) result(values)
       character(*), intent(in) :: name                !! one of of_nodes or of_points
       type(field_record_type), intent(in) :: fields
       integer, intent(in) :: point_node(:)            !! (points) node index of each point
+      !> (2, points) unit vectors away from the origin in plane models; absent: axisymmetric
+      real(dp), intent(in), optional :: radial(:, :)
       !> (values of each, points) in one row; empty where the step has none, and for a name that is
       !> not known.
       real(dp), allocatable :: values(:)
@@ -65,6 +79,15 @@ contains
          values = rows(fields%stress, [1, 2, 3, 4])
       case ('MISES', 'von_mises')
          if (allocated(fields%stress)) values = von_mises(fields%stress)
+      case ('principal_stress')
+         if (allocated(fields%stress)) values = principal(fields%stress)
+      case ('radial_stress')
+         values = rows(fields%stress, [1])
+         if (present(radial) .and. allocated(fields%stress)) values = along(fields%stress, radial)
+      case ('hoop_stress')
+         values = rows(fields%stress, [3])
+         if (present(radial) .and. allocated(fields%stress)) values = fields%stress(1, :) + &
+            fields%stress(2, :) - along(fields%stress, radial)
       case ('HFL1')
          values = rows(fields%heat_flux, [1])
       case ('HFL2')
@@ -125,6 +148,34 @@ contains
          end if
       end do
    end function rows
+
+   !> Principal stresses of every point in one row, the largest of each first.
+   pure function principal(stress) result(values)
+      real(dp), intent(in) :: stress(:, :)            !! (4, points) xx, yy, zz, xy [stress]
+      real(dp) :: values(3*size(stress, 2))
+      real(dp) :: centre, radius
+      integer :: i
+
+      do i = 1, size(stress, 2)
+         associate (s => stress(:, i), p => values(3*i - 2:3*i))
+            centre = 0.5_dp*s(1) + 0.5_dp*s(2)
+            radius = hypot(0.5_dp*s(1) - 0.5_dp*s(2), s(4))
+            p = [centre + radius, centre - radius, s(3)]
+            p = [max(p(1), p(3)), min(max(p(2), p(3)), p(1)), min(p(2), p(3))]
+         end associate
+      end do
+   end function principal
+
+   !> Normal stress along a direction of the plane at every point.
+   pure function along(stress, direction) result(values)
+      real(dp), intent(in) :: stress(:, :)            !! (4, points) xx, yy, zz, xy [stress]
+      real(dp), intent(in) :: direction(:, :)         !! (2, points) unit vectors
+      real(dp) :: values(size(stress, 2))
+
+      associate (c => direction(1, :), s => direction(2, :))
+         values = stress(1, :)*c**2 + stress(2, :)*s**2 + 2.0_dp*stress(4, :)*c*s
+      end associate
+   end function along
 
    !> Von Mises' equivalent stress; scaled, so that no square of a stress overflows.
    pure function von_mises(stress) result(equivalent)

@@ -11,37 +11,53 @@ module increment_quantities
    public :: increment_table, history_value, body_values, pass_value
 
    type(quantity_type), parameter :: increment_table(*) = [ &
-      quantity_type('time', of_history, 'time'), &
-      quantity_type('load', of_history, 'load'), &
-      quantity_type('iterations', of_history, '-', is_integer=.true.), &
+      quantity_type('time', of_history, 'time', &
+      description='total time at the end of the increment'), &
+      quantity_type('load', of_history, 'load', &
+      description='value on the load axis; attribute label says of what'), &
+      quantity_type('iterations', of_history, '-', is_integer=.true., &
+      description='passes of the fixed point'), &
       quantity_type('cut_backs', of_history, '-', is_integer=.true., is_published=.false.), &
       quantity_type('residual', of_history, '-', is_published=.false.), &
       quantity_type('residual_floor', of_history, '-', is_published=.false.), &
-      quantity_type('heat_in', of_history, 'power', needs_heat, label='heat in'), &
-      quantity_type('heat_out', of_history, 'power', needs_heat, label='out'), &
-      quantity_type('heat_imbalance', of_history, '-', needs_heat, label='heat imbalance'), &
+      quantity_type('heat_in', of_history, 'power', needs_heat, label='heat in', &
+      description='sum of the net heat rates of loads and supports that are positive'), &
+      quantity_type('heat_out', of_history, 'power', needs_heat, label='out', &
+      description='sum of those that are negative, as a magnitude'), &
+      quantity_type('heat_imbalance', of_history, '-', needs_heat, label='heat imbalance', &
+      description='imbalance of the heat balance that the scheme solves, over the largest rate'), &
       quantity_type('heat_imbalance_pointwise', of_history, '-', needs_heat, &
-      label='at this instant'), &
-      quantity_type('force_imbalance', of_history, '-', needs_mechanics, &
-      label='force imbalance'), &
+      label='at this instant', &
+      description='imbalance of heat at the end of the increment, over the largest rate'), &
+      quantity_type('force_imbalance', of_history, '-', needs_mechanics, label='force imbalance', &
+      description='imbalance of forces over the largest force'), &
       quantity_type('contact_violation', of_history, '-', needs_mechanics, is_published=.false., &
       label='contact conditions violated by'), &
       quantity_type('coupling_gain', of_history, '-', needs_coupling, &
-      label='quasi-static coupling gain'), &
+      label='quasi-static coupling gain', &
+      description='real part of the eigenvalue of U'' that is largest in modulus'), &
       quantity_type('coupling_gain_max', of_history, '-', needs_coupling, &
-      label='largest real one'), &
-      quantity_type('stress_error', of_bodies, '-', needs_mechanics, label='stress'), &
-      quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux'), &
-      quantity_type('increment', of_passes, '-', head='increment', width=12, is_integer=.true.), &
-      quantity_type('iteration', of_passes, '-', head='iteration', width=11, is_integer=.true.), &
-      quantity_type('residual', of_passes, '-', head='residual', width=12), &
-      quantity_type('g_min', of_passes, '-', head='g min', width=11, is_plain=.true.), &
-      quantity_type('g_max', of_passes, '-', head='g max', width=11, is_plain=.true.), &
+      label='largest real one', description='largest real eigenvalue of U'''), &
+      quantity_type('stress_error', of_bodies, '-', needs_mechanics, label='stress', &
+      description='estimated error of the stress by the mesh, relative; a column a body'), &
+      quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux', &
+      description='estimated error of the heat flux by the mesh, relative; a column a body'), &
+      quantity_type('increment', of_passes, '-', head='increment', width=12, is_integer=.true., &
+      description='increment of the pass'), &
+      quantity_type('iteration', of_passes, '-', head='iteration', width=11, is_integer=.true., &
+      description='number of the pass in its increment'), &
+      quantity_type('residual', of_passes, '-', head='residual', width=12, &
+      description='largest change of a conductance by the pass, relative'), &
+      quantity_type('g_min', of_passes, '-', head='g min', width=11, is_plain=.true., &
+      description='smallest factor g of eq. (4.2)'), &
+      quantity_type('g_max', of_passes, '-', head='g max', width=11, is_plain=.true., &
+      description='largest factor g of eq. (4.2)'), &
       quantity_type('g_kept', of_passes, '-', head='g kept', width=8, is_integer=.true., &
       is_published=.false.), &
       quantity_type('pairs_changed', of_passes, '-', head='pairs changed', width=15, &
-      is_integer=.true.), &
-      quantity_type('cut_backs', of_passes, '-', head='cut-backs', width=11, is_integer=.true.)]
+      is_integer=.true., description='contact points whose contact state changed'), &
+      quantity_type('cut_backs', of_passes, '-', head='cut-backs', width=11, is_integer=.true., &
+      description='cut-backs of the increment before the pass')]
 
 contains
 

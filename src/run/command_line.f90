@@ -25,40 +25,47 @@ module command_line
       integer :: jobs = 1                             !! --jobs, decks or rows at a time
       logical :: is_batch = .false.                   !! run: several decks, or --jobs
       real(dp) :: limit = 30.0_dp                     !! --limit, CPU seconds of a row [s]
+      real(dp) :: accuracy = 0.0_dp                   !! --accuracy, a part of the values; 0: none
    end type command_type
 
    character(*), parameter :: usage = &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]'// &
-      new_line('a')//'                           [--quiet]'//new_line('a')// &
+      new_line('a')//'                           [--quiet] [--accuracy P%]'//new_line('a')// &
       '       thercon check DECK... [--width N] [--set NAME=VALUE]'//new_line('a')// &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]'// &
       new_line('a')// &
       '                          [--limit SECONDS] [--jobs N]'//new_line('a')// &
       '       thercon --help | --version'//new_line('a')//new_line('a')// &
-      '  run      solve each deck a/b.inp; results are DIR/b.vtkhdf, .lst, .sta and .cvg;'// &
+      '  run      solve each deck a/b.inp; write DIR/b.vtkhdf, .lst, .sta and .cvg;'// &
       new_line('a')// &
-      '           several decks are a batch, each in a process of its own, with a table of all'// &
-      new_line('a')//'           as DIR/thercon-batch.csv'//new_line('a')// &
-      '  check    read each deck, report every mistake at once, solve nothing'// &
+      '           several decks run as a batch, each in a process of its own, and are listed'// &
+      new_line('a')//'           in DIR/thercon-batch.csv'//new_line('a')// &
+      '  check    read each deck and report every mistake; solve nothing'// &
       new_line('a')// &
-      '  trade    run a deck with other meshes, increments and methods; measure CPU seconds,'// &
+      '  trade    solve a deck with other meshes, increments and methods; measure CPU seconds,'// &
       new_line('a')// &
-      '           memory and errors, recommend for 10, 1 and 0.1 %; table DIR/b.trade.csv'// &
+      '           memory and errors; recommend settings for 10, 1 and 0.1 %; DIR/b.trade.csv'// &
       new_line('a')//new_line('a')// &
-      '  --out DIR          folder of the results, made if missing (the current one)'// &
+      '  --out DIR          write results to this folder, created if missing (current folder)'// &
       new_line('a')// &
-      '  --width N          columns of a card (80)'//new_line('a')// &
-      '  --set NAME=VALUE   value of a *PARAMETER, before the deck''s own'//new_line('a')// &
-      '  --quiet            no progress, no summary; errors and warnings all the same'// &
+      '  --width N          allow N columns in a card (80)'//new_line('a')// &
+      '  --set NAME=VALUE   override the value of a *PARAMETER of the deck'//new_line('a')// &
+      '  --quiet            print errors and warnings only'// &
       new_line('a')// &
-      '  --limit SECONDS    trade: rows that would take more CPU are left out (30)'// &
+      '  --accuracy P%      run: refine the mesh and shorten the increments until the error'// &
       new_line('a')// &
-      '  --jobs N           decks at a time (1); trade: rows, whose times disturb each other'// &
+      '                     bounds of force, heat rate, peak pressure and contact edge'// &
+      new_line('a')//'                     are within P per cent; replaces *ACCURACY'// &
+      new_line('a')// &
+      '  --limit SECONDS    trade: skip rows that would take more CPU time (30)'// &
+      new_line('a')// &
+      '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)'// &
       new_line('a')//new_line('a')// &
       'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,'// &
       new_line('a')// &
-      '             4 a *VERIFY check failed, 5 ended by SIGINT or SIGTERM; of several decks'// &
-      new_line('a')//'             the largest'   !! text of --help
+      '             4 a *VERIFY check failed or a requested accuracy was not reached,'// &
+      new_line('a')// &
+      '             5 ended by SIGINT or SIGTERM; of several decks the largest'   !! text of --help
 
 contains
 
@@ -93,7 +100,7 @@ contains
       i = 2
       do while (i <= command_argument_count())
          call read_argument(command, i, error)
-         if (allocated(error)) return
+         if (allocated(error) .or. command%action == command_help) return
       end do
       if (size(command%decks) == 0) then
          call set_error(error, status_deck, 'no deck is named')
@@ -116,7 +123,10 @@ contains
       case ('--quiet')
          command%quiet = .true.
          return
-      case ('--out', '--width', '--set', '--jobs', '--limit')
+      case ('--help', '-h')
+         command%action = command_help
+         return
+      case ('--out', '--width', '--set', '--jobs', '--limit', '--accuracy')
          if (i > command_argument_count()) then
             call set_error(error, status_deck, 'option '//word//' needs a value')
             return
@@ -133,6 +143,7 @@ contains
       end select
       if (command%action == command_check .and. word == '--out' .or. &
          command%action == command_check .and. word == '--jobs' .or. &
+         command%action /= command_run .and. word == '--accuracy' .or. &
          command%action /= command_trade .and. word == '--limit') then
          call set_error(error, status_deck, 'option '//word//' does not go with '//argument(1))
          return
@@ -153,6 +164,13 @@ contains
          call read_integer(value, command%jobs, valid)
          if (.not. valid .or. command%jobs < 1) call set_error(error, status_deck, &
             'option --jobs needs a whole number of at least 1, not '//value)
+      case ('--accuracy')
+         valid = index(value, '%') == len(value) .and. len(value) > 1
+         if (valid) call read_real(value(:len(value) - 1), command%accuracy, valid)
+         command%accuracy = command%accuracy/100.0_dp
+         if (.not. valid .or. command%accuracy <= 0.0_dp .or. command%accuracy >= 1.0_dp) call &
+            set_error(error, status_deck, 'option --accuracy needs a percentage such as 1%, '// &
+            'not '//value)
       case ('--limit')
          call read_real(value, command%limit, valid)
          if (.not. valid .or. command%limit <= 0.0_dp) call set_error(error, status_deck, &

@@ -1,20 +1,26 @@
 !> One deck from its cards to a run that can start, or to what is wrong with it.
 module deck_preparation
    use, intrinsic :: iso_fortran_env, only: error_unit
+   use accuracy_targets, only: whole_request
    use cards, only: cards_type
    use command_line, only: command_type
+   use contact_definitions, only: pairing_surfaces
+   use contact_quantities, only: estimated
    use deck_builder, only: build_model
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use errors, only: error_type, set_error, status_deck
    use increments, only: simulation_type
+   use kinds, only: dp
    use loads, only: loads_type
-   use messages, only: print_error
+   use messages, only: print_error, print_line
    use model, only: model_type
    use interface_reports, only: make_interfaces, make_ties
-   use all_contact_points, only: over_constrained
+   use all_contact_points, only: all_contact_points_type
+   use held_points, only: find_held_directions, over_constrained
    use progress, only: progress_type
+   use redundant_points, only: first_redundant
    use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
    use text, only: string_type, to_text
@@ -25,9 +31,14 @@ module deck_preparation
    private
    public :: prepare_deck
 
+   !> Why a file is skipped.
+   character(*), parameter, public :: not_a_deck = 'it has no *STEP, as files that decks include'
+
 contains
 
    !> Reads a deck and prepares its run. Warnings and errors are printed on stderr.
+   !> Warnings of a variation are those of the deck, and are not printed.
+   !> Of several decks, a file without errors and without *STEP is none: its model stays empty.
    !> Errors: status_deck, with the first of the deck's errors; as simulation_type's start.
    subroutine prepare_deck(path, command, cards, model, simulation, error, variation)
       character(*), intent(in) :: path                    !! the deck as given
@@ -43,7 +54,14 @@ contains
       call progress%start(command%quiet)
       call progress%say('reading')
       call read_deck(path, command%width, command%settings, cards, report)
-      call build_model(cards, verifiable, model, report, error, variation)
+      if (size(command%decks) > 1 .and. .not. (report%has_errors() .or. has_step(cards))) then
+         call progress%clear()
+         call print_line(error_unit, path//': note: skipped: '//not_a_deck)
+         return
+      end if
+      call build_model(cards, verifiable, estimated, model, report, error, variation)
+      if (command%accuracy > 0.0_dp .and. .not. report%has_errors()) call request_accuracy( &
+         cards%last, command%accuracy, model, report)
       if (.not. (report%has_errors() .or. allocated(error))) then
          call make_interfaces(model, simulation%bodies%interfaces, report)
          call make_ties(model, simulation%bodies%ties, model%notes, report)
@@ -57,13 +75,37 @@ contains
       end if
       model%warnings = report%warnings()
       call progress%clear()
-      call report%print(error_unit)
+      if (report%has_errors() .or. .not. present(variation)) call report%print(error_unit)
       if (report%has_errors()) then
          call set_error(error, status_deck, report%first_error())
       else if (allocated(error)) then
          call print_error(path, error%message)
       end if
    end subroutine prepare_deck
+
+   !> What --accuracy asks for takes the place of the deck's targets.
+   subroutine request_accuracy(last, bound, model, report)
+      type(place_type), intent(in) :: last
+      real(dp), intent(in) :: bound
+      type(model_type), intent(inout) :: model
+      type(deck_report_type), intent(inout) :: report
+
+      model%estimates_errors = .true.
+      model%accuracy%targets = whole_request(bound)
+      if (size(model%contacts) == 0) call report%error(last, 'the deck has no *CONTACT PAIR: '// &
+         'there is no quantity whose accuracy could be requested')
+   end subroutine request_accuracy
+
+   pure logical function has_step(cards)
+      type(cards_type), intent(in) :: cards
+      integer :: i
+
+      has_step = .true.
+      do i = 1, size(cards%keywords)
+         if (cards%keywords(i)%name == 'STEP') return
+      end do
+      has_step = .false.
+   end function has_step
 
    !> Reports an error at the card that it names.
    subroutine report_at_card(error, report)
@@ -84,27 +126,31 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(deck_report_type), intent(inout) :: report
       type(loads_type) :: loads
+      type(all_contact_points_type) :: points
       integer :: step
 
       loads = simulation%loads
+      points = simulation%bodies%points
       do step = 1, size(model%steps)
          call loads%begin_step(model%steps(step), simulation%state%displacement, &
             simulation%state%temperature)
-         call check_step(last, model, simulation, loads, step, report)
+         call points%enter_step(model, step)
+         call check_step(last, model, simulation, points, loads, step, report)
          if (report%has_errors()) return
       end do
    end subroutine check_supports
 
-   subroutine check_step(last, model, simulation, loads, step, report)
+   subroutine check_step(last, model, simulation, points, loads, step, report)
       type(place_type), intent(in) :: last
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
+      type(all_contact_points_type), intent(in) :: points   ! in the step
       type(loads_type), intent(in) :: loads
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
       type(string_type), allocatable :: messages(:)
 
-      associate (analysis => model%steps(step)%analysis, points => simulation%bodies%points)
+      associate (analysis => model%steps(step)%analysis)
          if (solves_mechanics(analysis)) then
             call report_over_constrained(model, simulation, loads%displacement%active, step, report)
             call unconstrained_in_step(model, points, loads%displacement%active, messages)
@@ -125,29 +171,45 @@ contains
       end subroutine report_all
    end subroutine check_step
 
-   !> Reports the first contact point of each interface whose relative motion is prescribed along
-   !> the normal, because that of both nodes is.
+   !> Reports the first contact point of each interface whose force is undetermined: its relative
+   !> motion is prescribed along the normal, because that of both nodes is, or supports leave fewer
+   !> nodes to act on than there are contact points.
    subroutine report_over_constrained(model, simulation, held, step, report)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: held(:)
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
+      type(all_contact_points_type) :: row
       logical :: too_much(size(simulation%bodies%points%slave))
+      character(:), allocatable :: reason
       integer :: i, k
 
-      too_much = over_constrained(simulation%bodies%points, held)
+      row = simulation%bodies%points
+      call find_held_directions(row, held)
+      too_much = over_constrained(row, held)
       do i = 1, size(model%contacts)
          associate (points => simulation%bodies%interfaces(i), number => model%mesh%node_number, &
-            start => simulation%bodies%points%interface_start)
-            k = findloc(too_much(start(i):start(i + 1) - 1), .true., dim=1)
-            if (k == 0) cycle
+            first => row%interface_start(i), last => row%interface_start(i + 1) - 1)
+            k = findloc(too_much(first:last), .true., dim=1)
+            if (k > 0) then
+               reason = 'prescribes the motion of slave node '// &
+                  to_text(number(points%slave_node(k)))//' and master node '// &
+                  to_text(number(points%master_node(k)))//' towards each other, so that their '// &
+                  'contact force is undetermined; free one of the two nodes along the normal '// &
+                  'of the faces'
+            else if (points%pairing == pairing_surfaces) then
+               k = first_redundant(row, first, last, held)
+               if (k == 0) cycle
+               reason = 'holds slave node '//to_text(number(row%slave(k)))//', and too few '// &
+                  'nodes of the master are free there to determine the contact forces; '// &
+                  'exchange slave and master so that the held face is the master, make the '// &
+                  'slave coarser, or leave the faces at held nodes out of the surface'
+            else
+               cycle
+            end if
             call report%error(place_type(image=model%contacts(i)%card), 'step '// &
-               to_text(step)//': contact pair '//points%name//': *BOUNDARY prescribes the '// &
-               'motion of slave node '//to_text(number(points%slave_node(k)))// &
-               ' and master node '//to_text(number(points%master_node(k)))//' towards each '// &
-               'other, so that their contact force is undetermined; free one of the two '// &
-               'nodes along the normal of the faces')
+               to_text(step)//': contact pair '//points%name//': *BOUNDARY '//reason)
          end associate
       end do
    end subroutine report_over_constrained

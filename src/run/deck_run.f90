@@ -1,15 +1,17 @@
 !> One deck to its results.
 module deck_run
+   use accuracy_lines, only: add_missed
+   use accuracy_rounds, only: accuracy_rounds_type
    use batch_table, only: table_name
    use blas_memory, only: reserve_blas_memory
    use cards, only: cards_type
    use clock, only: wall_seconds
    use command_line, only: command_type
    use deck_outcomes, only: deck_outcome_type
-   use deck_preparation, only: prepare_deck
+   use deck_preparation, only: not_a_deck, prepare_deck
    use error_estimator, only: error_estimator_type
    use errors, only: error_type, set_error, status_deck, status_interrupted, status_internal, &
-      status_no_convergence, status_verify
+      status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
    use increment_control, only: increment_control_type
    use increments, only: simulation_type
@@ -20,15 +22,17 @@ module deck_run
    use messages, only: print_error
    use model, only: model_type
    use records, only: increment_record_type
+   use round_indicators, only: round_indicators_type
    use run_description, only: describe_run
    use run_output, only: kept_words, run_output_type
    use text, only: string_type, to_text
    use utf8, only: printable
+   use variations, only: variation_type
    implicit none
    private
    public :: run_deck, base_name
 
-   !> The run of a deck.
+   !> The run of a deck, or one round of it.
    type :: run_type
       character(:), allocatable :: path       !! the deck as given
       type(command_type) :: command           !! options of the command line
@@ -37,54 +41,90 @@ module deck_run
       type(simulation_type) :: simulation
       type(run_output_type) :: output
       type(run_end_type) :: end               !! of an increment that takes too long
+      type(round_indicators_type) :: indicators   !! what another round should vary
+      real(dp) :: cpu_start = 0.0_dp          !! CPU seconds of the process at its start [s]
    end type run_type
 
 contains
 
-   !> Solves one deck. What goes wrong is printed on stderr and stands in the outcome.
+   !> Solves one deck, with a requested accuracy in rounds. What goes wrong is printed on stderr and
+   !> recorded in the outcome.
    subroutine run_deck(path, command, outcome)
       character(*), intent(in) :: path                  !! the deck as given
       type(command_type), intent(in) :: command         !! options of the command line
       type(deck_outcome_type), intent(inout) :: outcome !! how it ended
-      type(run_type) :: self
+      type(accuracy_rounds_type) :: accuracy
+      type(variation_type), allocatable :: variation
       type(error_type), allocatable :: error
       real(dp) :: since
 
       since = wall_seconds()
       outcome%path = path
-      self%path = path
-      self%command = command
       call check_name(path, error)
       if (allocated(error)) then
-         call report_failure(self, error, outcome)
+         call outcome%fail(error)
+         call print_error(path, error%message)
          return
       end if
-      call prepare_end(self, end_at_once)
       call reserve_blas_memory()
-      call prepare_deck(path, command, self%cards, self%model, self%simulation, error)
+      allocate (outcome%failed_checks(0))
+      do
+         call run_round(path, command, accuracy, variation, outcome)
+         if (outcome%status /= status_ok .or. .not. accuracy%goes_on) exit
+      end do
+      if (size(outcome%failed_checks) > 0) then
+         call set_error(error, status_verify, outcome%failed_checks(1)%value)
+         call outcome%fail(error)
+      end if
+      outcome%seconds = wall_seconds() - since
+   end subroutine run_deck
+
+   !> Solves a deck as it is written, or as a variation has it, which then is that of another round.
+   subroutine run_round(path, command, accuracy, variation, outcome)
+      character(*), intent(in) :: path
+      type(command_type), intent(in) :: command
+      type(accuracy_rounds_type), intent(inout) :: accuracy
+      type(variation_type), allocatable, intent(inout) :: variation
+      type(deck_outcome_type), intent(inout) :: outcome
+      type(run_type) :: self
+      type(error_type), allocatable :: error
+      real(dp) :: since
+
+      since = wall_seconds()
+      call cpu_time(self%cpu_start)
+      self%path = path
+      self%command = command
+      call outcome%begin()
+      call prepare_end(self, end_at_once)
+      call prepare_deck(path, command, self%cards, self%model, self%simulation, error, variation)
       if (allocated(error)) then
          call outcome%fail(error)
+      else if (.not. allocated(self%model%steps)) then
+         outcome%reason = not_a_deck
+         return
       else
          call reserve_files(self, error)
          if (.not. allocated(error)) call reduce_bodies(self, error)
          if (allocated(error)) call report_failure(self, error, outcome)
       end if
-      if (outcome%status == 0) then
+      if (outcome%status == status_ok) then
          self%output%run%seconds_read = wall_seconds() - since - &
             self%simulation%seconds%assemble - self%simulation%seconds%reduce
          call describe_run(path, self%model, self%simulation, self%output%run)
+         self%output%run%accuracy = accuracy
          call solve_deck(self, outcome, error)
+         accuracy = self%output%run%accuracy
          if (allocated(error)) call report_failure(self, error, outcome)
          ! Of a run that could not go on for want of a file or of memory a check says nothing.
-         if (outcome%status /= status_internal) call report_checks(path, &
-            self%output%failed_checks(self%model), outcome)
-         outcome%verify_passed = self%output%run%verify_passed
-         outcome%verify_failed = self%output%run%verify_failed
+         if (outcome%status /= status_internal) call take_checks(self, outcome)
+         if (accuracy%goes_on) then
+            if (.not. allocated(variation)) allocate (variation)
+            call self%indicators%add_to(variation)
+         end if
       end if
       call self%output%close()
       call self%simulation%release()
-      outcome%seconds = wall_seconds() - since
-   end subroutine run_deck
+   end subroutine run_round
 
    !> Error: status_deck, where results would be written over the deck.
    subroutine check_name(path, error)
@@ -150,6 +190,7 @@ contains
          ! What is written now is no longer cut short.
          call self%end%hold(.true.)
          call prepare_end(self, end_by_increments)
+         if (.not. allocated(error)) call judge_round(self)
          if (.not. is_written) then
             call output%break_off(error%message)
             return
@@ -164,7 +205,8 @@ contains
             call output%fail(error%message, record)
             call outcome%note(record, output%accepted(), output%written())
          end if
-         call output%finish(model, interfaces, output_error)
+         call output%finish(model, interfaces, self%cards%images, output_error)
+         outcome%summary = output%summary_lines(model, interfaces)
          call outcome%note_files(output%written())
          if (allocated(output_error)) then
             if (allocated(error)) output_error%message = error%message//'; '//output_error%message
@@ -186,6 +228,9 @@ contains
       is_written = .true.
       associate (model => self%model, simulation => self%simulation, output => self%output)
          call estimator%start(model, simulation)
+         call output%run%accuracy%begin_round(model%accuracy, size(model%contacts), &
+            size(model%steps))
+         call self%indicators%start(model)
          do while (.not. simulation%finished(model))
             call prepare_end(self, end_after_grace)
             call check_signals(simulation%control, error)
@@ -205,6 +250,9 @@ contains
                return
             end if
             call estimator%end_increment(model, simulation, record)
+            call output%run%accuracy%follow(simulation%bodies%interfaces, record)
+            if (output%run%accuracy%is_on .and. record%last_of_step) call self%indicators%take( &
+               model, simulation%bodies%interfaces, output%run%accuracy, record)
             call self%end%hold(.true.)
             associate (tolerance => model%steps(record%step)%fixed_point%tolerance)
                if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
@@ -217,6 +265,29 @@ contains
          end do
       end associate
    end subroutine solve_increments
+
+   !> Judges whether a requested accuracy is reached, or another round follows.
+   subroutine judge_round(self)
+      type(run_type), intent(inout) :: self
+      real(dp) :: now
+
+      associate (accuracy => self%output%run%accuracy, run => self%output%run)
+         if (.not. accuracy%is_on) return
+         associate (round => accuracy%rounds(size(accuracy%rounds)))
+            round%unknowns = run%equations_thermal + run%equations_mechanical + &
+               run%contact_unknowns
+            round%elements = size(self%model%mesh%element_kind)
+            call cpu_time(now)
+            round%cpu_seconds = now - self%cpu_start
+            round%is_whole = .true.
+            accuracy%has_checks = accuracy%has_checks .or. size(self%model%verifications) > 0
+         end associate
+         call accuracy%name_idle()
+         accuracy%goes_on = size(accuracy%rounds) < self%model%accuracy%rounds .and. .not. &
+            (accuracy%is_reached() .or. accuracy%stands_still() .or. &
+            self%indicators%asks_for_nothing())
+      end associate
+   end subroutine judge_round
 
    subroutine take_measures(simulation, output)
       type(simulation_type), intent(in) :: simulation
@@ -282,20 +353,19 @@ contains
          ' (time '//to_text(control%step_start + control%step_time)//')'
    end function where_words
 
-   !> Prints which checks of the deck failed.
-   subroutine report_checks(path, lines, outcome)
-      character(*), intent(in) :: path
-      type(string_type), intent(in) :: lines(:)
+   !> Takes which checks of the deck failed, and which targets were missed.
+   subroutine take_checks(self, outcome)
+      type(run_type), intent(in) :: self
       type(deck_outcome_type), intent(inout) :: outcome
-      type(error_type), allocatable :: error
-      integer :: i
 
-      do i = 1, size(lines)
-         call print_error(path, lines(i)%value)
-         call set_error(error, status_verify, lines(i)%value)
-         call outcome%fail(error)
-      end do
-   end subroutine report_checks
+      associate (output => self%output)
+         outcome%failed_checks = [outcome%failed_checks, output%failed_checks(self%model)]
+         outcome%verify_passed = outcome%verify_passed + output%run%verify_passed
+         outcome%verify_failed = outcome%verify_failed + output%run%verify_failed
+         if (outcome%status == status_ok) call add_missed(output%run%accuracy, &
+            self%simulation%bodies%interfaces, outcome%failed_checks)
+      end associate
+   end subroutine take_checks
 
    !> Prints why a run ended early.
    subroutine report_failure(self, error, outcome)
@@ -305,9 +375,11 @@ contains
 
       call outcome%fail(error)
       call self%output%progress%clear()
-      call print_error(self%path, error%message)
-      if (error%status == status_no_convergence) call print_error(self%path, &
-         'not converged; the listing has the iteration history')
+      if (error%status == status_no_convergence) then
+         call print_error(self%path, error%message//' (the listing has the passes)')
+      else
+         call print_error(self%path, error%message)
+      end if
    end subroutine report_failure
 
    !> Name of a deck's results: its file name without folder and extension, or stdin where it is

@@ -1,5 +1,6 @@
 !> What a run models, in words and numbers, once it is started.
 module run_description
+   use contact_changes, only: brings_friction
    use conductance_laws, only: is_constant
    use controls, only: solver_mumps
    use increments, only: simulation_type
@@ -49,10 +50,12 @@ contains
       has_law = .false.
       do i = 1, size(model%contacts)
          associate (interaction => model%interactions(model%contacts(i)%interaction))
-            has_friction = has_friction .or. interaction%friction > 0.0_dp
+            has_friction = has_friction .or. interaction%friction%coefficient > 0.0_dp
             has_law = has_law .or. .not. is_constant(interaction%law)
          end associate
       end do
+      if (has_contact) has_friction = has_friction .or. &
+         any([(brings_friction(model%steps(i)%changes), i=1, size(model%steps))])
       run%modelled = ''
       run%reasons = ''
       call name('elasticity', has_mechanics, steps_that(solves_mechanics(model%steps%analysis)), &
@@ -67,9 +70,9 @@ contains
             reason_of(has_contact, 'no *FRICTION above 0', 'no contact'))
       end if
       call name('coupling', has_law .and. any(model%steps%analysis == analysis_coupled), &
-         '*COUPLED TEMPERATURE-DISPLACEMENT and a conductance of gap or pressure', &
+         '*COUPLED TEMPERATURE-DISPLACEMENT and a conductance of gap, pressure or temperature', &
          reason_of(has_law, 'no step solves heat and mechanics together', &
-         'no conductance of gap or pressure'))
+         'no conductance of gap, pressure or temperature'))
    contains
       subroutine name(part, is_on, why_on, why_off)
          character(*), intent(in) :: part, why_on, why_off

@@ -8,6 +8,8 @@ module heat_balance
    use model, only: model_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
+   use all_contact_points, only: all_contact_points_type
+   use cut_hats, only: joined_conductance
    use solution_state, only: carrying_conductance, solution_state_type
    implicit none
    private
@@ -31,12 +33,15 @@ contains
       type(solution_state_type), intent(in) :: next           !! state at the end
       type(increment_record_type), intent(inout) :: record    !! receives rates and balances
       real(dp), allocatable :: conducted(:), heat(:), residual(:), contact_heat(:)
-      real(dp) :: scale
+      real(dp) :: omega(size(next%omega)), scale
+      type(all_contact_points_type) :: points
 
+      omega = joined_conductance(next%omega, next%cut)
       contact_heat = bodies%points%weight*carrying_conductance(next, scheme)*next%jump
       conducted = bodies%thermal%matrix%multiply(next%temperature)
       heat = net_heat(next%heat_load, next%film, next%temperature)
-      residual = heat_residual(conducted, heat, bodies%points, contact_heat)
+      points = next%cut%points_crossed(bodies%points)
+      residual = heat_residual(conducted, heat, points, contact_heat)
       call bodies%thermal%map%carry_over(residual)
       call sum_rates(loads, next%temperature, residual, record)
       associate (held => loads%temperature%active, weight => bodies%points%weight, &
@@ -47,19 +52,19 @@ contains
             tiny(1.0_dp))
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + heat
-         residual = heat_residual(conducted, heat, bodies%points, weight*next%omega*next%jump)
+         residual = heat_residual(conducted, heat, points, weight*omega*next%jump)
          call bodies%thermal%map%carry_over(residual)
          record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, [.true.], &
             scale)
          associate (whole => scheme%a(1) + scheme%b(1))
             conducted = (scheme%a(1)*conducted + scheme%b(1)* &
                bodies%thermal%matrix%multiply(previous%temperature))/whole
-            contact_heat = scheme_contact_heat(scheme, weight, next%omega_start, next%omega, &
+            contact_heat = scheme_contact_heat(scheme, weight, next%omega_start, omega, &
                previous%jump, next%jump)/whole
             heat = scheme_net_heat(scheme, previous%heat_load, next%heat_load, previous%film, &
                next%film, previous%temperature, next%temperature)/whole
          end associate
-         residual = heat_residual(conducted, heat, bodies%points, contact_heat)
+         residual = heat_residual(conducted, heat, points, contact_heat)
          call bodies%thermal%map%carry_over(residual)
          record%heat_imbalance = imbalance(conducted, residual, held, body, [.true.], &
             scale)

@@ -130,11 +130,9 @@ contains
       self%increments = self%increments + 1
       self%increments_of_step = self%increments_of_step + 1
       associate (step => model%steps(self%step))
-         if (self%cut_backs > 0) then
-            continue
-         else if (step%grows) then
+         if (self%cut_backs == 0 .and. step%grows) then
             self%largest = min(increment_growth*self%largest, step%largest_increment)
-         else
+         else if (self%cut_backs == 0) then
             self%largest = grown_size(self%largest, step%first_increment)
          end if
       end associate

@@ -1,10 +1,11 @@
 !> The record of a solved increment, made from its state, which it leaves as it is.
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use all_contact_points, only: all_contact_points_type
    use balances, only: contact_violation, force_residual, imbalance, scales_type
-   use conductance_laws, only: conductance
+   use conductance_laws, only: conductance, conductance_law_type
    use contact_definitions, only: pairing_surfaces
-   use contact_operator, only: kept_contact, thermal_forces
+   use contact_operator, only: kept_contact, unstrained_forces
    use contact_points, only: contact_points_type
    use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
    use discretisation_errors, only: recovery_type
@@ -12,6 +13,7 @@ module increment_records
    use element_kinds, only: axisymmetric
    use element_points, only: points_of_elements
    use heat_balance, only: balance_heat, warn_of_heat
+   use friction_laws, only: friction_law_type
    use kinds, only: dp
    use loads, only: loads_type
    use mesh, only: extent_of
@@ -21,8 +23,10 @@ module increment_records
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: carrying_conductance, solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
+   use temperature_laws, only: face_temperatures_type, law_at
    use text, only: to_text
    use zone_edges, only: contact_edges, contact_profile_type, stick_edges
+   use transforms, only: on_nodes
    implicit none
    private
    public :: complete_record, measure_contact
@@ -73,8 +77,8 @@ contains
          end if
          if (next%has_mechanics) then
             record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
-            record%fields%external_force = record%fields%reaction + reshape(next%force_load, &
-               shape(record%fields%reaction))
+            record%fields%external_force = record%fields%reaction + on_nodes( &
+               bodies%points%partners, reshape(next%force_load, shape(record%fields%reaction)))
          end if
          call warn_of_floor(step, record)
          if (solves_heat(step%analysis)) then
@@ -103,7 +107,7 @@ contains
 
       if (.not. allocated(record%iterations)) return
       if (record%residual_floor <= step%fixed_point%tolerance) return
-      call record%warn('the conductance of the contacts is known to ', record%residual_floor, &
+      call record%warn('the contact conductance is accurate to ', record%residual_floor, &
          ' only, not to TOL='//to_text(step%fixed_point%tolerance)//': it takes its gaps from '// &
          'displacements that are far larger, whose last places change it')
    end subroutine warn_of_floor
@@ -117,6 +121,7 @@ contains
       real(dp), intent(in) :: carrying(:)
       type(contact_record_type) :: record
       type(contact_state_type) :: contact
+      type(conductance_law_type) :: law
       logical :: closed(size(bodies%interfaces(i)%slave_node)), touches(size(closed))
       integer :: first, k, last
 
@@ -135,7 +140,7 @@ contains
          touches = closed .and. record%contact_state == contact_open
          where (touches)
             record%contact_state = merge(contact_stick, contact_slip, &
-               bodies%points%friction(first:last) > 0.0_dp)
+               bodies%points%friction(first:last)%coefficient > 0.0_dp)
             record%gap = 0.0_dp
          end where
          call measure_contact(points, bodies%points%friction(first), closed, &
@@ -151,8 +156,11 @@ contains
          if (.not. with_heat) return
          record%conductance = carrying(first:last)
          do k = 1, size(touches)
-            if (touches(k)) record%conductance(k) = conductance( &
-               bodies%points%law(first - 1 + k), .true., 0.0_dp, record%pressure(k))
+            if (.not. touches(k)) cycle
+            law = law_at(bodies%points%law(first - 1 + k), face_temperatures_type( &
+               0.5_dp*(record%slave_temperature(k) + record%master_temperature(k)), &
+               next%jump(first - 1 + k)))
+            record%conductance(k) = conductance(law, .true., 0.0_dp, record%pressure(k))
          end do
          record%heat_flux = record%conductance*next%jump(first:last)
          record%heat_rate = sum(points%weight*record%heat_flux)
@@ -162,7 +170,7 @@ contains
    !> Tractions, sums and edges of an interface from its nodal forces.
    pure subroutine measure_contact(points, friction, closed, force, shear_force, record)
       type(contact_points_type), intent(in) :: points      !! the contact points of the interface
-      real(dp), intent(in) :: friction                     !! mu [-]
+      type(friction_law_type), intent(in) :: friction      !! the law of all of them
       logical, intent(in) :: closed(:)                    !! (m) contact points that have a traction
       real(dp), intent(in) :: force(:)                     !! (m) 0 at the others [force]
       real(dp), intent(in) :: shear_force(:)               !! (m) on the slave [force]
@@ -204,10 +212,13 @@ contains
       type(solution_state_type), intent(in) :: next
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
+      type(all_contact_points_type) :: points   ! with the overlaps that are allowed
       type(scales_type) :: scales
       real(dp) :: least, stiffness
       logical :: along_x
 
+      points = bodies%points
+      points%initial_gap = loads%present_gaps(points)
       least = least_displacement(model, next%temperature)
       scales%length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp), &
          bodies%contact%least_length/noise)
@@ -215,7 +226,7 @@ contains
          scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
       end if
       internal = bodies%mechanical%matrix%multiply(next%displacement) - &
-         thermal_forces(bodies, next%temperature)
+         unstrained_forces(bodies, next%temperature)
       stiffness = maxval(abs(bodies%mechanical%matrix%value))
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)
@@ -227,9 +238,9 @@ contains
          record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
             [along_x, .true.], scales%force)
          record%contact_violation = contact_violation(next%displacement, &
-            residual, held, bodies%points, next%contact, bodies%contact%tangent > 0, scales)
-         record%fields%reaction = reshape(merge(residual, 0.0_dp, held), &
-            [2, size(next%temperature)])
+            residual, held, points, next%contact, bodies%contact%tangent > 0, scales)
+         record%fields%reaction = on_nodes(points%partners, reshape(merge(residual, &
+            0.0_dp, held), [2, size(next%temperature)]))
       end associate
    end subroutine balance_forces
 

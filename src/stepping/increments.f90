@@ -71,6 +71,7 @@ contains
       if (allocated(error)) return
       call self%recovery%prepare(model)
       call self%loads%prepare(model)
+      call self%bodies%points%enter_step(model, 1)
       self%state = make_initial_state(model, self%bodies)
       self%seconds%assemble = (wall_seconds() - since)
       call measure_steps(model, self%bodies%points, self%loads, self%state, self%sizes, error)
@@ -86,6 +87,7 @@ contains
       call self%control%enter_step(model)
       associate (step => model%steps(self%control%step))
          call self%loads%begin_step(step, self%state%displacement, self%state%temperature)
+         call self%bodies%points%enter_step(model, self%control%step)
          call self%reduction%number(model, step, self%loads, self%bodies, error)
       end associate
    end subroutine enter_step

@@ -28,12 +28,13 @@ contains
          contact%gap = bodies%points%initial_gap
          state%smallest_gap = contact%gap
          allocate (state%resting(m), state%idle(m), source=.false.)
-         state%omega = law_conductance(bodies, kept_contact(contact, has_mechanics=.false.))
+         state%jump = bodies%points%jumps(model%initial_temperature)
+         state%omega = law_conductance(bodies, bodies%points%laws_of(model%initial_temperature, &
+            state%jump), kept_contact(contact, has_mechanics=.false.))
          state%omega_before = state%omega
          state%omega_start = state%omega
          allocate (state%displacement(2*n), state%heat_load(n), source=0.0_dp)
          state%temperature = model%initial_temperature
-         state%jump = bodies%points%jumps(model%initial_temperature)
       end associate
    end function make_initial_state
 

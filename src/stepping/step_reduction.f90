@@ -3,6 +3,8 @@
 module step_reduction
    use clock, only: wall_seconds
    use conductance_laws, only: is_constant
+   use contact_reduction, only: take_laws
+   use equation_checks, only: check_equations
    use errors, only: error_type
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
@@ -26,6 +28,7 @@ module step_reduction
       private
       logical, public :: heat_is_reduced = .false.  !! whether heat is reduced as numbered
       logical, allocatable :: held(:)               !! (2 nodes) supports that are numbered
+      logical, allocatable :: has_friction(:)       !! (m) contact points that are numbered with it
       logical, allocatable :: held_temperature(:)   !! (nodes) prescribed nodes that are numbered
       logical :: mechanics_is_reduced = .false.     !! whether mechanics is reduced as numbered
    contains
@@ -36,7 +39,8 @@ module step_reduction
 contains
 
    !> Numbers the unknowns of a step. A field is numbered again only where it is solved and its
-   !> supports differ from those that were numbered last; only then are its factors formed again.
+   !> supports or frictions differ from those that were numbered last; only then are its factors
+   !> formed again.
    !> Error: as reduced_bodies' number.
    subroutine number(self, model, step, loads, bodies, error)
       class(step_reduction_type), intent(inout) :: self          !! what is numbered
@@ -49,12 +53,16 @@ contains
 
       associate (held => loads%displacement%active, held_temperature => loads%temperature%active)
          mechanics = solves_mechanics(step%analysis)
-         if (mechanics .and. allocated(self%held)) mechanics = any(self%held .neqv. held)
+         if (mechanics .and. allocated(self%held)) mechanics = any(self%held .neqv. held) .or. &
+            any(self%has_friction .neqv. bodies%points%has_friction())
          heat = solves_heat(step%analysis)
          if (heat .and. allocated(self%held_temperature)) then
             heat = any(self%held_temperature .neqv. held_temperature)
          end if
-         if (mechanics) self%held = held
+         if (mechanics) then
+            self%held = held
+            self%has_friction = bodies%points%has_friction()
+         end if
          if (heat) self%held_temperature = held_temperature
          self%mechanics_is_reduced = self%mechanics_is_reduced .and. .not. mechanics
          self%heat_is_reduced = self%heat_is_reduced .and. .not. heat
@@ -81,11 +89,14 @@ contains
       given = loads
       do step = 1, size(model%steps)
          call given%begin_step(model%steps(step), state%displacement, state%temperature)
+         call trial%points%enter_step(model, step)
          call reduction%number(model, model%steps(step), given, trial, error)
          if (.not. allocated(error)) then
             call given%move_to(step_clock_type(model%steps(step)%period, model%steps(step)%period, &
                sum(model%steps(:step)%period), model%steps(step)%ramped), model)
-            call check_prescribed_ties(model, trial, given, step, error)
+            call check_equations(model, trial, given, step, error)
+            if (.not. allocated(error)) call check_prescribed_ties(model, trial, given, step, &
+               error)
          end if
          if (allocated(error)) then
             if (size(model%steps) > 1) error%message = 'step '//to_text(step)//': '//error%message
@@ -143,6 +154,8 @@ contains
       if (heat) bodies%thermal%added = film
       call bodies%reduce(model, mechanics, heat, solves_heat(step%analysis) .and. &
          solves_mechanics(step%analysis) .and. .not. all(is_constant(bodies%points%law)), error)
+      if (.not. allocated(error) .and. solves_mechanics(step%analysis)) call take_laws( &
+         bodies%points, bodies%contact)
       self%mechanics_is_reduced = self%mechanics_is_reduced .or. (mechanics .and. &
          .not. allocated(error))
       self%heat_is_reduced = self%heat_is_reduced .or. (heat .and. .not. allocated(error))

@@ -24,7 +24,8 @@ module deck_trade
    use trade_instants, only: common_instants
    use trade_limits, only: check_affordable, note_left_out
    use trade_measurement, only: measurement_type
-   use trade_plan, only: add_level, add_singles, longest_factor, make_room, most_levels
+   use trade_plan, only: add_contact_level, add_level, add_singles, longest_factor, make_room, &
+      most_levels
    use trade_reference, only: find_reference, reference_type
    use trade_rows, only: trade_type
    use trade_table, only: print_imbalances, print_trade
@@ -131,7 +132,8 @@ contains
       call print_line(output_unit, 'table: '//results//'.csv')
    end subroutine print_table
 
-   !> Runs the grid level by level, as long as that is affordable, then the single variations.
+   !> Runs the grid level by level, as long as that is affordable, then meshes with ever more levels
+   !> at the contact faces, then the single variations.
    subroutine measure(path, command, results, model, trade, error)
       character(*), intent(in) :: path, results
       type(command_type), intent(in) :: command
@@ -157,6 +159,14 @@ contains
          call measurement%run(trade, first, trade%count, error)
          if (allocated(error)) return
          if (trade%count < first .and. level >= model%written_levels) exit
+      end do
+      do level = 1, model%written_levels + most_levels
+         first = trade%count + 1
+         call add_contact_level(model, level, trade)
+         call keep_affordable(trade, first, command)
+         if (trade%count < first) exit
+         call measurement%run(trade, first, trade%count, error)
+         if (allocated(error)) return
       end do
       first = trade%count + 1
       call add_singles(model, other_pairing(model), trade)

@@ -13,8 +13,8 @@ module trade_file
    private
    public :: write_trade
 
-   character(*), parameter :: first_columns = 'row,default,elements,level,increment_factor,'// &
-      'varied,status,reason,increments,passes,runs,cpu_seconds,peak_megabytes'
+   character(*), parameter :: first_columns = 'row,default,elements,level,contact_level,'// &
+      'increment_factor,varied,status,reason,increments,passes,runs,cpu_seconds,peak_megabytes'
    character(3), parameter :: target_names(target_count) = ['10 ', '1  ', '0.1']
 
 contains
@@ -58,7 +58,8 @@ contains
       integer :: i
 
       line = to_text(number)//','//flag(row%is_default)//','//elements_of(row)//','// &
-         to_text(row%level)//','//to_text(row%variation%increments)//','//row%varied//','// &
+         to_text(row%level)//','//to_text(row%contact_level)//','// &
+         to_text(row%variation%increments)//','//row%varied//','// &
          to_text(row%status)//','//quoted(row%reason)//','//to_text(row%values%increments)//','// &
          to_text(row%values%passes)//','//to_text(size(row%cpu))//','// &
          scientific(row%cpu_seconds)//','//scientific(row%peak_bytes/1.0e6_dp)// &
@@ -79,7 +80,7 @@ contains
       type(trade_type), intent(in) :: trade
       character(:), allocatable :: line
 
-      line = 'reference'//repeat(',', 12)//errors_text(trade%uncertainty)//','// &
+      line = 'reference'//repeat(',', 13)//errors_text(trade%uncertainty)//','// &
          number_or_empty(maxval(trade%uncertainty))//repeat(',', target_count + 1)
    end function reference_text
 

@@ -4,7 +4,7 @@ module trade_limits
    use text, only: append, string_type, to_text
    use trade_plan, only: find_row
    use trade_rows, only: trade_row_type, trade_type
-   use trade_table, only: elements_of, factor_text
+   use trade_table, only: factor_text, mesh_of
    implicit none
    private
    public :: check_affordable, note_left_out
@@ -45,7 +45,7 @@ contains
       type(string_type), allocatable, intent(inout) :: lines(:)      !! receives it
       character(:), allocatable :: mesh, words
 
-      mesh = elements_of(row)//' x '//to_text(2**row%level)//' with increments '
+      mesh = mesh_of(row)//' with increments '
       words = trim(factor_text(row%variation%increments))//' ('//reason//')'
       if (size(lines) > 0) then
          associate (last => lines(size(lines)))
@@ -59,20 +59,24 @@ contains
    end subroutine note_left_out
 
    !> What a row would cost: what it did on the level before, times what that grew by there; 0 on
-   !> the first level, below 0 where the level before has no such row.
+   !> the first level, below 0 where the level before has no such row. The levels before a first one
+   !> at the contact faces are those of the whole mesh, which grow more.
    pure subroutine predict(trade, row, seconds, bytes)
       type(trade_type), intent(in) :: trade
       type(trade_row_type), intent(in) :: row
       real(dp), intent(out) :: seconds, bytes
-      integer :: before(2)
+      integer :: before(2), k, contact_level, level
       real(dp) :: growth(2)
 
       seconds = 0.0_dp
       bytes = 0.0_dp
-      before(1) = find_row(trade, row%order, row%level - 1, row%variation%increments)
-      before(2) = find_row(trade, row%order, row%level - 2, row%variation%increments)
+      do k = 1, 2
+         contact_level = max(row%contact_level - k, 0)
+         level = row%level - (k - (row%contact_level - contact_level))
+         before(k) = find_row(trade, row%order, level, contact_level, row%variation%increments)
+      end do
       if (before(1) == 0) then
-         if (row%level > 0) seconds = -1.0_dp
+         if (row%level > 0 .or. row%contact_level > 0) seconds = -1.0_dp
          return
       end if
       associate (last => trade%rows(before(1)))

@@ -1,5 +1,5 @@
-!> Which rows a trade has: the grid over mesh, increments and elements, level by level, and one
-!> thing at a time around the deck as it is written.
+!> Which rows a trade has: the grid over mesh, increments and elements, level by level; meshes that
+!> are finer at the contact faces; and one thing at a time around the deck as it is written.
 module trade_plan
    use contact_definitions, only: pairing_name
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
@@ -13,7 +13,7 @@ module trade_plan
    use variations, only: varied_increment
    implicit none
    private
-   public :: make_room, add_level, add_singles, find_row
+   public :: make_room, add_level, add_contact_level, add_singles, find_row
    public :: factors, longest_factor, most_levels
 
    !> Factors on the increments of the deck, each half the one before.
@@ -22,6 +22,9 @@ module trade_plan
    integer, parameter :: most_levels = 3            !! refinements beyond those of the deck
    real(dp), parameter :: tolerances(4) = [1.0e-3_dp, 1.0e-5_dp, 1.0e-8_dp, 1.0e-11_dp]
    integer, parameter :: most_singles = 17          !! rows that vary one thing
+
+   !> Factors of the rows whose meshes are finer at the contact faces.
+   real(dp), parameter :: local_factors(2) = [longest_factor, 1.0_dp]
    type(thermal_scheme_type), parameter :: schemes(4) = [implicit_scheme, galerkin_scheme, &
       crank_nicolson_scheme, explicit_scheme]
 
@@ -32,7 +35,10 @@ contains
       type(model_type), intent(in) :: model        !! the model on the deck's mesh
       type(trade_type), intent(inout) :: trade     !! receives the room
 
-      allocate (trade%rows(2*size(factors)*(model%written_levels + most_levels + 1) + most_singles))
+      associate (levels => model%written_levels + most_levels)
+         allocate (trade%rows(2*size(factors)*(levels + 1) + &
+            size(local_factors)*levels*(levels + 1)/2 + most_singles))
+      end associate
       allocate (trade%left_out(0))
    end subroutine make_room
 
@@ -62,6 +68,36 @@ contains
          end do
       end do
    end subroutine add_level
+
+   !> Adds the rows with the deck's elements whose meshes have some levels more at the contact
+   !> faces, on all levels that leave room for these. A deck without contact has none.
+   pure subroutine add_contact_level(model, contact_level, trade)
+      type(model_type), intent(in) :: model       !! the model on the deck's mesh
+      integer, intent(in) :: contact_level        !! refinements of contact faces, at least 1
+      type(trade_type), intent(inout) :: trade    !! receives the rows
+      type(trade_row_type) :: row
+      integer :: level, f
+
+      if (size(model%contacts) == 0) return
+      do level = 0, model%written_levels + most_levels - contact_level
+         do f = 1, size(factors)
+            if (all(abs(factors(f) - local_factors) > 0.0_dp)) cycle
+            if (.not. is_new(model, f)) cycle
+            row = trade_row_type()
+            row%order = default_order(model)
+            row%level = level
+            row%contact_level = contact_level
+            row%variation%order = row%order
+            row%variation%levels = level
+            row%variation%contact_levels = contact_level
+            row%variation%increments = factors(f)
+            row%is_grid = .false.
+            row%varied = ''
+            row%reason = ''
+            call add(trade, row)
+         end do
+      end do
+   end subroutine add_contact_level
 
    !> Adds the rows that vary one thing, each where the deck has a use for it.
    pure subroutine add_singles(model, other_pairing, trade)
@@ -131,16 +167,20 @@ contains
       trade%rows(trade%count) = row
    end subroutine add
 
-   !> Index of the row of the grid with these elements, mesh and increments; 0 for none.
-   pure integer function find_row(trade, order, level, factor)
+   !> Index of the row with these elements, mesh and increments that varies nothing else; 0 for
+   !> none.
+   pure integer function find_row(trade, order, level, contact_level, factor)
       type(trade_type), intent(in) :: trade
       integer, intent(in) :: order            !! order of the elements
       integer, intent(in) :: level            !! refinements
+      integer, intent(in) :: contact_level    !! more of them at the contact faces
       real(dp), intent(in) :: factor          !! factor on the increments
 
       do find_row = trade%count, 1, -1
          associate (row => trade%rows(find_row))
-            if (row%is_grid .and. row%order == order .and. row%level == level .and. &
+            if (.not. (row%is_grid .or. row%contact_level > 0)) cycle
+            if (row%order == order .and. row%level == level .and. &
+               row%contact_level == contact_level .and. &
                abs(row%variation%increments - factor) <= 0.0_dp) return
          end associate
       end do

@@ -4,10 +4,10 @@ module trade_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
-   use contact_states, only: contact_open
    use errors, only: error_type, set_error, status_internal
+   use interface_quantities, only: closed_length
    use kinds, only: dp
-   use records, only: contact_record_type, increment_record_type
+   use records, only: increment_record_type
    use reported_quantities, only: traded
    implicit none
    private
@@ -87,18 +87,6 @@ contains
          if (traded(figure)%name == name) return
       end do
    end function figure
-
-   pure real(dp) function closed_length(contact, s) result(length)
-      type(contact_record_type), intent(in) :: contact
-      real(dp), intent(in) :: s(:)
-      integer :: k
-
-      length = 0.0_dp
-      do k = 1, size(s)
-         if (contact%contact_state(k) == contact_open) cycle
-         length = length + 0.5_dp*(s(min(k + 1, size(s))) - s(max(k - 1, 1)))
-      end do
-   end function closed_length
 
    !> A number, or absent in place of none.
    elemental real(dp) function finite(number)

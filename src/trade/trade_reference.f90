@@ -155,10 +155,10 @@ contains
       end do
       if (finest < 0) return
       do f = size(factors), 1, -1
-         if (is_grid_row(trade, find_row(trade, order, finest, factors(f)))) exit
+         if (is_grid_row(trade, find_row(trade, order, finest, 0, factors(f)))) exit
       end do
       do level = finest, 0, -1
-         i = find_row(trade, order, level, factors(f))
+         i = find_row(trade, order, level, 0, factors(f))
          if (.not. is_grid_row(trade, i)) exit
          rows%meshes = [i, rows%meshes]
       end do
@@ -172,7 +172,7 @@ contains
             rows%base = i
          end if
       end do
-      if (order > 1) rows%linear = find_row(trade, 1, finest, factors(f))
+      if (order > 1) rows%linear = find_row(trade, 1, finest, 0, factors(f))
       if (.not. is_grid_row(trade, rows%linear)) rows%linear = 0
       do i = 1, trade%count
          if (trade%rows(i)%variation%tolerance <= 0.0_dp .or. trade%rows(i)%status /= 0) cycle
@@ -193,7 +193,7 @@ contains
 
       allocate (found(0))
       do f = size(factors), 1, -1
-         i = find_row(trade, order, level, factors(f))
+         i = find_row(trade, order, level, 0, factors(f))
          if (is_grid_row(trade, i)) then
             found = [i, found]
          else if (size(found) > 0) then

@@ -16,6 +16,7 @@ module trade_rows
       type(variation_type) :: variation = variation_type()   !! what differs from the deck
       integer :: order = 2                              !! order of its elements, 1 or 2
       integer :: level = 0                              !! refinements of the deck's mesh
+      integer :: contact_level = 0                      !! more of them at the contact faces
       logical :: is_grid = .true.                       !! of the grid; else one thing is varied
       logical :: is_default = .false.                   !! the deck as it is written
       character(:), allocatable :: varied               !! the one thing; empty in the grid

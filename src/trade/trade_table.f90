@@ -9,7 +9,7 @@ module trade_table
    use trade_rows, only: trade_row_type, trade_type, target_count, targets
    implicit none
    private
-   public :: print_trade, print_imbalances, elements_of, factor_text
+   public :: print_trade, print_imbalances, elements_of, mesh_of, factor_text
 
    real(dp), parameter :: megabyte = 1.0e6_dp    !! [byte]
 
@@ -25,7 +25,7 @@ contains
       write (unit, '(3a)') name, ': speed against accuracy; errors in %, those of the reference', &
          ' included'
       write (unit, '(/, a)', advance='no') &
-         ' row  mesh      incr.   steps  varied           CPU s      MB'
+         ' row  mesh       incr.   steps  varied           CPU s      MB'
       do q = 1, quantity_count
          write (unit, '(a9)', advance='no') trim(traded(q)%head)
       end do
@@ -33,12 +33,15 @@ contains
       do i = 1, trade%count
          call print_row(unit, i, trade%rows(i))
       end do
-      write (unit, '(a, t62)', advance='no') '      reference uncertain by'
+      write (unit, '(a, t63)', advance='no') '      reference uncertain by'
       do q = 1, quantity_count
          write (unit, '(a9)', advance='no') percent(trade%uncertainty(q))
       end do
       write (unit, '(/, /, a)') '* no row is both cheaper and better (worst error); = the deck'// &
          ' as it is written'
+      if (any(trade%rows(:trade%count)%contact_level > 0)) write (unit, '(a)') &
+         'x 1:4: sides are those of the deck''s mesh, at both contact faces divided by 4 '// &
+         '(*REFINE, LEVELS=2, SURFACE=)'
       call print_instants(unit, trade)
       do i = 1, size(trade%left_out)
          write (unit, '(2a)') 'left out by --limit or memory: ', trade%left_out(i)%value
@@ -76,9 +79,9 @@ contains
       type(trade_row_type), intent(in) :: row
       integer :: q
 
-      write (unit, '(i4, 2a, 2x, a8, 2x, a6)', advance='no') number, &
+      write (unit, '(i4, 2a, 2x, a9, 2x, a6)', advance='no') number, &
          merge('*', ' ', row%is_optimal), merge('=', ' ', row%is_default), &
-         elements_of(row)//' x '//to_text(2**row%level), factor_text(row%variation%increments)
+         padded(mesh_of(row)), factor_text(row%variation%increments)
       if (row%status == 0) then
          write (unit, '(i7)', advance='no') row%values%increments
       else
@@ -95,6 +98,13 @@ contains
       end do
       write (unit, '(a9)') percent(row%worst)
    end subroutine print_row
+
+   pure function padded(words) result(field)
+      character(*), intent(in) :: words
+      character(9) :: field
+
+      field = words
+   end function padded
 
    pure function shown(words) result(field)
       character(*), intent(in) :: words
@@ -129,8 +139,7 @@ contains
             return
          end if
          if (len(remark) > 0) write (unit, '(a)', advance='no') ', not of all quantities'
-         write (unit, '(a, i0, 8a)') ': row ', i, ' (', elements_of(rows(i)), ' x ', &
-            to_text(2**rows(i)%level), ', increments ', &
+         write (unit, '(a, i0, 8a)') ': row ', i, ' (', mesh_of(rows(i)), ', increments ', &
             trim(factor_text(rows(i)%variation%increments))//comma(rows(i)%varied)//'), ', &
             seconds_text(rows(i)%cpu_seconds), ' s of CPU'
          if (len(remark) > 0) write (unit, '(7x, 2a)') 'but not for ', remark
@@ -161,6 +170,15 @@ contains
 
       name = merge('Q8', 'Q4', row%order == 2)
    end function elements_of
+
+   !> Elements and mesh of a row.
+   pure function mesh_of(row) result(name)
+      type(trade_row_type), intent(in) :: row
+      character(:), allocatable :: name         !! such as Q8 x 2, or Q8 x 2:8 with contact levels
+
+      name = elements_of(row)//' x '//to_text(2**row%level)
+      if (row%contact_level > 0) name = name//':'//to_text(2**(row%level + row%contact_level))
+   end function mesh_of
 
    !> A factor on the increments as one writes it.
    pure function factor_text(factor) result(text)

@@ -13,15 +13,16 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), *(str(HERE.parent / n) for n in ("documents", "decks", "reference"))]
 
-from document import Document, Picture, Table, verdict  # noqa: E402, F401  made known first
+from document import Document, Picture, Table, lines_of, verdict  # noqa: E402, F401
 
 PREFACE = """# Accuracy, and what it costs
 
-How far results are from the exact ones, what a user pays for more accuracy, and how other programs fare. The document
-is written by `python tests/accuracy/report.py` from runs of the program; the tests `accuracy_*` run a part of them again.
+How accurate results are, what more accuracy costs, and how another program compares. The script
+`tests/accuracy/report.py` writes this document from runs of the program; the tests `accuracy_*`
+repeat a part of them.
 """
-DOCUMENT = Document("accuracy.md", HERE, ("estimate", "pairing", "recovered", "trade", "cylinder", "needed", "calculix"),
-                    PREFACE)
+DOCUMENT = Document("accuracy.md", HERE, ("estimate", "requested", "pairing", "recovered", "trade",
+                                          "cylinder", "needed", "calculix"), PREFACE)
 check, check_parts, rows = DOCUMENT.check, DOCUMENT.check_parts, DOCUMENT.rows
 check_rows = DOCUMENT.check_rows
 

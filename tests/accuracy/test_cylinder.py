@@ -21,25 +21,33 @@ from report import Picture, Table, check_parts, rows, verdict
 
 TITLE = "The published cylinder, with uncertainty"
 TEXT = """
-`input/cylinder/cylinder.inp` has the mesh counts of the paper and increments of 20 C. Here its mesh is refined up to four times, 10 to 160
-elements along the contact, and its increments down to 2.5 C, so that whoever has the paper's printed figures can compare. Forces and
-heat rates are those of the half model, a unit thick; the edges are arc lengths on the cylinder, at most 0.007 cm more than x.
+`input/cylinder/cylinder.inp` has the mesh counts of the paper and increments of 20 C. Here its mesh
+is refined up to four times, 10 to 160 elements along the contact, and its increments down to 2.5 C,
+so that its results can be compared with the printed figures of the paper. Forces and heat rates are
+those of the half model of unit thickness; the edges are arc lengths on the cylinder, at most 0.007
+cm more than x.
 
-- **The mesh decides, the increments hardly matter.** From 60 C on the published mesh is within 0.4 % of the normal force, 2.1 % of the heat rate, 3 % of
-  the peak pressure (1.1 % from 180 C on), 0.15 cm of the edge of contact and 0.3 cm of the edge of stick. Smaller increments change force, heat
-  rate and edge of contact by some 1e-5; only the edge of stick notices them.
-- **Force and peak pressure converge with order 2, heat rate and edge of contact with order 1.** Heat crosses mainly near the edge,
-  and the edge lies between two nodes: the errors change their sign with the load, and on a single load two meshes can agree by chance. So
-  orders and bands are from all loads, 60 to 900 C, and over the mesh only the peak pressure, where all loads converge alike, is extrapolated.
-- **The edge of stick is the least certain.** Each pair that closes freezes the slip that it has, so it does not converge evenly, and on the
-  published mesh smaller increments make it worse rather than better.
-- **Small increments shift the peak pressure** by up to 0.2 MPa, the same at every load. It comes from the first increments, presumably slip
-  that the first pairs freeze near the axis, and it is most of the band.
-- **Plane stress has next to no slip**, at most 0.01 cm wide: without the (1 + nu) of plane strain both bodies expand alike. The paper's Fig. 3 has a
-  zone of slip, which speaks for plane strain.
-- **Size, supports and which body has nu = 0.4 matter** far more than all numerical errors; arc or parabola does not. The direction of the
-  normals moves only the edge of stick, but by about 1 cm at 900 C: the face is inclined by up to 0.07, half of it between the bodies, which is much
-  against a friction of 0.155.
+- **The mesh decides, the increments hardly matter.** From 60 C on the published mesh is within 0.4
+  % of the normal force, 2.1 % of the heat rate, 3 % of the peak pressure (1.1 % from 180 C on),
+  0.15 cm of the edge of contact and 0.3 cm of the edge of stick. Smaller increments change force,
+  heat rate and edge of contact by some 1e-5; only the edge of stick depends on them.
+- **Force and peak pressure converge with order 2, heat rate and edge of contact with order 1.**
+  Heat crosses mainly near the edge, and the edge lies between two nodes: the errors change their
+  sign with the load, and on a single load two meshes can agree by chance. So orders and bands are
+  from all loads, 60 to 900 C. Over the mesh only the peak pressure is extrapolated, because only it
+  converges in the same way at all loads.
+- **The edge of stick is the least certain.** Each contact point that closes freezes its slip, so
+  the edge does not converge evenly, and on the published mesh smaller increments make it worse
+  rather than better.
+- **Small increments shift the peak pressure** by up to 0.2 MPa, the same at every load. It comes
+  from the first increments, presumably from slip that the first contact points freeze near the
+  axis, and makes up most of the band.
+- **Plane stress has next to no slip**, at most 0.01 cm wide: without the (1 + nu) of plane strain
+  both bodies expand equally. The paper's Fig. 3 has a zone of slip, which speaks for plane strain.
+- **Size, supports and which body has nu = 0.4 matter** far more than all numerical errors; arc or
+  parabola does not. The direction of the normals moves only the edge of stick, but by about 1 cm at
+  900 C: the face is inclined by up to 0.07, half of it between the bodies, which is large compared
+  with a friction of 0.155.
 """
 LEVELS, STEPS_LEVEL = (0, 1, 2, 3, 4), 3
 NORMAL_LEVELS = 1, 2
@@ -125,8 +133,8 @@ def along_steps(found, level, quantity):
 
 def values_table(best):
     """Return the table of converged values."""
-    table = Table("Converged values", ["top, C", *HEAD], text="""Bands are of mesh and increments together; how
-they are made, and how often such bands hold, stands below.""")
+    table = Table("Converged values", ["top, C", *HEAD], text="""Bands include mesh and increments; how they
+are made, and how often such bands are right, is explained below.""")
     table.rows = [[load, *(best[q].told(k) for q in QUANTITIES)]
                   for load, k in zip(AT, WHERE, strict=True)]
     return table
@@ -138,9 +146,9 @@ def changes_table(found, best):
         "What each refinement changes", ["quantity", "direction", "1st", "2nd", "3rd", "4th",
                                          "order", "cosine", "value"],
         text="""Root mean square over the loads of what halving the elements, or the increments, changes. Order: by least squares from
-the last three. Cosine: between the last two changes over the loads; 1 where all loads converge alike, negative where errors change
-sign. Above 0.7 the value is extrapolated by Richardson's formula, with the order but at most 2, and the band is the grid convergence index: that
-correction times 3, or times 1.25 where the order is 1.8 to 2.2. Else the finest grid has the value. Errors of random sign fall by 2^-p, so the last
+the last three. Cosine: between the last two changes over the loads; 1 if all loads converge in the same way,
+negative if errors change sign. Above 0.7 the value is extrapolated by Richardson's formula, with the order but at most 2,
+and the band is the grid convergence index: that correction times 3, or times 1.25 where the order is 1.8 to 2.2. Else the finest grid has the value. Errors of random sign fall by 2^-p, so the last
 change is sqrt(1 + 4^p) times the rms error left, and the band is three times that error, from the loads within 80 C; with an order
 below 0.5, three times the largest change. The bands of mesh and increments are added.""")
     for quantity in QUANTITIES:
@@ -264,7 +272,7 @@ def figure_table(profiles):
         "Fig. 2 of the paper, 540 C", ["reading", "pressure at x = 0, MPa", "largest friction, MPa",
                                        "at x, cm", "flux at x = 0, W/cm2",
                                        "at half the contact", "at 0.8 of it"],
-        text="""Profiles of the readings, 80 elements along the contact; known to about 1 %. The flux at its peak, just inside the edge of contact, is left out: it
+        text="""Profiles of the readings, 80 elements along the contact; accurate to about 1 %. The flux at its peak, just inside the edge of contact, is left out: it
 differs from mesh to mesh by a third.""")
     at = int(np.flatnonzero(LOADS == 540.0)[0])
     for name, each in profiles.items():

@@ -11,25 +11,33 @@ from report import Table, check_parts, rows
 
 TITLE = "Estimated errors"
 TEXT = """
-Every run with contact estimates its errors and prints them at the end of each step, beside each other: those of the mesh, of the increments and of the
-fixed point. `/errors/<pair>/<quantity>` of the result file holds them, a row a step: value, error of the mesh, of the increments, of
-the iteration. They say what would have to be added to the value; for edges of zones, how far they may be off to either side.
+Every run with contact estimates its errors and prints them at the end of each step: those of the
+mesh, of the increments and of the fixed point. `/errors/<pair>/<quantity>` of the result file holds
+one row for each step: value, error of the mesh, of the increments, of the iteration. The errors
+would have to be added to the value; for edges of zones they are bounds to either side.
 
-- **Mesh.** The last increment of the step is corrected to what it would be if every element were divided into four (`src/accuracy`), and the error is
-  1.25 of the change: errors that fall with h^4 are 1.07 of it, those that fall with h are twice the change. The finer mesh is never factored.
-- **Increments.** Where friction or the scheme of (3.4) make the path matter, a second run on the pairs alone is led beside the first with
-  increments of twice the size. The error is 0.6 of the difference: between 1/3 and 1, what errors of the second and the first order are.
-- **What they miss.** Just after a pair has closed an error can be small by chance, or the change to the next mesh can: then the ratio is anything, as on the
-cylinder and its twin once the mesh is refined. On these two the slip that friction has left is that of the mesh as it is, which shifts the peak pressure
-by some 0.1 MPa; of the shear force no error of the mesh is told at all for the same reason. Where several interfaces meet in a corner the estimate of
-forces can be far too large. A minus, `-`, stands where nothing can be said, as for increments where there is only one.
+- **Mesh.** The last increment of the step is corrected to what it would be if every element were
+  divided into four (`src/accuracy`), and the error is 1.25 of the change: errors that fall with h^4
+  are 1.07 of it, those that fall with h are twice the change. The finer mesh is never factored.
+- **Increments.** Where friction or the scheme of (3.4) make the path matter, a companion run with
+  increments of twice the size is solved in parallel on the contact points alone. The error is 0.6
+  of the difference: errors of the second and the first order would be 1/3 and 1 of it.
+- **What they miss.** Just after a contact point has closed, an error or the change to the next mesh
+  can be small by chance: then the ratio is arbitrary, as on the cylinder and its twin once the mesh
+  is refined. On these two the slip left by friction is that of the present mesh, which shifts the
+  peak pressure by some 0.1 MPa; for the same reason no error of the mesh is given for the shear
+  force. Where several interfaces meet in a corner the estimate of forces can be far too large. A
+  minus, `-`, means that no estimate is possible, as for a single increment.
 - **Iteration.** Residual of the fixed point over the distance of the coupling gain from 1: a bound.
-- **Edges of zones.** The band is 2.5 of the change, and a part of the nodal spacing beside it: 0.1 for the edge of contact and 0.6 for that of stick.
+- **Edges of zones.** The band is 2.5 of the change plus a part of the nodal spacing: 0.1 for the
+  edge of contact and 0.6 for that of stick.
 
-Below, true errors are differences to a mesh one level finer than the finest in the table, with what is left there extrapolated, and to increments an
-eighth as long. A ratio is true error over estimate; 0.5 to 2 in magnitude is the goal. Errors of less than 1e-8 of the value are not judged: forces that the
-deck prescribes. Where a pressure grows without limit as the mesh is refined, at the corner of a punch, no error of it is finite, and the
-estimate only says that it is large; such decks are not among the five.
+Below, true errors are differences to a mesh one level finer than the finest in the table, with what
+is left there extrapolated, and to increments an eighth as long. A ratio is true error over
+estimate; 0.5 to 2 in magnitude is the goal. Errors of less than 1e-8 of the value are not judged:
+forces that the deck prescribes. Where a pressure grows without limit as the mesh is refined, at the
+corner of a punch, no error of it is finite, and the estimate only says that it is large; such decks
+are not among the five.
 """
 LEVELS = (0, 1, 2, 3)
 PARTS = (1, 2, 4)

@@ -9,14 +9,16 @@ from energy_norm import errors
 
 TITLE = "Estimated error of the mesh"
 TEXT = """
-Every run estimates the discretisation error of stress and of heat flux in each body: `/history/stress_error` and
-`/history/heat_flux_error`, the energy norm of the difference between the recovered and the computed field over the norm of
-both. Here estimates are divided by true errors, integrated from nodal values and the closed solution with other points than
-the program's: the effectivity, which should be 1. Meshes have n x n quadrilaterals, or twice as many triangles, their
-corners moved by up to a quarter of the spacing; all nodes of the outline are prescribed. Nodal values are recovered from
-cubics fitted round each corner in meshes of eight-node elements, from quadratics in triangles of six nodes, from linear
-functions in elements of the first order. A patch spans two elements: where these turn by a large angle, as in a quarter
-ring with four elements, or stress is singular in one of them, it cannot follow.
+Every run estimates the discretisation error of stress and of heat flux in each body:
+`/history/stress_error` and `/history/heat_flux_error`, the energy norm of the difference between
+the recovered and the computed field over the norm of both. Here estimates are divided by true
+errors, integrated from nodal values and the closed solution with other points than the program's:
+the effectivity, which should be 1. Meshes have n x n quadrilaterals, or twice as many triangles,
+their corners moved by up to a quarter of the spacing; all nodes of the outline are prescribed.
+Nodal values are recovered from cubics fitted round each corner in meshes of eight-node elements,
+from quadratics in triangles of six nodes, from linear functions in elements of the first order. A
+patch spans two elements: where these turn by a large angle, as in a quarter ring with four
+elements, or stress is singular in one of them, it cannot follow.
 """
 YOUNG, POISSON, CONDUCTIVITY = 1000.0, 0.3, 2.0
 KINDS = {"CPE8": 8, "CPE8R": 8, "CPE4": 4, "CPE6": 6, "CPE3": 3}

@@ -13,45 +13,70 @@ from thercon_post import style, trade
 
 TITLE = "Speed for accuracy, measured"
 TEXT = """
-`thercon trade DECK` measures this for any deck; the README says how. Errors are stated ones: the distance from an extrapolated reference,
-and what that is uncertain by, so that a row never looks better than it is.
+`thercon trade DECK` measures this for any deck; [running.md](running.md#speed-against-accuracy)
+says how. The stated error of a row is its distance from an extrapolated reference plus the
+uncertainty of the reference, so that a row never looks better than it is.
 
-- **An error is relative to the value at its instant**, of forces, heat rates and peak pressures, but to a quarter of the largest value over time where
-  that is more: just after first contact there is nothing yet to be wrong by. Edges are relative to the length of the contact, alike;
-  temperatures, of all corner nodes, to the range of all temperatures. The largest error over all instants counts. These are the
-  ends of the longest increments, which all rows meet; on a single one two meshes can agree by chance. The states there hold all of the path, so that an
-  error of frictional history shows in them; each row goes the path by its own increments.
-- **The reference** is the finest mesh with its shortest increments, moved by what Richardson's extrapolation adds over meshes, and over increments
-  on the finest mesh that has three sizes of them. Its uncertainty is all that is added, and at least half the last difference, where
-  differences fall by a steady ratio; where they do not, twice the error that the differences allow if it falls at least with the first
-  power of the steps, three times with three meshes, and four times the last difference where they do not settle. Edges are always taken so: they lie
-  between two nodes, and scatter. What TOL changes is added. Orders below one half that are hidden behind another term are not seen.
-- **A recommendation** is the cheapest row within the wish in all quantities that any row knows so well, and within the wishes before it; quantities
-  that no row knows so well are named beside it.
-- **CPU seconds** are user and system time of a process that does nothing but this row: reading, pairing, factors, increments, and the
-  recovery of stress and flux, but no output; medians of 7 runs below 0.1 s, 5 below 1 s, 3 below 5 s. MB is its largest resident memory,
-  some 9 MB of which are the program itself.
-- Refined elements keep the shape of the deck's own sides: what is polygonal or parabolic there stays so, and the reference with it.
+- **An error is relative to the value at its instant**, of forces, heat rates and peak pressures, or
+  to a quarter of the largest value over time if that is more, because values are near zero just
+  after first contact. Edges are relative to the length of the contact in the same way;
+  temperatures, of all corner nodes, to the range of all temperatures. The largest error over all
+  instants counts; at a single instant two meshes can agree by chance. The instants are the ends of
+  the longest increments, which are common to all rows. Their states depend on the whole path, so
+  errors of frictional history show in them; each row follows the path by its own increments.
+- **The reference** is the finest mesh with its shortest increments, moved by what Richardson's
+  extrapolation adds over meshes, and over increments on the finest mesh that has three sizes of
+  them. Its uncertainty is the whole of that addition, and at least half the last difference, if
+  differences fall by a steady ratio. Otherwise it is twice the error that the differences allow if
+  it falls at least with the first power of the steps, three times with three meshes, and four times
+  the last difference if they do not settle. This second rule is always used for edges, which lie
+  between two nodes and scatter. The effect of TOL is added. Orders below one half that are hidden
+  behind another term are not seen.
+- **Rows that are finer at the contact** have the deck's elements with 1, 2 or more levels at both
+  faces of all contact pairs, beyond those of the whole mesh, and the increments of the deck and
+  those four times as long. `Q8 x 2:8` divides all sides by 2, and those at the contact faces by 8
+  (`*REFINE, LEVELS=1`, then `LEVELS=2, SURFACE=`). They are not part of the reference, which judges
+  them as the others; the uncertainty of the uniform meshes stays in their stated errors.
+- **A recommendation** is the cheapest row that meets the target, and the targets before it, in all
+  quantities for which any row does; quantities for which no row meets the target are named beside
+  it.
+- **CPU seconds** are user and system time of a process that solves only this row: reading, pairing,
+  factors, increments, and the recovery of stress and flux, but no output; medians of 7 runs below
+  0.1 s, 5 below 1 s, 3 below 5 s. MB is its largest resident memory, some 9 MB of which are the
+  program itself.
+- Refined elements keep the shape of the deck's own sides: what is polygonal or parabolic there
+  stays so, and the reference with it.
 
-In the tables: rows that none beats in CPU and worst error (\\*), the deck as written (=), the rows that are recommended, and all that vary one thing. The
-full tables are what the command prints; here with `--limit 8`.
+In the tables: rows that are Pareto-optimal in CPU and worst error (\\*), the deck as written (=),
+the rows that are recommended, and all that vary one thing. The full tables are what the command
+prints; here with `--limit 8`.
 """
 LIMIT = "8"
-CYLINDER = """Elements with midside nodes on the deck's own mesh cost 0.04 s and know the force to 0.2 %, heat to 2.5 %, the peak to 1.2 %. The mesh is
-what to pay for: each halving costs 4 to 8 times the time and halves the errors of heat and edges. Increments hardly matter: those four times as
-long are as good in all but the edge of stick. Linear
-elements need the mesh halved twice more for the same force, at ten times the cost; for heat and edges they are on a par. Tolerance and method change nothing here. `GALERKIN` and
-`CRANK-NICOLSON` do not damp what a pair that closes leaves in the heat rate; `MUMPS` takes nearly twice the time and 4 MB more at this size. The edge
-of stick is not known to 10 %, early in the course, because slip is frozen pair by pair."""
-TWIN = """First contact, near 540 C, is where two pairs compete for the heat; a moment there depends on the mesh as nothing on the cylinder above does.
-The reference says so itself: with these meshes heat and temperatures are known to 1 %, force to 1.2 %, peak and edge of contact to 6 %, the edge of stick not at
-all. A finer mesh helps all of them, shorter increments none. Only `NEWTON` goes through; the three others fail at
-500 and 520 C, and are listed so."""
-HERTZ = """No friction, so no path: one increment is as good as sixteen, to all digits. The linear elements of the unrefined deck know the peak
-pressure to 0.5 % for a tenth of the time of the deck as written, the force on any mesh. The edge of contact is known to half a per cent."""
-ROD = """Uniform states are exact on any mesh: all rows of the grid agree with the closed form, so the cheapest will do, and which one that is
-is chance. What matters is the method: `PICARD` cycles for ever at a gain of -11, the schemes that weigh the start of the increment are
-wrong by 30 % and more in a single increment from a cold start, and TOL=1E-3 leaves 4e-7 of the heat."""
+CYLINDER = """\
+Elements with midside nodes on the deck's own mesh cost 0.04 s. Force is accurate to 0.2 %, heat to
+2.5 %, the peak to 1.2 %. Spend time on the mesh: each halving costs 4 to 8 times the time and
+halves the errors of heat and edges. Increments hardly matter: increments four times as long are
+equally good except for the edge of stick. Linear elements need the mesh halved twice more for the
+same force, at ten times the cost; for heat and edges they are on a par. Tolerance and method change
+nothing here. `GALERKIN` and `CRANK-NICOLSON` do not damp the error that a closing contact point
+leaves in the heat rate; `MUMPS` takes nearly twice the time and 4 MB more at this size. Early in
+the loading the edge of stick is not accurate to 10 %, because slip is frozen point by point."""
+TWIN = """\
+At first contact, near 540 C, two contact points compete for the heat; the results there depend on
+the mesh far more than anything on the cylinder above. The uncertainty of the reference shows it:
+with these meshes heat and temperatures are accurate to 1 %, force to 1.2 %, peak and edge of
+contact to 6 %, the edge of stick not at all. A finer mesh improves all of them, shorter increments
+none. Only `NEWTON` completes the run; the three other methods fail at 500 and 520 C and are listed
+as failed."""
+HERTZ = """\
+Without friction the path does not matter: one increment gives the same digits as sixteen. The
+linear elements of the unrefined deck give the peak pressure to 0.5 % in a tenth of the time of the
+deck as written, and the force on any mesh. The edge of contact is accurate to half a per cent."""
+ROD = """\
+Uniform states are exact on any mesh: all rows of the grid agree with the closed form, so the
+cheapest is sufficient; the choice between them is arbitrary. The method matters: `PICARD` cycles
+without end at a gain of -11, the schemes that weight the start of the increment are wrong by 30 %
+and more in a single increment from a cold start, and TOL=1E-3 leaves 4e-7 of the heat."""
 CASES = {
     "cylinder": ("cylinder/cylinder.inp", "The published cylinder", CYLINDER),
     "cylinder-coupled": ("cylinder/cylinder-coupled.inp", "Its coupled twin", TWIN),
@@ -87,7 +112,9 @@ def described(row):
     """Return mesh, increments and what is varied of a row."""
     factor = float(row["increment_factor"])
     times = f"x {factor:g}" if factor >= 1 else f"x 1/{1 / factor:g}"
-    return f"{row['elements']} x {2 ** int(row['level'])}, {times}"
+    level, more = int(row["level"]), int(row["contact_level"])
+    sides = f"{2 ** level}:{2 ** (level + more)}" if more else f"{2 ** level}"
+    return f"{row['elements']} x {sides}, {times}"
 
 
 def case_table(name, path):

@@ -41,10 +41,12 @@ def block(name, xs, ys, first=1, skew=0.0):
 
 
 def without_unused_surfaces(cards):
-    """Return the cards without the surfaces that no pair and no surface load names."""
+    """Return the cards without surfaces that no contact pair, tie, coupling or load names."""
     keywords = list(accumulate(cards, lambda last, card: card if card.startswith("*") else last))
-    used = {field.strip() for keyword, card in zip(keywords, cards, strict=True)
-            if keyword.startswith(("*CONTACT PAIR", "*TIE", "*DSLOAD", "*DFLUX")) for field in card.split(",")}
+    used = {field.strip().removeprefix("SURFACE=")
+            for keyword, card in zip(keywords, cards, strict=True)
+            if keyword.startswith(("*CONTACT PAIR", "*TIE", "*COUPLING", "*DSLOAD", "*DFLUX"))
+            for field in card.split(",")}
     return [card for keyword, card in zip(keywords, cards, strict=True)
             if not keyword.startswith("*SURFACE, NAME=") or keyword.split("=")[1] in used]
 

@@ -3,11 +3,13 @@
 import sys
 from itertools import pairwise
 
+import numpy as np
 from blocks import write
 from changes import note_changes
 from deck_runs import DECKS, run
 
 sys.path.insert(0, str(DECKS.parent / "reference"))
+import plates  # noqa: E402
 
 SIDES = "BOTTOM", "RIGHT", "TOP", "LEFT"
 
@@ -141,6 +143,27 @@ def judge(folder, cards, checks, status=0, name="deck"):
     process = run("run", "--quiet", deck, "--out", folder)
     assert process.returncode == status, process.stderr + listed(deck)
     return deck.with_suffix(".vtkhdf")
+
+
+def judge_linear_fields(folder, options, cards, kind):
+    """Give linear displacements and temperatures at the outer nodes of the one body BODY; check
+    that stress and heat flux are the constant ones everywhere."""
+    young, poisson, conductivity = 1000.0, 0.3, 2.0
+    plane = "strain" if kind.startswith("CPE") else "stress"
+    strain = np.array([1e-3, -4e-4, 7e-4])
+    values = ["*BOUNDARY"]
+    for node, (x, y) in outer_nodes(cards).items():
+        (u, v), = plates.displacements([(x, y)], strain)
+        values += [f"{node}, 1, 1, {float(u)!r}", f"{node}, 2, 2, {float(v)!r}",
+                   f"{node}, 11, 11, {50.0 + 20.0 * x - 30.0 * y!r}"]
+    stress = plates.stress(plates.isotropic(young, poisson), strain, plane)
+    deck = [*options, *cards, *material("BODY", (young, poisson), conductivity=conductivity),
+            "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", *values,
+            "*END STEP"]
+    checks = [(f"S{name}", "BODY", "LAST", value, 1e-10, "ABS")
+              for name, value in zip(("11", "22", "33", "12"), stress, strict=True)]
+    judge(folder, deck, [*checks, ("HFL1", "BODY", "LAST", -40.0, 1e-10),
+                         ("HFL2", "BODY", "LAST", 60.0, 1e-10)])
 
 
 def listed(deck):

@@ -208,8 +208,9 @@ def test_a_deck_of_heat_steps_has_no_mechanics_and_needs_no_elasticity(tmp_path)
         assert file["run"].attrs["contact_unknowns"] == 5
         assert file["run"].attrs["modelled"] in (b"heat, contact", "heat, contact")
     listing = deck.with_suffix(".lst").read_text()
-    for text in ("elasticity is off: no step but *HEAT TRANSFER", "PAIRS THAT NEVER APPROACHED: 5 "
-                 "of 5 of FACE", "heat, scheme IMPLICIT", "A/(B + gap)"):
+    for text in ("elasticity is off: no step but *HEAT TRANSFER",
+                 "CONTACT POINTS THAT NEVER APPROACHED: 5 of 5 of FACE", "heat, scheme IMPLICIT",
+                 "A/(B + gap)"):
         assert text in listing, text
     assert "force imbalance" not in listing
 

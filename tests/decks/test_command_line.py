@@ -6,7 +6,7 @@ import subprocess
 import h5py
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
-from deck_runs import PROGRAM, run
+from deck_runs import CYLINDER, PROGRAM, copy_deck, run
 
 GOOD = [
     *without_unused_surfaces(block("BLOCK", [0.0, 1.0], [0.0, 1.0])),
@@ -180,3 +180,80 @@ def test_help_and_version(tmp_path):
     version = run("--version", folder=tmp_path)
     assert version.returncode == 0
     assert all(name in version.stdout for name in ("thercon", "MUMPS", "METIS", "HDF5", "LAPACK"))
+
+
+def test_help_goes_with_every_command(tmp_path):
+    assert run("run", "--help", folder=tmp_path).stdout == run("--help", folder=tmp_path).stdout
+
+
+def test_files_without_a_step_are_skipped_in_a_batch_only(good, bad, tmp_path):
+    mesh = write(tmp_path / "mesh.inp", GOOD[:GOOD.index("*STEP")])
+    batch = run("run", good, mesh, "--out", tmp_path / "out")
+    assert batch.returncode == 0, batch.stderr
+    assert f"{mesh}: note: skipped: it has no *STEP" in batch.stderr
+    assert "solved 1, skipped 1" in batch.stdout
+    assert names(tmp_path / "out") == sorted(
+        ["good" + suffix for suffix in SUFFIXES] + ["thercon-batch.csv"])
+    assert run("check", good, mesh).returncode == 0
+    alone = run("run", mesh, "--out", tmp_path / "alone")
+    assert alone.returncode == 1
+    assert "*STEP" in alone.stderr
+    faulty = write(tmp_path / "faulty.inp", GOOD[:GOOD.index("*STEP")], ["*NONSENSE"])
+    assert run("run", good, faulty, "--out", tmp_path / "out").returncode == 1
+
+
+def test_a_summary_tells_the_interface_then_the_results_then_what_failed(tmp_path):
+    deck = copy_deck(CYLINDER, tmp_path / "cylinder.inp", [
+        '*VERIFY, KIND=ANALYTIC, SOURCE="wrong on purpose"', "pressure, MAX, LAST, 2., 1.E-6"])
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 4
+    lines = process.stdout.splitlines()
+    assert lines[1] == "  at time 900 (increment 45), temperature of TOP 900:"
+    assert lines[2] == "  FACE"
+    with h5py.File(tmp_path / "cylinder.vtkhdf") as file:
+        face = file["contact/FACE"]
+        expected = {"normal force": face["normal_force"][-1],
+                    "shear force": face["shear_force"][-1],
+                    "heat rate": face["heat_rate"][-1],
+                    "peak pressure": face["pressure"][-1].max(),
+                    "edge of contact": face["edge_contact"][-1],
+                    "edge of stick": face["edge_stick"][-1]}
+        parts = {name: file[f"errors/FACE/{name}"][-1] for name in ("heat_rate", "edge_contact")}
+    units = ["MPa cm^2", "MPa cm^2", "W", "MPa", "cm", "cm"]
+    for line, (name, value), unit in zip(lines[3:9], expected.items(), units, strict=True):
+        assert line[4:21].strip() == name
+        assert float(line[21:34]) == pytest.approx(value, rel=1e-5)
+        assert line.endswith(" " + unit)
+    assert "(uncertain)" in lines[4]
+    # Errors of mesh and increments have signs, but for edges; that of the iteration adds to both.
+    bound = abs(parts["heat_rate"][1] + parts["heat_rate"][2]) + parts["heat_rate"][3]
+    assert float(lines[5].split("+-")[1].split()[0]) == pytest.approx(bound, rel=0.05)
+    bound = sum(abs(part) for part in parts["edge_contact"][1:])
+    assert float(lines[7].split("+-")[1].split()[0]) == pytest.approx(bound, rel=0.05)
+    assert lines[9].startswith("  results: ")
+    assert lines[10] == "  37 checks passed, 1 failed"
+    assert process.stderr.count("error: *VERIFY on card") == 1
+    listing = (tmp_path / "cylinder.lst").read_text().splitlines()
+    start = listing.index("SUMMARY")
+    assert [line.strip() for line in listing[start + 2:start + 5]] == [
+        "solved, 45 increments", "37 checks passed, 1 failed", "no warnings"]
+    assert [line.strip() for line in listing[start + 5:start + 13]] == [
+        line.strip() for line in lines[1:9]]
+    titles = [line for line, under in zip(listing, listing[1:], strict=False)
+              if under and set(under) == {"-"}]
+    order = ["SUMMARY", "MODEL", "INCREMENTS", "SECONDS", "DECK"]
+    assert [title for title in titles if title in order] == order
+    assert listing.index("VERIFICATION") < listing.index("SECONDS")
+
+
+def test_a_run_that_ends_early_counts_what_it_could_not_judge(tmp_path):
+    deck = copy_deck(CYLINDER, tmp_path / "cylinder.inp", changes={
+        "*STEP, INC=": "*FIXED POINT, MAXITER=1\n*STEP, INC="})
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 2
+    assert process.stderr.count("error: ") == 2
+    assert "37 *VERIFY checks could not be judged" in process.stderr
+    listing = (tmp_path / "cylinder.lst").read_text()
+    assert "   ended early after 0 increments, see ENDED EARLY below" in listing
+    assert listing.count("ENDED EARLY") == 2
+    assert "no *VERIFY" not in listing

@@ -23,7 +23,7 @@ def tables(listing):
     """Return the heads of the contact tables of a listing, and their rows, increment by increment;
     the zone of a pair as the number of its status."""
     heads, rows = [], []
-    for part in listing.read_text().split("   CONTACT PAIRS OF FACE\n")[1:]:
+    for part in listing.read_text().split("   CONTACT POINTS OF FACE\n")[1:]:
         head, *lines = part.split("\n\n")[0].splitlines()
         heads.append(head.split())
         cells = [line.split() for line in lines if re.match(r" *\d+ +\d+ +\d+ ", line)]
@@ -39,7 +39,7 @@ def assert_printed(result, columns):
     with h5py.File(result) as file:
         stored = {name: file["contact/FACE"][name][()] for name in columns.values()}
         increments = len(file["history/time"])
-    assert heads == [["pair", *columns]] * increments
+    assert heads == [["no.", *columns]] * increments
     np.testing.assert_array_equal(rows[:, :, 0],
                                   [range(1, len(stored["x"]) + 1)] * increments)
     for k, (head, name) in enumerate(columns.items(), 1):
@@ -95,6 +95,6 @@ def test_a_pair_that_approached_and_left_did_approach(tmp_path, steps, never):
     deck = write(tmp_path / "deck.inp", blocks(*steps))
     with h5py.File(solve(deck)) as file:
         np.testing.assert_allclose(file["contact/FACE/gap"][-1], 1.5, rtol=1e-12)
-    said = re.findall(r"^PAIRS THAT NEVER APPROACHED: (\d+) of 5 of FACE\n.*\n +slave and master "
-                      r"nodes (.*)$", deck.with_suffix(".lst").read_text(), re.M)
+    said = re.findall(r"^CONTACT POINTS THAT NEVER APPROACHED: (\d+) of 5 of FACE\n.*\n +slave "
+                      r"and master nodes (.*)$", deck.with_suffix(".lst").read_text(), re.M)
     assert said == ([(str(len(never)), " ".join(never))] if never else [])

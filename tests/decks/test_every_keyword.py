@@ -7,22 +7,28 @@ import re
 from deck_runs import DECKS
 
 REFERENCE = DECKS.parents[1] / "docs" / "deck.md"
-FLAGS = {"GENERATE", "DIRECT", "PRESSURE", "CLEARANCE"}
+FLAGS = {"GENERATE", "DIRECT", "PRESSURE", "CLEARANCE", "ROUGH", "ADD", "REMOVE", "SHRINK"}
 VALUES = {"GAP LAW, CLEARANCE"}   # no flag there, but a value of TYPE=
 
 # What has one value only, or none.
 ONE_VALUE = {
     "END STEP": "no data, no parameter",
+    "CHANGE FRICTION": "no data",
+    "MODEL CHANGE, TYPE": "CONTACT PAIR is the only one",
+    "CONTACT INTERFERENCE, TYPE": "CONTACT PAIR is the only one",
     "SURFACE, TYPE": "ELEMENT is the only one that is built",
-    "INITIAL CONDITIONS, TYPE": "TEMPERATURE is the only one",
     "AMPLITUDE, VALUE": "RELATIVE is the only one",
     "BOUNDARY, TYPE": "DISPLACEMENT is the only one",
     "NSET, ELSET": "stands in the section of both",
     "ELSET, NSET": "stands in the section of both",
     "ELSET, SURFACE": "stands in the section of both",
     "GAP CONDUCTANCE, DEPENDENCIES": "refused",
+    "PART": "no data", "END PART": "no data", "ASSEMBLY": "no data", "END ASSEMBLY": "no data",
+    "ASSEMBLY, NAME": "means nothing", "END INSTANCE": "no data",
+    "COUPLING": "no data", "COUPLING, CONSTRAINT NAME": "means nothing",
     "CLEARANCE": "no data", "FIXED POINT": "no data", "INCLUDE": "no data",
-    "MATERIAL": "no data", "OPTIONS": "no data", "REFINE": "no data", "SOLVER": "no data",
+    "MATERIAL": "no data", "OPTIONS": "no data", "PHYSICAL CONSTANTS": "no data",
+    "REFINE": "no data", "SOLVER": "no data",
     "STEP": "no data", "SURFACE INTERACTION": "its thickness is not needed",
 }
 

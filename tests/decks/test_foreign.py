@@ -32,9 +32,30 @@ def test_a_flat_deck_of_abaqus_cae(tmp_path):
     judge(tmp_path, cards_of("abaqus_cae_flat.inp"), pressed_and_heated())
 
 
+def test_a_deck_of_abaqus_cae_with_parts(tmp_path):
+    judge(tmp_path, cards_of("abaqus_cae_parts.inp"), pressed_and_heated())
+
+
+def test_a_deck_of_prepomax(tmp_path):
+    """A sheet pulled by 10: strain 0.01, nu = 0.25."""
+    judge(tmp_path, cards_of("prepomax.inp"), [
+        ("U1", "Node_Set-1", "LAST", 0.02, 1e-9), ("S11", "MIN", "LAST", 10.0, 1e-9),
+        ("U2", "MIN", "LAST", -0.0025, 1e-9)])
+
+
+def test_a_deck_of_freecad(tmp_path):
+    """A strip, 10 high and 2 thick, pulled by 60: sigma = 3, strain 0.003 over 20."""
+    judge(tmp_path, cards_of("freecad.inp"), [
+        ("U1", "3", "LAST", 0.06, 1e-9), ("S11", "MAX", "LAST", 3.0, 1e-9)])
+
+
+def test_a_deck_of_gmsh(tmp_path):
+    judge(tmp_path, cards_of("gmsh.inp"), [("S11", "MIN", "LAST", 10.0, 1e-9)])
+
+
 @pytest.mark.parametrize("name", sorted(path.name for path in FOREIGN.glob("*.inp")))
 def test_it_is_sound_as_it_is(name):
-    process = run("check", FOREIGN / name)
+    process = run("check", "--width", "200", FOREIGN / name)
     assert process.returncode == 0, process.stderr
     assert "error" not in process.stderr
 

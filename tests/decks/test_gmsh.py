@@ -80,7 +80,7 @@ def test_lines_are_no_elements_of_the_result(tmp_path, meshes):
     with h5py.File(judge(tmp_path, square(*loaded("HIGH")), stresses(0.0, -LOAD))) as file:
         assert len(file["VTKHDF/CellData/element_id"]) == 4
     listing = (tmp_path / "deck.lst").read_text()
-    assert listing.count("*ELEMENT, TYPE=T3D3: lines are passed over") == 1
+    assert listing.count("*ELEMENT, TYPE=T3D3: lines are ignored") == 1
 
 
 def test_refined_mesh(tmp_path, meshes):

@@ -80,7 +80,7 @@ def test_a_signal_ends_the_run_after_the_current_increment(deck, tmp_path, name)
     assert reason in listing[listing.rindex("ENDED EARLY"):]
     assert f"The results hold the increments up to number {count}." in listing
     assert sorted(f.name for f in tmp_path.iterdir()) == [
-        "long.cvg", "long.lst", "long.sta", "long.vtkhdf"]
+        "long.contact.vtkhdf", "long.cvg", "long.lst", "long.sta", "long.vtkhdf"]
     # The last increment is the answer of its load, whatever ran before it.
     alone = solve(heat(tmp_path, "alone.inp", 1, float(times[-1])))
     np.testing.assert_allclose(gap, rods.last(alone, "gap"), rtol=1e-9)

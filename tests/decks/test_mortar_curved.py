@@ -55,10 +55,10 @@ def test_press_fit_of_quarter_rings_converges_with_the_order_of_the_element(
     normal a contact point it would err by h^2/6 with elements of any order."""
     errors = []
     for level in (1, 2):
-        weight, pressure = fit(arc("IN", [1.0, 1.5, 2.0] if level == 1 else [1.0, 1.25, 1.5, 1.75, 2.0],
-                                   3 * level, 1, kind=kind),
-                               arc("OUT", [2.0, 2.5, 3.0] if level == 1 else [2.0, 2.25, 2.5, 2.75, 3.0],
-                                   4 * level, 5001, kind=kind), slave,
+        depths = [k / (2 * level) for k in range(2 * level + 1)]
+        weight, pressure = fit(arc("IN", [INNER + d for d in depths], 3 * level, 1, kind=kind),
+                               arc("OUT", [FACE + d for d in depths], 4 * level, 5001, kind=kind),
+                               slave,
                                ["IN.LEFT, 1", "OUT.LEFT, 1", "IN.RIGHT, 2", "OUT.RIGHT, 2"],
                                tmp_path / "fit.inp")
         errors.append(abs(weight @ pressure / weight.sum() / EXACT - 1.0))
@@ -66,6 +66,19 @@ def test_press_fit_of_quarter_rings_converges_with_the_order_of_the_element(
     if kind == "CPS8":
         assert errors[0] < side**2 / 6 / 20
     assert errors[1] < errors[0] / 2**(order - 0.3)
+
+
+@pytest.mark.parametrize("count", [10, 14, 24])
+def test_ends_of_matching_arcs_on_axes_of_symmetry(tmp_path, count):
+    """Both faces are held across the axis where they end; the number of sides does not matter."""
+    depths = [k / 4 for k in range(5)]
+    supports = ["IN.LEFT, 1", "OUT.LEFT, 1", "IN.RIGHT, 2", "OUT.RIGHT, 2"]
+    for other in (count, count + 1):
+        _, pressure = fit(arc("IN", [INNER + d for d in depths], count, 1, kind="CPS4"),
+                          arc("OUT", [FACE + d for d in depths], other, 5001, kind="CPS4"), "IN",
+                          supports, tmp_path / "arcs.inp")
+        np.testing.assert_allclose(pressure, pressure[::-1], rtol=1e-8)
+        assert pressure[count // 2] == pytest.approx(EXACT, rel=1e-2)
 
 
 @pytest.mark.parametrize("slave", ["IN", "OUT"])
@@ -98,7 +111,8 @@ def hertz(upper, lower, slave):
     mirrored = [[e[k] + 100000 for k in (1, 0, 3, 2, 4, 7, 6, 5)] for e in elements]
     bodies = above, ({n + 100000: p for n, p in below.items()}, mirrored)
     cards = []
-    for (nodes, around), name, first in zip(bodies, ("CYLINDER", "BLOCK"), (1, 100001), strict=True):
+    named = zip(bodies, ("CYLINDER", "BLOCK"), (1, 100001), strict=True)
+    for (nodes, around), name, first in named:
         cards += [f"*NODE, NSET={name}", *(f"{n}, {x!r}, {y!r}" for n, (x, y) in nodes.items()),
                   f"*ELEMENT, TYPE=CPE8, ELSET={name}",
                   *(", ".join(map(str, [first + k, *e])) for k, e in enumerate(around))]
@@ -106,13 +120,15 @@ def hertz(upper, lower, slave):
     nodes = {**high, **deep}
     curved = {n for n, (x, y) in high.items() if abs(y - x**2 / 200.0) < 1e-8 and x <= deck.SIZE}
     cards += ["*ELSET, ELSET=LOADED",
-              *(str(k + 1) for k, e in enumerate(over) if all(high[e[c]][1] == deck.SIZE for c in (1, 2))),
+              *(str(k + 1) for k, e in enumerate(over)
+                if all(high[e[c]][1] == deck.SIZE for c in (1, 2))),
               "*NSET, NSET=BOTTOM", *(str(n) for n, p in nodes.items() if p[1] == -deck.SIZE),
               "*NSET, NSET=AXIS", *(str(n) for n, p in nodes.items() if p[0] == 0.0),
               "*SURFACE, NAME=CURVED",
               *(f"{k + 1}, S1" for k, e in enumerate(over) if {e[0], e[1], e[4]} <= curved),
               "*SURFACE, NAME=FLAT",
-              *(f"{k + 100001}, S1" for k, e in enumerate(under) if deep[e[0]][1] == deep[e[1]][1] == 0.0)]
+              *(f"{k + 100001}, S1" for k, e in enumerate(under)
+                if deep[e[0]][1] == deep[e[1]][1] == 0.0)]
     surfaces = "CURVED, FLAT" if slave == "CURVED" else "FLAT, CURVED"
     model = deck.MODEL.replace("*REFINE, LEVELS=1\n", "").replace("0.25, 1.", "1., 1.").replace(
         "NAME=FACE\nCURVED, FLAT", f"NAME=FACE, PAIRING=SURFACES\n{surfaces}")
@@ -159,8 +175,8 @@ def cylinder(count, base_count, slave):
     for name, axis, value in (("TOP", 1, 60.0), ("BOTTOM", 1, -60.0), ("AXIS", 0, 0.0)):
         cards += [f"*NSET, NSET={name}"]
         cards += [str(n) for n, place in nodes.items() if abs(place[axis] - value) < 1e-9]
-    model = script_of_deck.MODEL.format(base_expansion="1.2E-5", method="NEWTON", poisson=(0.4, 0.2),
-                                        ends="").splitlines()
+    model = script_of_deck.MODEL.format(base_expansion="1.2E-5", method="NEWTON",
+                                        poisson=(0.4, 0.2), ends="").splitlines()
     at = next(k for k, card in enumerate(model) if card.startswith("*CONTACT PAIR"))
     faces = ["CYLINDER.BOTTOM", "BASE.TOP"]
     model[at:at + 2] = ["*CONTACT PAIR, INTERACTION=FACES, NAME=FACE, PAIRING=SURFACES",
@@ -174,7 +190,8 @@ def test_cylinder_with_30_sides_on_22_is_the_converged_one_whichever_is_the_slav
     found = {}
     for slave in ("CYLINDER", "BASE"):
         cards = cylinder(30, 22, slave)
-        with h5py.File(solve(write(tmp_path / "cylinder.inp", ["*OPTIONS, WIDTH=200"], cards))) as file:
+        deck = write(tmp_path / "cylinder.inp", ["*OPTIONS, WIDTH=200"], cards)
+        with h5py.File(solve(deck)) as file:
             face = file["contact/FACE"]
             for row in reference:
                 found[slave, row] = (face["normal_force"][row], abs(face["heat_rate"][row]),

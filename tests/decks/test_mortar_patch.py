@@ -42,7 +42,8 @@ def joint(kind, upper, lower, angle=0.0, slave="UP", poisson=0.25, friction=None
     surfaces = [f"{up}.BOTTOM", f"{low}.TOP"]
     if slave == "LOW":
         surfaces.reverse()
-    cards += [f"*SURFACE INTERACTION, NAME={pair}", *(["*FRICTION", str(friction)] if friction else []),
+    cards += [f"*SURFACE INTERACTION, NAME={pair}",
+              *(["*FRICTION", str(friction)] if friction else []),
               "*GAP LAW, TYPE=POWER", CLOSED, "*GAP LAW, TYPE=GAS", "1.E-3, 1.E-4",
               f"*CONTACT PAIR, INTERACTION={pair}, NAME={pair}, PAIRING=SURFACES",
               ", ".join(surfaces)]
@@ -55,6 +56,13 @@ def press(cards, *boundary, loads, path, status=0):
         [*cards, "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.",
          "*BOUNDARY", *boundary, "*DSLOAD", *loads, "*END STEP"]))
     return solve(deck, status=status)
+
+
+def deck_of(path, cards, supports, *loads, increment="1., 1."):
+    """Write a static step of one or several increments."""
+    return write(path, ["*OPTIONS, WIDTH=200"], without_unused_surfaces(
+        [*cards, "*STEP", "*STATIC, DIRECT", increment, "*BOUNDARY", *supports, *loads,
+         "*END STEP"]))
 
 
 def contact(result, name="C"):
@@ -80,8 +88,8 @@ def corner(cards, body, to, x, y):
 @pytest.mark.parametrize("slave", ["UP", "LOW"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_uniform_pressure_and_heat_cross_faces_that_do_not_match(tmp_path, kind, slave):
-    """Straight and inclined; 3 sides against 4 and 7, 10 against 1 and the reverse. Heat goes through
-    2 and 1/omega in a row."""
+    """Straight and inclined; 3 sides against 4 and 7, 10 against 1 and the reverse. Heat goes
+    through both blocks and the interface in a row."""
     conductance = 10.0 + PRESSURE**0.5
     for one, other, angle in ((3, 4, 0.0), (7, 3, 0.0), (10, 1, 0.0), (1, 10, 0.0), (3, 7, 0.4)):
         if angle and kind.startswith("CAX"):
@@ -121,7 +129,9 @@ def test_uniform_pressure_on_the_covered_part_whatever_the_overhang(tmp_path, ki
     """The face that hangs over is held and isothermal. The other block, nu = 0, is a column."""
     for overhang in OVERHANGS:
         upper, lower = overhanging(overhang, who, kind, side)
-        held, free, outer = ("UP", "LOW", "LOW.BOTTOM") if who == "slave" else ("LOW", "UP", "UP.TOP")
+        held, free, outer = ("UP", "LOW", "LOW.BOTTOM")
+        if who == "master":
+            held, free, outer = ("LOW", "UP", "UP.TOP")
         found = contact(press(joint(kind, upper, lower, poisson=0.0), f"{held}, 1, 2", f"{free}, 1",
                               f"{held}, 11, 11, {HOT}", f"{outer}, 11, 11, 0.",
                               loads=[f"{outer}, P, {PRESSURE}"], path=tmp_path / "held.inp"))
@@ -192,9 +202,7 @@ def test_solvers_and_rotated_meshes_agree(tmp_path):
 def test_a_rotated_model_has_no_gap(tmp_path, angle):
     """Nothing acts: what is left is the rounding of the coordinates."""
     cards = joint("CPE8", even(-0.15, 2.15, 5), even(0.0, 2.0, 6), angle)
-    deck = write(tmp_path / "gap.inp", ["*OPTIONS, WIDTH=200"], without_unused_surfaces(
-        [*cards, "*STEP", "*STATIC, DIRECT", "1., 1.", "*BOUNDARY", "LOW.BOTTOM, 1, 2",
-         "UP.TOP, 1, 2", "*END STEP"]))
+    deck = deck_of(tmp_path / "gap.inp", cards, ["LOW.BOTTOM, 1, 2", "UP.TOP, 1, 2"])
     assert np.abs(contact(solve(deck))["gap"]).max() < 1e-14
 
 
@@ -214,7 +222,8 @@ def test_three_stacked_blocks_share_no_node_and_press_alike(tmp_path):
         left = [n for n, (x, y) in nodes.items() if x == 0.0]
         supports = ["A.BOTTOM, 2", *(f"{n}, 1" for n in left), "A.BOTTOM, 11, 11, 0.",
                     f"D.TOP, 11, 11, {HOT}"]
-        result = press(cards, *supports, loads=[f"D.TOP, P, {PRESSURE}"], path=tmp_path / "three.inp")
+        result = press(cards, *supports, loads=[f"D.TOP, P, {PRESSURE}"],
+                       path=tmp_path / "three.inp")
         for name in ("ONE", "TWO"):
             assert_uniform(contact(result, name))
 
@@ -230,9 +239,7 @@ def test_a_pairing_that_does_not_fit_is_refused(tmp_path, card, message):
     cards = joint("CPE4", even(0.0, 2.0, 5), even(0.0, 2.0, 4))
     at = next(k for k, line in enumerate(cards) if line.startswith("*CONTACT PAIR"))
     cards[at] = card
-    deck = write(tmp_path / "refused.inp", ["*OPTIONS, WIDTH=200"], without_unused_surfaces(
-        [*cards, "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "LOW.BOTTOM, 1, 2", "UP.TOP, 1, 2",
-         "*END STEP"]))
+    deck = deck_of(tmp_path / "refused.inp", cards, ["LOW.BOTTOM, 1, 2", "UP.TOP, 1, 2"])
     process = run("check", deck)
     assert process.returncode == 1
     assert message in process.stderr
@@ -241,9 +248,7 @@ def test_a_pairing_that_does_not_fit_is_refused(tmp_path, card, message):
 @pytest.mark.parametrize("shift", [3.0, -2.5])
 def test_faces_of_which_none_is_opposite_are_refused(tmp_path, shift):
     cards = joint("CPE8", even(shift, shift + 2.0, 5), even(0.0, 2.0, 4))
-    deck = write(tmp_path / "apart.inp", ["*OPTIONS, WIDTH=200"], without_unused_surfaces(
-        [*cards, "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "LOW.BOTTOM, 1, 2", "UP.TOP, 1, 2",
-         "*END STEP"]))
+    deck = deck_of(tmp_path / "apart.inp", cards, ["LOW.BOTTOM, 1, 2", "UP.TOP, 1, 2"])
     process = run("check", deck)
     assert process.returncode == 1
     assert "no face of the master lies opposite" in process.stderr
@@ -273,3 +278,28 @@ def test_sides_with_midside_nodes_off_the_middle_pass(tmp_path):
                           path=tmp_path / "off.inp"))
     assert_uniform(found)
     assert all(b > a for a, b in pairwise(found["s"]))
+
+
+HELD = [("CPE4", 5, 4, False), ("CPE4", 4, 5, True), ("CPE4", 13, 4, False), ("CPE4", 6, 6, True),
+        ("CPE8", 7, 2, False), ("CPE8", 6, 3, True)]
+
+
+@pytest.mark.parametrize(("kind", "slave", "master", "runs"), HELD)
+@pytest.mark.parametrize("friction", [None, 0.3])
+def test_a_held_slave_presses_uniformly_or_is_refused(tmp_path, kind, slave, master, runs,
+                                                      friction):
+    """All of its nodes are held: forces of more corners than the master has nodes would be
+    undetermined. Exchanged, the faces always have a solution."""
+    for swap in (False, True):
+        cards = joint(kind, even(0.0, 2.0, slave), even(0.0, 2.0, master),
+                      slave="LOW" if swap else "UP", poisson=0.0, friction=friction)
+        deck = deck_of(tmp_path / "held.inp", cards,
+                       ["UP, 1, 2", "LOW.LEFT, 1", "LOW.RIGHT, 1"], "*DSLOAD",
+                       f"LOW.BOTTOM, P, {PRESSURE}")
+        if runs or swap:
+            np.testing.assert_allclose(contact(solve(deck))["pressure"], PRESSURE, rtol=EXACT)
+        else:
+            process = run("check", deck)
+            assert process.returncode == 1
+            assert "step 1: contact pair C: *BOUNDARY holds slave node" in process.stderr
+            assert "exchange slave and master" in process.stderr

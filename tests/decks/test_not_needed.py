@@ -1,4 +1,4 @@
-"""What docs/deck.md calls read and not needed: it changes nothing, and the listing says so."""
+"""What docs/deck.md calls ignored: it changes nothing, and the listing says so."""
 
 import pytest
 from blocks import write
@@ -58,7 +58,7 @@ def test_what_is_not_needed_changes_nothing(tmp_path, name):
     changed = "\n".join(new if card == old else card for card in cards).splitlines()
     judge(tmp_path, changed, checks)
     text = (tmp_path / "deck.lst").read_text()
-    notes = text[text.index("\nDEFAULTS AND CARDS NOT NEEDED"):text.index("\nINCREMENTS")]
+    notes = text[text.index("\nDEFAULTS AND IGNORED CARDS"):text.index("\nINCREMENTS")]
     assert said in notes, notes
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from blocks import without_unused_surfaces, write
 from deck_runs import CYLINDER, HERTZ, assert_alike, copy_deck, run, solve
-from physics import follows, judge, material, mesh, nodes_of, outer_nodes, side_shares
+from physics import (follows, judge, judge_linear_fields, material, mesh, nodes_of,
+                     side_shares)
 from test_physics_loads import BLOCK, HEIGHT, block, static, stressed, top_forces
 
 import lame
-import plates
 
 sys.path.insert(0, str(CYLINDER.parent))
 import make_decks  # noqa: E402
@@ -47,22 +47,8 @@ def test_bending_of_one_element(tmp_path):
 @pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CPE6", "CPS8", "CPS6", "CPE4", "CPE3"])
 def test_patch_of_distorted_elements_is_exact(tmp_path, kind):
     """Linear displacements and temperatures, given node by node, at midside nodes too."""
-    young, poisson, conductivity = 1000.0, 0.3, 2.0
-    cards = mesh("BODY", [0.0, 0.6, 1.5, 2.0], [0.0, 0.5, 1.2], kind, skew=0.1)
-    plane = "strain" if kind.startswith("CPE") else "stress"
-    strain = np.array([1e-3, -4e-4, 7e-4])
-    values = ["*BOUNDARY"]
-    for node, (x, y) in outer_nodes(cards).items():
-        (u, v), = plates.displacements([(x, y)], strain)
-        values += [f"{node}, 1, 1, {float(u)!r}", f"{node}, 2, 2, {float(v)!r}",
-                   f"{node}, 11, 11, {50.0 + 20.0 * x - 30.0 * y!r}"]
-    stress = plates.stress(plates.isotropic(young, poisson), strain, plane)
-    deck = [*FIRST, *cards, *material("BODY", (young, poisson), conductivity=conductivity), "*STEP",
-            "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", *values, "*END STEP"]
-    checks = [(f"S{name}", "BODY", "LAST", value, 1e-10, "ABS")
-              for name, value in zip(("11", "22", "33", "12"), stress, strict=True)]
-    judge(tmp_path, deck, [*checks, ("HFL1", "BODY", "LAST", -40.0, 1e-10),
-                           ("HFL2", "BODY", "LAST", 60.0, 1e-10)])
+    judge_linear_fields(tmp_path, FIRST, mesh("BODY", [0.0, 0.6, 1.5, 2.0], [0.0, 0.5, 1.2], kind,
+                                              skew=0.1), kind)
 
 
 def test_forces_on_midside_nodes_are_shared(tmp_path):

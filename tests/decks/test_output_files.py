@@ -88,7 +88,8 @@ def test_a_second_run_with_the_same_output_stops_before_it_solves(tmp_path):
         assert first.returncode == 5
     with h5py.File(tmp_path / "long.vtkhdf") as file:
         assert len(file["history/time"]) == len(lines_of(tmp_path / "long.sta"))
-    assert names(tmp_path) == ["long.cvg", "long.inp", "long.lst", "long.sta", "long.vtkhdf"]
+    assert names(tmp_path) == ["long.contact.vtkhdf", "long.cvg", "long.inp", "long.lst", "long.sta",
+                               "long.vtkhdf"]
     assert "ENDED EARLY" in (tmp_path / "long.lst").read_text()
 
 
@@ -103,7 +104,7 @@ def test_the_lock_of_a_killed_run_dies_with_it(tmp_path):
     (tmp_path / "long.vtkhdf.mine.tmp").write_bytes(b"not of this program")
     process = run("run", "--quiet", short, "--out", tmp_path)
     assert process.returncode == 0, process.stderr
-    assert names(tmp_path) == ["long.cvg", "long.inp", "long.lst", "long.sta", "long.vtkhdf",
+    assert names(tmp_path) == ["long.contact.vtkhdf", "long.cvg", "long.inp", "long.lst", "long.sta", "long.vtkhdf",
                                "long.vtkhdf.mine.tmp"]
 
 

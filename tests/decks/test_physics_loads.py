@@ -280,6 +280,13 @@ def test_flux_into_a_face(tmp_path, face):
     follows(tmp_path, make, 30.0, -4.0)
 
 
+@pytest.mark.changes("DSFLUX")
+def test_flux_into_a_surface(tmp_path):
+    follows(tmp_path, lambda flux: (
+        bar(*heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", "*DSFLUX", f"BODY.RIGHT, S, {flux!r}")),
+        temperatures(lambda x: 20.0 + flux * x / K)), 30.0, -4.0)
+
+
 @pytest.mark.parametrize("kind", ["CPE6", "CPE8", "CPE8R"])
 @pytest.mark.changes("DFLUX")
 def test_heat_source(tmp_path, kind):
@@ -295,13 +302,16 @@ HOT, COLD = (400.0, 3.0), (30.0, 7.0)
 
 
 @pytest.mark.parametrize("other", [((380.0, 3.0), COLD), ((400.0, 3.5), COLD)])
-@pytest.mark.changes("FILM")
-def test_films_on_both_sides_of_a_wall(tmp_path, other):
+@pytest.mark.parametrize(("card", "faces"), [
+    pytest.param("FILM", ("1, F4", "2, F2"), marks=pytest.mark.changes("FILM")),
+    pytest.param("SFILM", ("BODY.LEFT, F", "BODY.RIGHT, F"), marks=pytest.mark.changes("SFILM"))])
+def test_films_on_both_sides_of_a_wall(tmp_path, card, faces, other):
     def make(films):
         (hot, film_hot), (cold, film_cold) = films
-        flux, faces = conduction.wall(LENGTH, K, hot, cold, film_hot, film_cold)
-        return bar(*heat("*FILM", f"1, F4, {hot}, {film_hot}", f"2, F2, {cold}, {film_cold}")), [
-            *temperatures(lambda x: faces[0] - flux * x / K),
+        flux, ends = conduction.wall(LENGTH, K, hot, cold, film_hot, film_cold)
+        return bar(*heat(f"*{card}", f"{faces[0]}, {hot}, {film_hot}",
+                         f"{faces[1]}, {cold}, {film_cold}")), [
+            *temperatures(lambda x: ends[0] - flux * x / K),
             ("heat_in", "", "LAST", 0.5 * flux, 1e-10), ("heat_out", "", "LAST", 0.5 * flux, 1e-10),
             ("heat_imbalance", "", "LAST", 0.0, 1e-10, "ABS")]
 
@@ -329,12 +339,16 @@ def test_course_of_a_film(tmp_path, options, sinks, films):
     deck = bar(*TENT, *heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", f"*FILM{options}",
                             "2, F2, 300., 4.", times="0.25, 1."))
     judge(tmp_path, deck, filmed(300.0, 4.0, (0.25, 0.5, 1.0), sinks, films))
+    notes = (tmp_path / "deck.lst").read_text()
+    assert ("the coefficient ramps over the step" in notes) == (films == (0.25, 0.5, 1))
+    assert ("the sink temperature acts whole at once" in notes) == (sinks == (1, 1, 1))
 
 
 def test_film_of_a_step_that_jumps(tmp_path):
     deck = bar(*heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", "*FILM", "2, F2, 300., 4.",
                      times="0.25, 1.", first="*STEP, AMPLITUDE=STEP"))
     judge(tmp_path, deck, filmed(300.0, 4.0, (0.25, 0.5, 1.0), films=(1, 1, 1)))
+    assert "the coefficient acts whole at once" in (tmp_path / "deck.lst").read_text()
 
 
 @pytest.mark.changes("FILM")
@@ -433,6 +447,8 @@ LOADS = {
                  ("U2", "BODY.TOP", 0.01)),
     "TEMPERATURE": (static, lambda o: [f"*TEMPERATURE{o}", "BODY, 50."], held_hot,
                     ("S22", "BODY", held_stress(50.0))),
+    "DSFLUX": (heat, lambda o: [f"*DSFLUX{o}", "BODY.RIGHT, S, 10."], "cold",
+               ("HFL1", "BODY", -10.0)),
     "DFLUX": (heat, lambda o: [f"*DFLUX{o}", "2, S2, 10."], "cold", ("HFL1", "BODY", -10.0)),
     "CFLUX": (heat, lambda o: [f"*CFLUX{o}", *(f"{n}, 11, {s * 10.0!r}" for n, s in side_shares(
         mesh("BODY", XS, [0.0, 0.5]), 0, LENGTH).items())], "cold", ("HFL1", "BODY", -10.0)),

@@ -173,7 +173,6 @@ def test_a_cantilever_of_tied_halves_converges_to_the_beam(tmp_path, kind, falls
     """The tie carries the shear along the neutral axis, to its ends, which are held on both
     sides; errors fall with the order of the elements."""
     errors = [cantilever(tmp_path, kind, count) for count in (2, 4, 8)]
-    print(kind, errors)
     assert errors[0] / errors[1] > falls
     assert errors[1] / errors[2] > falls
 
@@ -210,7 +209,6 @@ def shrink_ring(folder, kind, counts):
 def test_a_shrink_ring_that_is_tied_converges_to_lame(tmp_path, kind, falls):
     """A closed face whose nodes do not match; nothing else holds the ring."""
     errors = [shrink_ring(tmp_path, kind, counts) for counts in ((16, 24), (32, 48))]
-    print(kind, errors)
     assert errors[0] / errors[1] > falls
 
 
@@ -307,9 +305,10 @@ def test_a_tie_stands_beside_contact_that_shares_its_nodes(tmp_path, rows, frict
     pressed along by the tie: the whole force arrives at the table, with its moment."""
     result = solve(deck(tmp_path / "press.inp",
                         on_a_table(["*TIE, NAME=SEAM", "TWO.LEFT, ONE.RIGHT"], rows, friction),
-                        COUPLED, ["*BOUNDARY", *(() if friction else ("2001, 1",)), "TABLE.BOTTOM, 1, 2", "TABLE.BOTTOM, 11, 11, 0.", "*DSLOAD",
-                         "ONE.TOP, P, 6.", "TWO.TOP, P, 2.", "*DFLUX", "TWO.TOP, S, 9.",
-                         "*END STEP"]))
+                        COUPLED, ["*BOUNDARY", *(() if friction else ("2001, 1",)),
+                                  "TABLE.BOTTOM, 1, 2", "TABLE.BOTTOM, 11, 11, 0.", "*DSLOAD",
+                                  "ONE.TOP, P, 6.", "TWO.TOP, P, 2.", "*DFLUX", "TWO.TOP, S, 9.",
+                                  "*END STEP"]))
     assert_balanced(result)
     with h5py.File(result) as file:
         force = [file[f"contact/{name}/normal_force"][-1] for name in "AB"]

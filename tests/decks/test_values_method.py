@@ -219,7 +219,7 @@ def written(deck, folder):
     for line in deck.with_suffix(".lst").read_text().splitlines():
         if line.startswith("INCREMENT "):
             increment = int(line.split()[1])
-        if line.strip() == "CONTACT PAIRS OF FACE":
+        if line.strip() == "CONTACT POINTS OF FACE":
             tables.append(increment)
     return times, tables
 

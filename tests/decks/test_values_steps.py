@@ -99,6 +99,11 @@ REPLACED = {
     "FILM": (bar, heat, [f"1, F4, {HOT[0]}, {HOT[1]}", f"2, F2, {COLD[0]}, {COLD[1]}"],
              [f"2, F2, {COLD[0]}, {COLD[1]}"],
              {"MOD": at_right(WALL[1]), "NEW": at_right(COLD[0])}),
+    "DSFLUX": (cold_bar, heat, ["BODY.RIGHT, S, 10."], ["BODY.TOP, S, 0."],
+               {"MOD": at_right(10.0 * LENGTH / K), "NEW": at_right(0.0)}),
+    "SFILM": (bar, heat, [f"BODY.LEFT, F, {HOT[0]}, {HOT[1]}", f"BODY.RIGHT, F, {COLD[0]}, "
+                          f"{COLD[1]}"], [f"BODY.RIGHT, F, {COLD[0]}, {COLD[1]}"],
+              {"MOD": at_right(WALL[1]), "NEW": at_right(COLD[0])}),
 }
 
 
@@ -157,16 +162,19 @@ def test_ramp_down_of_what_ends(tmp_path):
     judge(tmp_path, deck, [("NT", "BODY.LEFT", 1.5, faces[0], SMALL)], name="films")
 
 
-@pytest.mark.parametrize(("keyword", "factors"), [
-    pytest.param("AMPLITUDE", (0.5, 1.0), marks=pytest.mark.changes("FILM, AMPLITUDE")),
-    pytest.param("FILM AMPLITUDE", (1.0, 0.5), marks=pytest.mark.changes("FILM, FILM AMPLITUDE"))])
-def test_amplitudes_of_a_film(tmp_path, keyword, factors):
+@pytest.mark.parametrize(("card", "keyword", "factors"), [
+    pytest.param(card, keyword, factors, marks=pytest.mark.changes(f"{card}, {keyword}"))
+    for card in ("FILM", "SFILM")
+    for keyword, factors in (("AMPLITUDE", (0.5, 1.0)), ("FILM AMPLITUDE", (1.0, 0.5)))])
+def test_amplitudes_of_a_film(tmp_path, card, keyword, factors):
     """At 0.25 TENT is 0.5; both sink and coefficient act whole in this step without it."""
     def make(options):
         sink, film = factors if options else (1.0, 1.0)
         _, faces = conduction.wall(LENGTH, K, 20.0, 300.0 * sink, film_cold=4.0 * film)
-        deck = bar(*TENT, *heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", f"*FILM{options}",
-                                "2, F2, 300., 4.", times="0.25, 1.", first="*STEP, AMPLITUDE=STEP"))
+        face = "2, F2" if card == "FILM" else "BODY.RIGHT, F"
+        deck = bar(*TENT, *heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", f"*{card}{options}",
+                                f"{face}, 300., 4.", times="0.25, 1.",
+                                first="*STEP, AMPLITUDE=STEP"))
         return deck, [("NT", "BODY.RIGHT", 0.25, faces[1], 1e-10)]
 
     follows(tmp_path, make, "", f", {keyword}=TENT")

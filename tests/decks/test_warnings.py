@@ -180,9 +180,9 @@ def test_conductance_that_rounding_leaves_unknown(tmp_path):
                      [f"*FIXED POINT, TOL={tolerance}"], heated)
         process = run("run", deck, "--out", tmp_path)
         assert process.returncode == 0, process.stderr
-        summary = r"solved, 2 increments in [\d.]+ s; the conductance of the contacts is known to \S+ only"
+        summary = r"solved, 2 increments in [\d.]+ s; the contact conductance is accurate to \S+ only"
         assert bool(re.search(summary, process.stdout)) == warned
-        found = re.findall(r"2: the conductance of the contacts is known to (\S+) only, "
+        found = re.findall(r"2: the contact conductance is accurate to (\S+) only, "
                            r"not to TOL=", process.stderr)
         assert len(found) == warned
         assert all(0 < float(value) < 1e-8 for value in found)
@@ -205,7 +205,7 @@ def test_nodes_that_all_but_coincide(tmp_path, side, told):
     found = warnings(tmp_path, deck, step)
     assert len(found) == told
     if told:
-        assert float(re.search(r"known to (\S+) only", one(found, "1, "))[1]) == pytest.approx(8.9e-6, rel=0.01)
+        assert float(re.search(r"accurate to (\S+) only", one(found, "1, "))[1]) == pytest.approx(8.9e-6, rel=0.01)
         assert "shortest side is 5E-6 of its longest" in found[0][0]
 
 

@@ -9,12 +9,14 @@ import importlib
 import re
 import sys
 import tempfile
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PICTURES = DOCS / "pictures"
+COLUMNS = 100
 
 
 @dataclass
@@ -28,7 +30,7 @@ class Table:
 
     def markdown(self):
         """Return the lines of the table."""
-        lines = [f"### {self.title}", "", *([self.text, ""] if self.text else [])]
+        lines = [f"### {self.title}", "", *wrapped(self.text)]
         lines += ["| " + " | ".join(self.head) + " |", "|" + "---|" * len(self.head)]
         return lines + ["| " + " | ".join(map(shown, row)) + " |" for row in self.rows] + [""]
 
@@ -56,15 +58,35 @@ def verdict(holds):
     return "pass" if holds else "FAIL"
 
 
+def wrapped(text):
+    """Return the lines of prose, wrapped, and an empty one; tables, headings, pictures and code
+    stay as they are."""
+    kept, paragraphs = r"[|#!]| {4}|$", []
+    for line in text.strip().splitlines():
+        if not paragraphs or re.match(kept + "|- ", line) or re.match(kept, paragraphs[-1]):
+            paragraphs.append(line)
+        else:
+            paragraphs[-1] += " " + line.strip()
+    lines = []
+    for paragraph in paragraphs:
+        # What would begin a list or a heading stays behind the word before it.
+        bound = re.sub(r"(?<=\S) (?=([-+*#>]|\d+[.)]) )", "\0", paragraph)
+        lines += [paragraph] if re.match(kept, paragraph) else textwrap.wrap(
+            bound, COLUMNS, break_long_words=False, break_on_hyphens=False,
+            subsequent_indent="  " * bound.startswith("- "))
+    return [*(line.replace("\0", " ") for line in lines), ""] if lines else []
+
+
 def lines_of(part):
     """Return the lines of a table, a picture or a text."""
-    return [part.strip(), ""] if isinstance(part, str) else part.markdown()
+    return wrapped(part) if isinstance(part, str) else part.markdown()
 
 
 def masked(lines):
-    """Return the text of lines without the digits of its numbers."""
+    """Return the words of lines without the digits of their numbers: where lines end depends on
+    these."""
     number = r"(?<![\w.])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
-    return re.sub(number, "#", "\n".join(lines))
+    return re.sub(number, "#", " ".join(" ".join(lines).split()))
 
 
 def check_verdicts(tables):
@@ -109,14 +131,14 @@ class Document:
             sys.exit(f"no theme {', '.join(sorted(unknown))}; there are {', '.join(themes)}")
         for name in names or themes:
             sections[themes[name].TITLE] = self.section(themes[name])
-        lines = self.preface.splitlines() + [""]
+        lines = wrapped(self.preface)
         for theme in themes.values():
             lines += sections.get(theme.TITLE, [])
         self.path.write_text("\n".join(lines).rstrip() + "\n")
 
     def section(self, theme):
         """Run a theme, draw its pictures and return its lines."""
-        lines = [f"## {theme.TITLE}", "", *([theme.TEXT.strip(), ""] if theme.TEXT.strip() else [])]
+        lines = [f"## {theme.TITLE}", "", *wrapped(theme.TEXT)]
         with tempfile.TemporaryDirectory() as folder:
             for part in theme.tables(Path(folder)):
                 lines += lines_of(part)

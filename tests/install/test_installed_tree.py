@@ -53,6 +53,7 @@ def test_installed_scripts_draw_and_compare(prefix, result):
     environment = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
     run(post / "plot", "mesh", result, "--out", result.parent, env=environment)
     assert (result.parent / "hertz.mesh.png").stat().st_size > 1000
+    run(post / "report", result, "--out", result.parent, env=environment)
     run(post / "compare", result, result, "--out", result.parent, env=environment)
 
 

@@ -1,10 +1,12 @@
 """post/plot: every picture and table is written, tables hold the file's values, errors are told."""
 
 import csv
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import h5py
 import numpy as np
@@ -13,7 +15,7 @@ import pytest
 POST = Path(__file__).resolve().parents[2] / "post"
 sys.path.insert(0, str(POST))
 
-from matplotlib.collections import PolyCollection  # noqa: E402
+from matplotlib.collections import PolyCollection, QuadMesh  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from synthetic import (  # noqa: E402
     FRICTION,
@@ -23,7 +25,8 @@ from synthetic import (  # noqa: E402
     write_result,
 )
 
-from thercon_post import element_fields, fields, mesh, profiles, style, zones  # noqa: E402
+from thercon_post import element_fields, field_colours, fields, mesh  # noqa: E402
+from thercon_post import profiles, style, zones  # noqa: E402
 from thercon_post.cells import Cells  # noqa: E402
 from thercon_post.cli import main, parser, spread  # noqa: E402
 from thercon_post.fine_mesh import refine  # noqa: E402
@@ -272,16 +275,16 @@ def test_fields_are_those_of_the_file_at_the_load(draw, result, tmp_path):
 
 def test_values_that_differ_by_rounding_have_one_colour():
     values = -10.0 + 1e-14 * np.array([-3.0, 0.0, 2.0])
-    levels = fields.limits(values, "yy", 10.0)
+    levels = field_colours.limits(values, "yy", 10.0)
     assert levels[0] < -10.0 < levels[-1]
-    assert np.ptp(fields.settle(values, levels, 10.0)) == 0.0
+    assert np.ptp(field_colours.settle(values, levels, 10.0)) == 0.0
     noise = 1e-15 * np.array([-1.0, 0.5, 1.0])
-    levels = fields.limits(noise, "xx", 10.0)
-    assert np.ptp(levels) > 0.1 and np.ptp(fields.settle(noise, levels, 10.0)) == 0.0
+    levels = field_colours.limits(noise, "xx", 10.0)
+    assert np.ptp(levels) > 0.1 and np.ptp(field_colours.settle(noise, levels, 10.0)) == 0.0
     # What differs by more stays as it is.
     values = np.array([0.0, 4.0, 4.0 + 1e-6, 10.0])
-    levels = fields.limits(values, "von_mises", 10.0)
-    np.testing.assert_array_equal(fields.settle(values, levels, 10.0), values)
+    levels = field_colours.limits(values, "von_mises", 10.0)
+    np.testing.assert_array_equal(field_colours.settle(values, levels, 10.0), values)
 
 
 def test_the_window_of_the_contact_follows_the_deformed_faces(result):
@@ -344,6 +347,109 @@ def test_errors_of_elements_of_several_types_stay_with_their_elements():
 def test_fields_of_elements_are_drawn_apart_from_those_of_nodes(fail, result):
     message = fail("fields", result, "--quantity", "stress_error", "yy")
     assert "stress_error and heat_flux_error are fields of elements" in message
+
+
+def test_bodies_whose_ranges_differ_tenfold_have_colour_bars_of_their_own(kept, result):
+    def bars(figure):
+        return [axes.get_title(loc="left") for axes in figure.axes[0].child_axes]
+
+    with h5py.File(result, "r+") as file:
+        data = file["VTKHDF/PointData/temperature"]
+        points = len(file["VTKHDF/Points"])
+        upper = np.tile(np.arange(points) < points // 2, 15)
+        given = data[...]
+        for factor, titles in ((0.2, [""]), (0.01, ["body 1", "body 2"]), (0.0, [""])):
+            data[...] = np.where(upper, given, 20.0 + factor * given)
+            file.flush()
+            (figure,) = kept("fields", result, "--quantity", "temperature")
+            assert bars(figure) == titles
+        file["VTKHDF/CellData/stress_error"][...] = np.tile(np.where(np.arange(80) < 40, 1.0, 50.0)
+                                                            * np.linspace(0.0, 1.0, 80), 15)
+        file.flush()
+        (figure,) = kept("fields", result, "--quantity", "stress_error")
+        assert bars(figure) == ["body 2", "body 1"]
+
+
+def test_bodies_share_colours_with_the_widest_range_that_is_not_ten_times_theirs():
+    near = {1: 100.0, 2: 11.0, 3: 5.0, 4: 0.0, 5: 0.4}
+    near = {body: np.array([50.0, 50.0 + width]) for body, width in near.items()}
+    assert field_colours.scale_groups(near) == [[1, 2], [3], [5, 4]]
+    assert field_colours.scale_groups({1: np.array([7.0, 7.0]), 2: np.array([])}) == [[1]]
+
+
+def test_profiles_and_fields_name_load_and_time(kept, result):
+    with h5py.File(result, "r+") as file:
+        file["history/time"][...] /= 100.0
+        file["VTKHDF/Steps/Values"][...] /= 100.0
+    words = "temperature of node set TOP 540 \N{DEGREE SIGN}C, time 5.4"
+    (figure,) = kept("profiles", result, "--load", 540)
+    assert figure.get_supxlabel() == words
+    (figure,) = kept("fields", result, "--load", 540, "--quantity", "temperature")
+    assert figure.get_supxlabel() == words
+    (figure,) = kept("profiles", result, "--load", 180, 540)
+    legend = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert legend[-2:] == ["180 \N{DEGREE SIGN}C, time 1.8", "540 \N{DEGREE SIGN}C, time 5.4"]
+
+
+def test_magnified_displacements_name_their_factor_and_why_bodies_overlap(result):
+    def words(factor):
+        with Result(result) as opened:
+            return fields.words_below(opened, 8, factor)
+
+    assert r"displacements $\times$ 20" in words(20.0)
+    assert "bodies that touch seem to overlap" in words(20.0).replace("\n", " ")
+    assert r"$\times$ 0.5" in words(0.5) and "overlap" not in words(0.5)
+    assert "displacements" not in words(1.0)
+    with h5py.File(result, "r+") as file:  # faces that touch in the mesh, as those of a crack
+        file["contact/CYLINDER/master_node"][...] = file["contact/CYLINDER/slave_node"][()]
+    assert r"$\times$ 20" in words(20.0) and "overlap" not in words(20.0)
+
+
+def test_uniform_contact_is_tinted_and_names_hide_no_symbol(kept, result):
+    with h5py.File(result, "r+") as file:
+        status = file["contact/CYLINDER/status"]
+        status[:5] = 0
+        status[5:] = 1
+    (figure,) = kept("zones", result)
+    (axes,) = figure.axes
+    (tints,) = [each for each in axes.collections if isinstance(each, QuadMesh)]
+    np.testing.assert_array_equal(tints.get_array().ravel(), [0] * 5 + [1] * 10)
+    assert all(text.get_bbox_patch() is None for text in axes.texts)
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"contact point open", "contact point in slip"} <= set(legend)
+
+
+def test_contact_with_an_edge_inside_is_not_tinted(kept, result):
+    (figure,) = kept("zones", result)
+    assert not any(isinstance(each, QuadMesh) for each in figure.axes[0].collections)
+
+
+def test_principal_radial_and_hoop_stress_are_the_files_or_made_of_its_stress(tabulate, result,
+                                                                             tmp_path):
+    names = ["principal_1", "principal_3", "radial", "hoop"]
+    picture = "case.fields-principal_1-principal_3-radial-hoop.csv"
+    tabulate("fields", result, "--quantity", *names)
+    made = table(tmp_path, picture)
+    with h5py.File(result, "r+") as file:
+        points = len(file["VTKHDF/Points"])
+        xx, yy, zz, xy = file["VTKHDF/PointData/stress"][-points:].T
+        x, y = file["VTKHDF/Points"][:, :2].T
+        whole = [np.array([[a, d, 0], [d, b, 0], [0, 0, c]]) for a, b, c, d in zip(xx, yy, zz, xy)]
+        expected = np.linalg.eigvalsh(whole)
+        np.testing.assert_allclose(numbers(made["principal_1"]), expected[:, 2], atol=1e-12)
+        np.testing.assert_allclose(numbers(made["principal_3"]), expected[:, 0], atol=1e-12)
+        radius = np.hypot(x, y)
+        away = radius > 0.0
+        normal = np.column_stack((x, y))[away] / radius[away, None]
+        plane = np.array(whole)[away, :2, :2]
+        along = np.einsum("ni,nij,nj->n", normal, plane, normal)
+        np.testing.assert_allclose(numbers(made["radial"])[away], along, atol=1e-11)
+        np.testing.assert_allclose(numbers(made["hoop"])[away], (xx + yy)[away] - along, atol=1e-11)
+        file["VTKHDF/PointData/hoop_stress"] = np.arange(15.0 * points)
+        file["VTKHDF/Steps/PointDataOffsets/hoop_stress"] = np.arange(15) * points
+    tabulate("fields", result, "--quantity", *names)
+    np.testing.assert_array_equal(numbers(table(tmp_path, picture)["hoop"]),
+                                  np.arange(14.0 * points, 15.0 * points))
 
 
 def test_a_load_without_fields_names_the_nearest_with_fields(fail, tmp_path):
@@ -536,7 +642,8 @@ def test_mistakes_on_the_command_line_have_status_1(fail, result):
 
 
 def test_help_of_every_picture(capsys):
-    for picture in ([], ["mesh"], ["profiles"], ["zones"], ["fields"], ["convergence"], ["trade"]):
+    for picture in ([], ["mesh"], ["profiles"], ["zones"], ["fields"], ["convergence"], ["trade"],
+                    ["accuracy"]):
         with pytest.raises(SystemExit) as ended:
             main([*picture, "--help"])
         assert ended.value.code == 0
@@ -602,20 +709,31 @@ def test_launcher_takes_the_python_of_the_build_and_names_missing_packages(tmp_p
     assert told.stdout == f"build: {post / 'plot'} mesh a\n"
 
 
+TRADE = ("row,default,elements,level,contact_level,increment_factor,varied,status,reason,"
+         "increments,passes,runs,cpu_seconds,peak_megabytes,error_normal_force,error_heat_rate,"
+         "error_peak_pressure,error_edge_contact,error_edge_stick,error_temperature,"
+         "error_worst,pareto,recommended_10,recommended_1,recommended_0.1")  # fmt: skip
+
+
+def changed(row, **values):
+    """Return a row of a trade with other values in the columns named."""
+    cells = row.split(",")
+    for name, value in values.items():
+        cells[TRADE.split(",").index(name)] = str(value)
+    return ",".join(cells)
+
+
 def write_trade(path, change=None):
     """Write a made-up table of a trade; `change` alters its rows."""
-    head = ("row,default,elements,level,increment_factor,varied,status,reason,increments,passes,"
-            "runs,cpu_seconds,peak_megabytes,error_normal_force,error_heat_rate,"
-            "error_peak_pressure,error_edge_contact,error_edge_stick,error_temperature,"
-            "error_worst,pareto,recommended_10,recommended_1,recommended_0.1")  # fmt: skip
     rows = [
-        "1,0,Q4,0,2,,0,,4,9,7,0.01,10,0.1,,0.2,0,,,0.2,1,all,,",
-        "2,1,Q8,1,1,,0,,8,20,7,0.1,12,0.01,,0.004,1e-12,,,0.01,1,,all,",
-        "3,0,Q8,1,1,MUMPS,0,,8,20,7,0.2,14,0.01,,0.004,1e-12,,,0.01,0,,,",
-        '4,0,Q8,1,1,PICARD,2,"it fails, here",0,50,1,0.1,12,,,,,,,,0,,,',
-        "reference,,,,,,,,,,,,,0.001,,0.002,0,,,0.002,,,,",
+        "1,0,Q4,0,0,2,,0,,4,9,7,0.01,10,0.1,,0.2,0,,,0.2,1,all,,",
+        "2,1,Q8,1,0,1,,0,,8,20,7,0.1,12,0.01,,0.004,1e-12,,,0.01,1,,all,",
+        "3,0,Q8,1,0,1,MUMPS,0,,8,20,7,0.2,14,0.01,,0.004,1e-12,,,0.01,0,,,",
+        '4,0,Q8,1,0,1,PICARD,2,"it fails, here",0,50,1,0.1,12,,,,,,,,0,,,',
+        "5,0,Q8,0,2,1,,0,,8,20,7,0.05,11,0.02,,0.003,1e-12,,,0.02,1,,,",
+        "reference,,,,,,,,,,,,,,0.001,,0.002,0,,,0.002,,,,",
     ]
-    path.write_text("\n".join([head, *(change(rows) if change else rows)]) + "\n")
+    path.write_text("\n".join([TRADE, *(change(rows) if change else rows)]) + "\n")
     return path
 
 
@@ -627,9 +745,51 @@ def test_trade_draws_the_quantities_that_there_are(kept, tmp_path):
     force = figure.axes[1]
     points = {(line.get_xdata()[0], line.get_ydata()[0]) for line in force.lines
               if len(line.get_xdata()) == 1}  # fmt: skip
-    assert points == {(0.01, 10.0), (0.1, 1.0), (0.2, 1.0)}
+    assert points == {(0.01, 10.0), (0.05, 2.0), (0.1, 1.0), (0.2, 1.0)}
+    diamonds = [line.get_xdata()[0] for line in force.lines if line.get_marker() == "D"]
+    assert diamonds == [0.05]
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "failed, not drawn: 1" in labels
+    assert "finer at the contact" in labels
+
+
+def labelled_ticks(svg):
+    """Return the number of tick labels of every axis drawn in an SVG."""
+    space = "{http://www.w3.org/2000/svg}"
+    found = []
+    for group in ElementTree.parse(svg).iter(f"{space}g"):
+        if group.get("id", "").startswith("matplotlib.axis_"):
+            ticks = [each for each in group if re.match("[xy]tick_", each.get("id", ""))]
+            found.append(sum(any(part.get("id", "").startswith("text_") for part in tick)
+                             for tick in ticks))
+    return found
+
+
+@pytest.mark.parametrize("factor", [3.0, 1e-5])
+def test_axes_of_a_trade_have_two_labelled_ticks_at_least(draw, tmp_path, factor):
+    def scaled(rows):
+        near = [changed(row, cpu_seconds=0.03 * (1.0 + 0.1 * k),  # nearly one time
+                        error_normal_force=factor * 0.004 * (1.0 + 0.2 * k),
+                        error_peak_pressure=factor * 0.004, error_worst=factor * 0.005)
+                for k, row in enumerate(rows[:3])]
+        return [*near, rows[3], rows[5]]
+
+    draw("trade", write_trade(tmp_path / "deck.trade.csv", scaled))
+    found = labelled_ticks(tmp_path / "out" / "deck.trade.svg")
+    assert len(found) == 2 * 4 and min(found) >= 2
+
+
+def test_another_method_far_off_does_not_stretch_the_scale_of_a_trade(kept, tmp_path):
+    def spoilt(rows):
+        return [*rows[:2], changed(rows[2], error_normal_force=90.0), *rows[3:]]
+
+    (figure,) = kept("trade", write_trade(tmp_path / "deck.trade.csv", spoilt))
+    force = figure.axes[1]
+    low, high = force.get_ylim()
+    assert low < 1.0 and 10.0 < high < 30.0
+    (marked,) = [line for line in force.lines if line.get_marker() == "^"]
+    assert marked.get_ydata()[0] == high and marked.get_xdata()[0] == 0.2
+    assert "off the scale" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_trade_leaves_its_table_alone(draw, tmp_path):
@@ -645,5 +805,22 @@ def test_what_is_no_trade_is_refused(fail, result, tmp_path):
     other = tmp_path / "other.csv"
     other.write_text("load,edge\n1,2\n")
     assert "no table of thercon trade: no column row" in fail("trade", other)
-    empty = write_trade(tmp_path / "empty.trade.csv", lambda rows: [rows[3], rows[4]])
+    empty = write_trade(tmp_path / "empty.trade.csv", lambda rows: [rows[3], rows[5]])
     assert "nothing to draw" in fail("trade", empty)
+
+
+def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_path):
+    """Bounds over targets, at the CPU seconds of all rounds so far."""
+    assert "no accuracy was requested" in fail("accuracy", result)
+    asked = tmp_path / "asked.vtkhdf"
+    asked.write_bytes(result.read_bytes())
+    with h5py.File(asked, "a") as file:
+        group = file.create_group("accuracy")
+        group["cpu_seconds"], group["unknowns"] = [0.1, 0.3], [100, 900]
+        group["bounds/FACE/normal_force"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.05, 0.1]]
+        group["bounds/FACE/heat_rate"] = np.zeros((2, 4))
+    (figure,) = kept("accuracy", asked)
+    (line, limit) = figure.axes[0].get_lines()
+    np.testing.assert_allclose(line.get_xdata(), [0.1, 0.4])
+    np.testing.assert_allclose(line.get_ydata(), [4.0, 0.5])
+    assert list(limit.get_ydata()) == [1.0, 1.0]

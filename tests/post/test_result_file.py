@@ -2,6 +2,7 @@
 
 import re
 import shutil
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -13,7 +14,8 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 
 INCREMENTS, NODES, ELEMENTS, PAIRS = 45, 326, 92, 21
 ENDS, AXIS = 5 + 5, 13 + 13   # nodes of the heated and the cold section, of the axis of symmetry
-QUADRATIC_QUAD = 23
+QUADRATIC_QUAD, LINE = 23, 3
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 @pytest.fixture(scope="module")
@@ -220,7 +222,8 @@ def test_the_zone_diagram_of_the_listing_is_the_status(results, stored):
     lines = listing_of(results)
     assert max(map(len, lines)) <= 132
     first = next(i for i, line in enumerate(lines) if line.startswith("ZONE DIAGRAM"))
-    rows = [line.split() for line in lines[first:] if re.match(r" *\d+ +\S+ +I", line)]
+    rows = [line.split() for line in lines[first:lines.index("SECONDS")]
+            if re.match(r" *\d+ +\S+ +I", line)]
     (name,) = stored["contact"]
     numerals = np.array(["I", "II", "III"])[stored[f"contact/{name}/status"]]
     assert [row[2:] for row in rows] == numerals.tolist()
@@ -262,3 +265,88 @@ def test_a_run_without_an_increment_leaves_the_older_result(results, tmp_path):
     assert increments_in(tmp_path / "cylinder.cvg")
     assert set(increments_in(tmp_path / "cylinder.cvg")) == {1}
     assert "ENDED EARLY" in (tmp_path / "cylinder.lst").read_text()
+
+
+def every_dataset(file):
+    """Return all datasets of an open file by their paths."""
+    found = {}
+    file.visititems(lambda name, item: found.update({name: item})
+                    if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def test_every_dataset_says_what_it_is_and_the_document_says_the_same(results):
+    document = (DOCS / "results.md").read_text()
+    for name in ("cylinder.vtkhdf", "cylinder.contact.vtkhdf"):
+        with h5py.File(results / name) as file:
+            for path, dataset in every_dataset(file).items():
+                said, unit = dataset.attrs["description"], dataset.attrs["unit"]
+                assert said and unit, path
+                if dataset.ndim == 2 and dataset.shape[1] in (3, 4) and "edges_" not in path:
+                    components = dataset.attrs.get("components", "x y z").split()
+                    assert len(components) == dataset.shape[1], path
+                group, _, last = path.rpartition("/")
+                if group.endswith(("Steps", "Offsets", "VTKHDF", "errors")) or group == "":
+                    continue
+                if (group, name) == ("VTKHDF/PointData", "cylinder.contact.vtkhdf"):
+                    assert f"| `{last}` |" in document
+                    continue
+                assert re.search(rf"^\| `{last}` .*\| {re.escape(said)}[ |(]", document,
+                                 re.MULTILINE) or last == "interface", path
+
+
+def test_units_are_those_of_the_deck(stored):
+    units = {"history/load": "C", "history/heat_in": "W", "contact/FACE/pressure": "MPa",
+             "contact/FACE/weight": "cm^2", "contact/FACE/normal_force": "MPa cm^2",
+             "contact/FACE/conductance": "W/(cm^2 C)", "VTKHDF/PointData/heat_flux": "W/cm^2",
+             "VTKHDF/Points": "cm", "history/heat_imbalance": "-"}
+    assert {path: stored[path].attrs["unit"] for path in units} == units
+    assert stored["run"].attrs["format_version"] == 1
+
+
+@pytest.mark.parametrize("step", [0, INCREMENTS - 1])
+def test_vtk_reads_the_contact_faces_as_lines_with_their_quantities(results, stored, step):
+    reader = vtkHDFReader()
+    reader.SetFileName(str(results / "cylinder.contact.vtkhdf"))
+    reader.UpdateInformation()
+    times, grid = grid_at(reader, step)
+    face = stored["contact/FACE"]
+    assert list(times) == list(stored["history/time"])
+    assert (grid.GetNumberOfPoints(), grid.GetNumberOfCells()) == (PAIRS, PAIRS - 1)
+    assert {grid.GetCellType(cell) for cell in range(PAIRS - 1)} == {LINE}
+    xy = vtk_to_numpy(grid.GetPoints().GetData())
+    np.testing.assert_array_equal(xy[:, :2], np.transpose([face["x"], face["y"]]))
+    points = arrays_of(grid.GetPointData())
+    assert points.keys() == {name for name, item in face.items()
+                             if item.shape[-1] == PAIRS}
+    for name, values in points.items():
+        assert np.isfinite(values).all(), name
+        expected = face[name][()]
+        np.testing.assert_array_equal(values, expected if expected.ndim == 1 else expected[step])
+
+
+def test_the_recipe_of_the_document_exports_the_pressure(results, stored, monkeypatch):
+    monkeypatch.chdir(results)
+    (recipe,) = re.findall(r"```python\n(.*?)```", (DOCS / "results.md").read_text(), re.DOTALL)
+    exec(compile(recipe, "results.md", "exec"), {})
+    table = np.loadtxt("pressure.csv", delimiter=",")
+    np.testing.assert_allclose(table[:, 0], stored["contact/FACE/s"][()], rtol=1e-12)
+    np.testing.assert_allclose(table[:, 1], stored["contact/FACE/pressure"][-1], rtol=1e-12)
+
+
+def test_principal_radial_and_hoop_stresses_are_those_of_the_tensor(stored):
+    data = stored["VTKHDF/PointData"]
+    xx, yy, zz, xy = data["stress"][-NODES:].T
+    tensors = np.zeros((NODES, 3, 3))
+    tensors[:, 0, 0], tensors[:, 1, 1], tensors[:, 2, 2] = xx, yy, zz
+    tensors[:, 0, 1] = tensors[:, 1, 0] = xy
+    principal = np.linalg.eigvalsh(tensors)[:, ::-1]
+    scale = np.abs(tensors).max()
+    np.testing.assert_allclose(data["principal_stress"][-NODES:], principal, atol=1e-12 * scale)
+    x, y = stored["VTKHDF/Points"][:, :2].T
+    angle = np.arctan2(y, x)
+    radial = np.transpose([np.cos(angle), np.sin(angle), 0 * x])
+    around = np.transpose([-np.sin(angle), np.cos(angle), 0 * x])
+    for name, along in (("radial_stress", radial), ("hoop_stress", around)):
+        expected = np.einsum("ni,nij,nj->n", along, tensors, along)
+        np.testing.assert_allclose(data[name][-NODES:], expected, atol=1e-12 * scale)

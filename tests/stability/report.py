@@ -17,9 +17,9 @@ from document import Document, Table, verdict  # noqa: E402, F401  its folder is
 
 PREFACE = """# Stability at the extremes
 
-Where methods break: cases with their figures and a verdict, `pass` or `refused` where the program says clearly that
-it cannot. The document is written by `python tests/stability/report.py` from runs of the program; the tests
-`stability_*` run them again, the longest ones in part.
+Cases at which methods may fail, with their figures and a verdict: `pass`, or `refused` if the program
+says clearly that it cannot solve the case. The script `tests/stability/report.py` writes this
+document from runs of the program; the tests `stability_*` repeat them, the longest ones in part.
 """
 DOCUMENT = Document("stability.md", HERE, ("fixed_point", "contact", "extremes", "invariance",
                                            "time_steps"), PREFACE)

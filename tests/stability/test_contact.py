@@ -14,13 +14,13 @@ from report import Table, check_rows, verdict
 from test_held import strip
 
 import one_pair
-import receding
 
 TITLE = "Contact"
 TEXT = """
-Every increment is accepted only with the proof of its state: gaps and tractions computed afresh from the displacements of
-whole bodies, and all conditions (1.6) on them; the listing prints by how much they are violated, relative to the largest
-displacement or force. The last table has the largest violation in all runs of this theme.
+Every increment is accepted only after a check of its state: gaps and tractions are computed again
+from the displacements of whole bodies, and must satisfy all conditions (1.6). The listing prints
+their violation, relative to the largest displacement or force. The last table has the
+largest violation in all runs of this theme.
 """
 ROUNDING = 1e-9  # of the largest value; some hundred unknowns condensed and recovered leave 1e-12
 PROVEN = []  # outcomes of all runs
@@ -214,13 +214,9 @@ def layers(loads):
 
 def receding_contact(folder):
     """Return the table of a layer that lifts off when it is pressed."""
-    table = Table("Receding contact", ["load", "half-width", "pressure in the middle over load",
-                                       "difference from the first load", "verdict"],
+    table = Table("Receding contact", ["load", "half-width", "difference from the first load", "verdict"],
                   text="""A layer of height 1 on a rigid base without friction, pressed over a width of 1: contact shrinks at
-once, to a size that does not depend on the load. The first row is the integral equation (tests/reference/receding.py); nodes are
-0.025 apart.""")
-    extent, middle = receding.extent(HALF_LOAD)
-    table.rows.append(["theory", extent, middle, "", ""])
+once, to a size that does not depend on the load. How large it is, is judged in [verification.md](verification.md).""")
     loads = [1.0, 10.0, 1e-3]
     deck = solved_one(folder, "layer", layers(loads))
     pressure, edges, status = contact(deck, "P", "pressure", "edge_contact", "status")
@@ -228,9 +224,7 @@ once, to a size that does not depend on the load. The first row is the integral 
         change = abs(pressure[k] / load - pressure[0]).max() / pressure[0].max()
         holds = change < ROUNDING and (status[k] == status[0]).all()
         holds &= abs(edges[k] - edges[0]) < ROUNDING
-        holds &= abs(edges[k] - extent) < 0.025
-        holds &= abs(pressure[k, 0] / load / middle - 1) < 0.01
-        table.rows.append([load, edges[k], pressure[k, 0] / load, change, verdict(holds)])
+        table.rows.append([load, edges[k], change, verdict(holds)])
     return table
 
 
@@ -253,7 +247,7 @@ def closing_again(folder):
     """Return the table of cycles that open and close the same contact."""
     table = Table("Open, closed, open again: five cycles",
                   ["case", "pairs closed, most and least", "difference between cycles", "verdict"],
-                  text="""Frictionless states depend on the load alone; friction counts anew from every closing. So every
+                  text="""Frictionless states depend on the load alone; friction counts again from every closing. So every
 cycle ends where the first did.""")
     xs = [0.25 * i for i in range(9)]
     blocks = [*mesh("UP", xs, [0.01, 0.3, 1.0]), *mesh("LO", xs, [-1.0, -0.3, 0.0], first=1001),
@@ -354,38 +348,21 @@ def cylinders(down, moves):
 
 
 def partial_slip(folder):
-    """Return the table of Cattaneo's and Mindlin's contact."""
+    """Return the table of cylinders in partial slip, pushed to and fro."""
     table = Table(
-        "Partial slip of cylinders", ["shear over friction", "stick half-width over a: theory",
-                                      "found", "error of the shear traction", "verdict"],
-        text="""Cattaneo and Mindlin (K. L. Johnson, Contact Mechanics, 1985, section 7.2) in plane strain, a being the half-width
-of contact; nodes are a/18 apart. Shear tractions in parts of the largest friction.""")
+        "Partial slip of cylinders", ["shear traction", "change", "verdict"],
+        text="""Two like cylinders, pressed, pushed to and fro: the tractions of a cycle return, and those of the way
+back are those of the way there. [verification.md](verification.md) compares them with Cattaneo and Mindlin.""")
     reach = 1.1e-4
     deck = solved_one(folder, "mindlin", cylinders(2e-4, [reach, -reach, reach, -reach, reach]))
-    x, shear, pressure, status, normal, force = contact(
-        deck, "P", "x", "shear", "pressure", "status", "normal_force", "shear_force")
-    modulus = YOUNG / (1 - POISSON**2) / 2
-    a = math.sqrt(4 * normal[0] * RADIUS / math.pi / modulus)
-    peak = 2 * normal[0] / math.pi / a
-
-    def ellipse(width):
-        return width / a * np.sqrt(np.clip(1 - (x / width) ** 2, 0, None))
-
-    for row in range(1, 6):
-        share = -force[row] / MINDLIN / normal[row]
-        stick = a * math.sqrt(1 - share)
-        found = abs(x[status[row] == 2]).max()
-        error = abs(-shear[row] / MINDLIN / peak - ellipse(a) + ellipse(stick)).max()
-        holds = abs(found - stick) < SPACING and error < 0.1
-        table.rows.append([share, stick / a, found / a, error, verdict(holds)])
+    (shear,) = contact(deck, "P", "shear")
     scale = abs(shear).max()
     for name, one, other in (("the same a cycle later", 5, 15), ("two cycles later", 5, 25),
                              ("reversed, with the opposite sign", 5, 10)):
         sign = -1 if other == 10 else 1
         order = slice(None, None, sign)
         change = abs(shear[one] - sign * shear[other][order]).max() / scale
-        table.rows.append([name, "", "", change, verdict(change < 1e-6 if sign < 0
-                                                         else change < ROUNDING)])
+        table.rows.append([name, change, verdict(change < (1e-6 if sign < 0 else ROUNDING))])
     return table
 
 

@@ -13,9 +13,10 @@ from physics import material, mesh
 
 TITLE = "Values at the extremes"
 TEXT = """
-Each case is measured by a closed form or by an invariant: `deviation` is the largest difference, relative to the largest
-value expected, and `allowed` what it may be. `iterations` are all passes of the run, `smallest pivot` is that of the
-factors of the bodies over its diagonal entry, `residual` the larger of heat and force imbalance.
+Each case is compared with a closed form or an invariant: `deviation` is the largest difference,
+relative to the largest expected value, and `allowed` its limit. `iterations` are all passes of the
+run, `smallest pivot` is that of the factors of the bodies divided by its diagonal entry, `residual`
+is the larger of heat and force imbalance.
 """
 DEBUG = os.environ.get("THERCON_BUILD_TYPE", "Release") != "Release"
 FACES = ["*CONTACT PAIR, INTERACTION=I, NAME=F", "B.BOTTOM, A.TOP"]

@@ -16,12 +16,12 @@ from rods import Rods
 
 TITLE = "Fixed point of the conductance"
 TEXT = f"""
-Every method looks for omega = U(omega): NEWTON, ANDERSON, ZAITSEV, eq. (4.2), PICARD, eq. (4.1), and (4.2) with the constant g = 0.5,
-"relaxed 0.5". A method may give up, in words, after {MAXITER} passes on the rods and 50 on the cylinder; only NEWTON, the default, may not. What
+Every method solves omega = U(omega): NEWTON, ANDERSON, ZAITSEV, eq. (4.2), PICARD, eq. (4.1), and (4.2) with the constant g = 0.5,
+"relaxed 0.5". A method may give up, with a message, after {MAXITER} passes on the rods and 50 on the cylinder; only NEWTON, the default, may not. What
 a method finds must be a solution. All solutions of the rods are known in closed form, with 60 digits: roots of quadratics, and the state at rest
-where laws jump (`tests/reference/rods.py`). Where laws jump, pairs across one end may also be in unlike states, of which the closed forms know
-nothing; such states must satisfy the equations of both rods, assembled anew (`tests/stability/rod_equations.py`), and are counted. (4.1) can end only where |U'| < 1, and with g = 0.5 only where |0.5 + 0.5 U'| < 1: on R2 both cycle
-for ever, and that is their `pass`. Errors are those of omega, relative; "of what is allowed": of 2 (TOL + rounding)/min(|1 - U'|, 1), rounding
+where laws jump (`tests/reference/rods.py`). Where laws jump, contact points across one end may also be in different states, which the closed forms
+do not cover; such states must satisfy the equations of both rods, assembled independently (`tests/stability/rod_equations.py`), and are counted. (4.1) converges only if |U'| < 1, and with g = 0.5 only if |0.5 + 0.5 U'| < 1: on R2 both cycle
+without end, which counts as `pass`. Errors are those of omega, relative; "of what is allowed": of 2 (TOL + rounding)/min(|1 - U'|, 1), rounding
 being that of the displacements in omega. `coupling_gain` is compared with finite differences of U in `tests/decks/test_coupling_gain.py`.
 """
 BRANCHES = "open", "middle", "closed"
@@ -121,7 +121,7 @@ def steep_laws(folder, tally, extent):
     """Return the table of ever steeper laws."""
     table = Table("Ever steeper laws", ["closed law at p = 0", "kept", *GROUP],
                   text="R1, R1b and R2 with B = 1e-8, 1e-10, 1e-12 and 1e-14. Where laws jump, "
-                       "pairs may rest, and the other methods hand over to NEWTON.")
+                       "contact points may rest, and the other methods leave increments to NEWTON.")
     for factor, law in ((1.0, "A/B"), (100.0, "100 A/B"), (0.01, "A/(100 B)")):
         for kept in ("A", "A/B"):
             cases = steep_cases(kept, factor)
@@ -203,9 +203,9 @@ def with_a_jump(folder, extent):
                   ["deck", "refined", "increments", "method", "solved", "passes", "largest",
                    "increments with pairs at rest", "pairs", "first and last at rest, s",
                    "verdict"],
-                  text="omega = 0.8 + 0.24 p closed, 0 open: no increment may want for a "
-                       "solution. A pair at rest has neither gap, pressure nor shear, and a "
-                       "conductance between 0 and 0.8; it stands at the edge of contact.")
+                  text="omega = 0.8 + 0.24 p closed, 0 open: every increment must have a "
+                       "solution. A contact point at rest has neither gap, pressure nor shear, and "
+                       "a conductance between 0 and 0.8; it is at the edge of contact.")
     cases = [(name, levels, 45, method) for name in DECKS for levels in extent.jump_levels
              for method in ON_CYLINDER]
     cases += [(name, levels, extent.increments, "NEWTON") for name in DECKS

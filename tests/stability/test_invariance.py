@@ -9,11 +9,12 @@ from press import Look
 
 TITLE = "Invariance"
 TEXT = """
-A press of two blocks with inclined and bent faces, friction, gas and power conductance, films, sources, weights, forces on
-faces, volumes and nodes; pairs open, slip, stick and close. Written down in other units than SI, in
-another place, with other numbers or the faces exchanged, it gives the same numbers: `deviation` is the largest difference
-after conversion in any dataset of `/contact` and `/history`, relative to the largest value of the dataset. Where the pairs
-run the other way round, `shear` and `slip` change their signs and `s` counts from the other end.
+A press of two blocks with inclined and bent faces, friction, gas and power conductance, films,
+sources, weights, forces on faces, volumes and nodes; contact points open, slip, stick and close. In
+units other than SI, at another position, with other numbers or with the faces exchanged, the deck
+gives the same results: `deviation` is the largest difference after conversion in any dataset of
+`/contact` and `/history`, relative to the largest value of the dataset. If the contact points run
+in the opposite direction, `shear` and `slip` change their signs and `s` counts from the other end.
 """
 HEAD = ["the press", "datasets", "deviation", "allowed", "verdict"]
 SAME = 1e-9

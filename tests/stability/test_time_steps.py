@@ -15,8 +15,9 @@ from test_physics_schemes import step as heat_step
 
 TITLE = "Time steps"
 TEXT = """
-The problem has no time of its own, but friction has a path, and the schemes of (3.4) lag behind the conductance. Errors at the end of the
-load against the number of increments in which it acts; the order is that from 40 to 80 increments.
+The problem has no physical time, but friction depends on the path, and the schemes of (3.4) lag
+behind the conductance. The tables give errors at the end of the loading against the number of
+increments; the order is that from 40 to 80 increments.
 """
 COUNTS = [5, 10, 20, 40, 80]
 ROUNDING = 1e-9
@@ -69,8 +70,7 @@ def pairs(folder):
     """Return the table of paths of one pair that are known in closed form."""
     table = Table(
         "Friction: one pair in closed form", head("path"),
-        text="""One pair on springs, friction 0.6; its place at the end. What happens at a third of the load happens within an
-increment, however many there are. A path on which each pair goes on slipping, or sticking, in one direction has no error at all.""")
+        text="""One pair on springs, friction 0.6; its place at the end. Events at a third of the load fall within an increment for any number of increments. A path on which each pair goes on slipping, or sticking, in one direction has no error at all.""")
     speed = 2 * FRICTION * TURN
     nn, tt = 2.0, 1.0
     cases = []
@@ -147,9 +147,8 @@ def cylinder(folder):
     table = Table(
         "Friction: the cylinder", ["quantity at the end", *(f"{n} increments" for n in counts),
                                    "verdict"],
-        text=f"""Its 21 pairs close one after the other while they slide, against {finest} increments; the deck has 45. The limit exists,
-but is not reached evenly: one pair slips at a time, and each that closes freezes the slip that it has, which the mesh makes wrong by more
-than the increments (docs/theory.md, section 6). Relative errors, of the edge in local nodal spacings.""")
+        text=f"""Its 21 pairs close one after the other while they slide, against {finest} increments; the deck has 45. The limit exists, but convergence is not even: one contact point slips at a time, and each one that closes freezes
+its slip, in which the error of the mesh exceeds that of the increments (docs/theory.md, section 6). Relative errors, of the edge in local nodal spacings.""")
     names = "normal_force", "shear_force", "slip", "shear", "edge_stick", "s"
     found = {}
     for count in [*counts, finest]:
@@ -212,8 +211,8 @@ def imbalance(folder):
     table = Table("Schemes: an initial imbalance", ["scheme", "factor -b1/a1",
                                                     *(f"left after {n}" for n in (1, 2, 3, 6)),
                                                     "warned of", "verdict"],
-                  text="""The same temperature everywhere at the start, but 0 at both ends: what is left of it, in parts. No scheme
-makes it grow; the run says so where it never goes.""")
+                  text="""The same temperature everywhere at the start, but 0 at both ends: the part of it that remains. No scheme
+makes it grow; the run warns if it never vanishes.""")
     for scheme, factor in FACTORS.items():
         deck = model(f"*THERMAL SCHEME, TYPE={FREE.get(scheme, scheme)}", *ENDS, *heat_step(
             "coupled", "*BOUNDARY", "UPPER.TOP, 11", "LOWER.BOTTOM, 11", "*NODE PRINT, NSET="

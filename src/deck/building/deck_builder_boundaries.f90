@@ -8,13 +8,19 @@ module deck_builder_boundaries
    use load_requests, only: request_type
    use model, only: model_type
    use steps, only: dof_temperature
-   use text, only: to_text, to_upper
+   use text, only: is_slip, to_text, to_upper
    implicit none
    private
-   public :: build_boundary
+   public :: build_boundary, dof_rotation
+
+   integer, parameter :: dof_rotation = 6   !! about z, of the reference node of a coupling
 
    character(*), parameter :: out_of_plane = &
-      '*BOUNDARY: 0 on degrees of freedom 3 to 6 is read and not needed'
+      '*BOUNDARY: 0 on degrees of freedom 3 to 6 is ignored'
+
+   !> Supports that are known by a name.
+   character(8), parameter :: support_names(5) = &
+      [character(8) :: 'ENCASTRE', 'PINNED', 'XSYMM', 'YSYMM', 'ZSYMM']
 
 contains
 
@@ -38,9 +44,11 @@ contains
       held = held_degrees(to_upper(field_text(data, 2)))
       if (size(held) > 0) then
          call check_extra(data, 2, 'node or set, '//to_upper(field_text(data, 2)), report)
-         if (valid) call hold(held, request, context)
+         if (valid) call hold(held, request, model, context)
          return
       end if
+      call check_name(data, report, valid)
+      if (.not. valid) return
       first = 0
       call need_field(data, 2, 'first degree of freedom', report, first, valid)
       last = first
@@ -58,6 +66,10 @@ contains
             request%component = dof
             call context%boundaries%add(request)
          case (3:6)
+            if (dof == dof_rotation .and. turns(request, model)) then
+               call add_rotations(request, model, context)
+               cycle
+            end if
             if (abs(request%value) > 0.0_dp) then
                call report%error(field_place(data, 4), 'degree of freedom '//to_text(dof)// &
                   ' can only be 0 in the plane')
@@ -71,6 +83,24 @@ contains
          end select
       end do
    end subroutine build_boundary
+
+   !> Reports a likely misspelling of the name of a support.
+   subroutine check_name(data, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      character(:), allocatable :: name
+      integer :: i
+
+      name = to_upper(field_text(data, 2))
+      do i = 1, size(support_names)
+         if (.not. is_slip(name, trim(support_names(i)))) cycle
+         call report%error(field_place(data, 2), 'unknown support '//name// &
+            '; the nearest known is '//trim(support_names(i)))
+         valid = .false.
+         return
+      end do
+   end subroutine check_name
 
    !> Degrees of freedom that a support known by a name holds at 0, rotations about x, y and z as 4
    !> to 6 among them; empty for another word.
@@ -95,14 +125,17 @@ contains
    end function held_degrees
 
    !> Requests those of some degrees of freedom at 0 that the plane has.
-   subroutine hold(degrees, request, context)
+   subroutine hold(degrees, request, model, context)
       integer, intent(in) :: degrees(:)
       type(request_type), intent(inout) :: request
+      type(model_type), intent(in) :: model
       type(deck_context_type), intent(inout) :: context
       integer :: i
 
       do i = 1, size(degrees)
-         if (degrees(i) > 2) then
+         if (degrees(i) == dof_rotation .and. turns(request, model)) then
+            call add_rotations(request, model, context)
+         else if (degrees(i) > 2) then
             call context%note(out_of_plane)
          else
             request%component = degrees(i)
@@ -110,6 +143,41 @@ contains
          end if
       end do
    end subroutine hold
+
+   !> Whether the reference node of a coupling is among the nodes of a request.
+   pure logical function turns(request, model)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+
+      turns = any(is_target(model%couplings%reference, request, model))
+   end function turns
+
+   elemental logical function is_target(node, request, model)
+      integer, intent(in) :: node
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+
+      is_target = node > 0 .and. node == request%item
+      if (request%set > 0) is_target = any(model%mesh%node_sets(request%set)%members == node)
+   end function is_target
+
+   !> Requests the rotations of reference nodes.
+   subroutine add_rotations(request, model, context)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      type(deck_context_type), intent(inout) :: context
+      type(request_type) :: rotation
+      integer :: i
+
+      rotation = request
+      rotation%set = 0
+      rotation%component = 1
+      do i = 1, size(model%couplings)
+         if (.not. is_target(model%couplings(i)%reference, request, model)) cycle
+         rotation%item = model%couplings(i)%rotation
+         call context%boundaries%add(rotation)
+      end do
+   end subroutine add_rotations
 
    !> Number of the next data card of *BOUNDARY.
    pure integer function request_card(context)

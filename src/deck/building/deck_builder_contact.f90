@@ -6,17 +6,17 @@ module deck_builder_contact
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces
    use deck_builder_interactions, only: find_interaction
-   use deck_context, only: deck_context_type, report_unknown
+   use deck_context, only: deck_context_type, find_set, report_unknown, set_names
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: card_count
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use text, only: string_type, to_upper
+   use text, only: read_real, string_type, to_upper
    implicit none
    private
-   public :: build_contacts, read_surface
+   public :: build_contacts, named_surface, read_surface
 
 contains
 
@@ -78,9 +78,9 @@ contains
    !> Index of the surface that a parameter names; 0 after an error.
    subroutine named_surface(card, parameter, mesh, report, surface)
       type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: parameter
+      character(*), intent(in) :: parameter                !! the parameter
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
+      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, intent(out) :: surface
       character(:), allocatable :: name
 
@@ -115,6 +115,7 @@ contains
       call choose(card, 'PAIRING', 'NODES/SURFACES', report, pairing)
       if (allocated(pairing)) contact%pairing = merge(pairing_nodes, pairing_surfaces, &
          pairing == 'NODES')
+      if (has_parameter(card, 'ADJUST')) call read_adjustment(card, model%mesh, report, contact)
       contact%name = parameter_text(card, 'NAME')
       if (card%last_data < card%first_data) return
       associate (data => cards%data(card%first_data))
@@ -129,6 +130,27 @@ contains
          call context%note('*CONTACT PAIR without NAME=: '//contact%name//', the slave surface')
       end associate
    end subroutine build_contact
+
+   !> A distance, or a node set.
+   subroutine read_adjustment(card, mesh, report, contact)
+      type(keyword_card_type), intent(in) :: card
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      type(contact_definition_type), intent(inout) :: contact
+      logical :: is_number
+
+      contact%adjusts = .true.
+      call read_real(parameter_text(card, 'ADJUST'), contact%adjusted, is_number)
+      if (is_number) then
+         if (contact%adjusted < 0.0_dp) call report%error(parameter_place(card, 'ADJUST'), &
+            'the distance of ADJUST= must not be negative')
+         return
+      end if
+      contact%adjusted_set = find_set(mesh%node_sets, parameter_text(card, 'ADJUST'))
+      if (contact%adjusted_set == 0) call report_unknown('node set', &
+         to_upper(parameter_text(card, 'ADJUST')), set_names(mesh%node_sets), &
+         parameter_place(card, 'ADJUST'), report)
+   end subroutine read_adjustment
 
    !> Takes a surface by its name in a field of a data card.
    subroutine read_surface(data, position, what, mesh, report, surface)

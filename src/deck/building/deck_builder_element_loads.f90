@@ -15,7 +15,7 @@ module deck_builder_element_loads
    use text, only: append, nearest_known, string_type, to_text, to_upper
    implicit none
    private
-   public :: build_element_load, report_label
+   public :: build_element_load, build_on_faces, report_label
 
 contains
 
@@ -85,13 +85,13 @@ contains
 
    !> A load on the faces of a surface, as in CalculiX: a number in the label does not count.
    subroutine build_on_faces(label, surface, data, request, film_amplitude, context, report)
-      character(*), intent(in) :: label
-      type(surface_type), intent(in) :: surface
+      character(*), intent(in) :: label                    !! with any number
+      type(surface_type), intent(in) :: surface            !! the faces
       type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request
-      integer, intent(in) :: film_amplitude
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(request_type), intent(inout) :: request         !! step, amplitude, card and place
+      integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
+      type(deck_context_type), intent(inout) :: context    !! receives the requests
+      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: i, errors
       logical :: valid
 

@@ -199,9 +199,10 @@ contains
             if (card%name /= 'INITIAL CONDITIONS') cycle
             kind = ''
             if (lacks_parameter(card, 'TYPE')) then
-               call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE')
+               call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE '// &
+                  'or TYPE=STRESS')
             end if
-            call choose(card, 'TYPE', 'TEMPERATURE', report, kind)
+            call choose(card, 'TYPE', 'TEMPERATURE/STRESS', report, kind)
             if (kind /= 'TEMPERATURE') cycle
             do j = card%first_data, card%last_data
                valid = .true.

@@ -111,7 +111,7 @@ contains
       if (.not. has_field(data, 2)) call context%note('period not given: 1')
       if (step%direct) then
          if (has_field(data, 3) .or. has_field(data, 4)) call context%note( &
-            'smallest and largest increment not needed: with DIRECT increments are fixed')
+            'smallest and largest increment ignored: with DIRECT increments are fixed')
          return
       end if
       if (.not. has_field(data, 3)) call context%note('smallest increment not given: '// &

@@ -1,11 +1,12 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
    use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, parameter_text
-   use card_values, only: check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
-   use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, table_jump
+   use card_values, only: check_extra, take_field
+   use cards, only: cards_type, field_place, keyword_card_type
+   use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
+      table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
-   use decimal_commas, only: check_unneeded
+   use deck_builder_friction, only: build_friction
    use deck_builder_gap_conductance, only: build_gap_clearance, build_gap_conductance, &
       join_gap_conductance
    use deck_builder_gap_laws, only: build_gap_law
@@ -14,15 +15,15 @@ module deck_builder_interactions
    use deck_source, only: place_type
    use deck_structure, only: card_count
    use kinds, only: dp
-   use model, only: model_type
+   use model, only: model_type, physical_constants_type
+   use temperature_laws, only: face_temperatures_type, largest_jump, law_at, &
+      radiation_ends
    use text, only: to_text, to_upper
    implicit none
    private
    public :: build_interactions, find_interaction
 
    real(dp), parameter :: continuous = 1.0e-6_dp   !! a smaller jump is none, relative
-   !> Beyond it, from some 1e7 on, a pressure is lost in the last places of mu times it.
-   real(dp), parameter :: largest_friction = 1.0e6_dp
 
 contains
 
@@ -39,6 +40,7 @@ contains
       n = 0
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
+            if (card%name == 'STEP') exit
             select case (card%name)
             case ('SURFACE INTERACTION')
                errors = report%error_count()
@@ -52,7 +54,8 @@ contains
                end if
                law_place = card%place
                call pass_thickness(cards, card, context, report)
-               call build_laws(cards, k, context, report, model%interactions(n), law_place)
+               call build_laws(cards, k, model%constants, context, report, &
+                  model%interactions(n), law_place)
                if (report%error_count() > errors .or. card%flawed) cycle
                call check_law(card, law_place, model%interactions(n), report)
             case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'SURFACE BEHAVIOR')
@@ -83,7 +86,7 @@ contains
       call check_extra(cards%data(card%first_data), 1, 'thickness', report)
       if (thickness <= 0.0_dp) call report%error(field_place(cards%data(card%first_data), 1), &
          'the thickness must be positive')
-      call context%note('*SURFACE INTERACTION: the thickness is read and not needed: that of '// &
+      call context%note('*SURFACE INTERACTION: the thickness is ignored: that of '// &
          '*SOLID SECTION is taken')
    end subroutine pass_thickness
 
@@ -98,9 +101,10 @@ contains
    end function find_interaction
 
    !> Takes the laws behind one *SURFACE INTERACTION.
-   subroutine build_laws(cards, place, context, report, interaction, law_place)
+   subroutine build_laws(cards, place, constants, context, report, interaction, law_place)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: place
+      type(physical_constants_type), intent(in) :: constants
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(interaction_type), intent(inout) :: interaction
@@ -110,21 +114,22 @@ contains
 
       do k = place + 1, size(cards%keywords)
          associate (card => cards%keywords(k))
-            if (card%name == 'SURFACE INTERACTION') exit
+            if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
             if (card%name == 'SURFACE BEHAVIOR') call check_behavior(card, context, report)
-            if (card%last_data < card%first_data) cycle
+            if (card%last_data < card%first_data .and. card%name /= 'FRICTION') cycle
             if (card%name == 'GAP LAW' .or. card%name == 'GAP CONDUCTANCE') then
                law_place = field_place(cards%data(card%first_data), 1)
             end if
             select case (card%name)
             case ('FRICTION')
-               call build_friction(cards%data(card%first_data), context, report, &
-                  interaction%friction)
+               call build_friction(cards, card, context, report, interaction%friction)
             case ('GAP LAW')
-               call build_gap_law(cards, card, interaction%name, context, report, interaction%law)
+               call build_gap_law(cards, card, interaction%name, constants, context, report, &
+                  interaction%law)
             case ('GAP CONDUCTANCE')
                if (has_parameter(card, 'CLEARANCE')) then
-                  call build_gap_clearance(cards, card, context, report, interaction%law)
+                  call build_gap_clearance(cards, card, interaction%name, context, report, &
+                     interaction%law)
                else
                   call build_gap_conductance(cards, card, interaction%name, context, report, table)
                end if
@@ -156,33 +161,9 @@ contains
             ' is refused: tied faces do not open; take *TIE')
       case default
          call choose(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD', report, kind)
-         call context%note('*SURFACE BEHAVIOR is read and not needed: contact is exact')
+         call context%note('*SURFACE BEHAVIOR is ignored: contact is exact')
       end select
    end subroutine check_behavior
-
-   subroutine build_friction(data, context, report, friction)
-      type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      real(dp), intent(inout) :: friction
-      real(dp) :: slope
-      logical :: valid
-
-      valid = .true.
-      call need_field(data, 1, 'coefficient of friction', report, friction, valid)
-      call take_field(data, 2, 'stick slope', report, slope, valid)
-      call check_extra(data, 2, 'coefficient of friction, stick slope', report)
-      if (friction < 0.0_dp) then
-         call report%error(field_place(data, 1), 'the coefficient of friction must not be negative')
-      else if (friction > largest_friction) then
-         call report%error(field_place(data, 1), 'the coefficient of friction must not exceed '// &
-            to_text(largest_friction)//'; bodies that never slip are one: let them share nodes')
-      end if
-      if (size(data%fields) > 1) then
-         call context%note('*FRICTION: the stick slope is read and not needed')
-         call check_unneeded(data, 2, 'a stick slope', report)
-      end if
-   end subroutine build_friction
 
    !> Warns of a law that jumps, where the gap closes or where its table of clearances ends.
    subroutine check_law(card, law_place, interaction, report)
@@ -190,19 +171,32 @@ contains
       type(place_type), intent(in) :: law_place      ! where the last of its laws stands
       type(interaction_type), intent(in) :: interaction
       type(deck_report_type), intent(inout) :: report
+      type(conductance_law_type) :: law
+      type(face_temperatures_type) :: faces
       real(dp) :: open, closed
+      character(:), allocatable :: there
 
       if (table_jump(interaction%law) > 0.0_dp) call report%warning(card%place, &
          'the conductance of '//interaction%name//' falls from '// &
          to_text(table_jump(interaction%law))//' to 0 where the gap exceeds that of the last '// &
          'row, '//to_text(maxval(interaction%law%table_gap))//'; an increment in which a gap '// &
          'would stay there has no solution: end the table with a row of conductance 0')
-      closed = conductance(interaction%law, .true., 0.0_dp, 0.0_dp)
-      open = conductance(interaction%law, .false., 0.0_dp, 0.0_dp)
-      if (abs(law_jump(interaction%law)) <= continuous*max(open, closed)) return
+      if (radiation_ends(interaction%law)) call report%warning(law_place, 'faces of '// &
+         interaction%name//' radiate where they are open and not where they are closed: the '// &
+         'conductance jumps by that of radiation where the gap closes; TYPE=CMY and '// &
+         'TYPE=ROSS-STOUTE add to it')
+      faces = largest_jump(interaction%law)
+      law = law_at(interaction%law, faces)
+      law%radiation = 0.0_dp
+      there = ''
+      if (varies_with_temperature(interaction%law)) there = ' at a mean temperature of '// &
+         to_text(faces%mean)
+      closed = conductance(law, .true., 0.0_dp, 0.0_dp)
+      open = conductance(law, .false., 0.0_dp, 0.0_dp)
+      if (abs(law_jump(law)) <= continuous*max(open, closed)) return
       call report%warning(law_place, 'the conductance of '//interaction%name//' jumps by '// &
-         to_text(law_jump(interaction%law))//' where the gap closes without pressure: from '// &
-         to_text(open)//' open to '//to_text(closed)//' closed'//origin(interaction%law))
+         to_text(law_jump(law))//' where the gap closes without pressure'//there//': from '// &
+         to_text(open)//' open to '//to_text(closed)//' closed'//origin(law))
    end subroutine check_law
 
    !> Tells which law is missing, or that the two should meet.

@@ -56,7 +56,7 @@ contains
          if (.not. is_line_card(cards%keywords(k))) cycle
          name = to_upper(parameter_text(cards%keywords(k), 'TYPE'))
          call context%note('*ELEMENT, TYPE='//name// &
-            ': lines are passed over, but for sets and surfaces that are made of them')
+            ': lines are ignored, except for sets and surfaces that are made of them')
          do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
             n = n + 1
             call read_line(cards%data(j), context, report, context%line_number(n), &

@@ -4,7 +4,7 @@ module deck_builder_loads
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
-   use deck_builder_boundaries, only: build_boundary
+   use deck_builder_boundaries, only: build_boundary, dof_rotation
    use deck_builder_element_loads, only: build_element_load
    use deck_builder_histories, only: find_amplitude
    use deck_builder_surface_loads, only: build_surface_load
@@ -19,7 +19,7 @@ module deck_builder_loads
    use text, only: string_type, to_text, to_upper
    implicit none
    private
-   public :: build_load_card
+   public :: build_load_card, read_amplitude
 
 contains
 
@@ -45,6 +45,8 @@ contains
       call read_amplitude(card, 'AMPLITUDE', model, report, request%amplitude)
       call read_amplitude(card, 'FILM AMPLITUDE', model, report, film_amplitude)
       if (film_amplitude > 0) call check_film(card, model%amplitudes(film_amplitude), report)
+      if (any(card%name == ['FILM ', 'SFILM'])) call note_film(card, &
+         model%steps(step)%ramped, context)
       do j = card%first_data, card%last_data
          request%place = field_place(cards%data(j), 1)
          if (card%name == 'BOUNDARY') then
@@ -54,8 +56,9 @@ contains
          context%load_cards = context%load_cards + 1
          request%card = context%load_cards
          select case (card%name)
-         case ('DSLOAD')
-            call build_surface_load(cards%data(j), request, model, context, report)
+         case ('DSLOAD', 'DSFLUX', 'SFILM')
+            call build_surface_load(card%name, cards%data(j), request, film_amplitude, model, &
+               context, report)
          case ('DLOAD', 'DFLUX', 'FILM')
             call build_element_load(card%name, cards%data(j), request, film_amplitude, model, &
                context, report)
@@ -84,7 +87,7 @@ contains
       context%load_step(card%known) = step
       if (operation /= 'NEW' .or. step == 0) return
       if (.not. first) then
-         call report%warning(parameter_place(card, 'OP'), 'OP=NEW is passed over: it counts on '// &
+         call report%warning(parameter_place(card, 'OP'), 'OP=NEW is ignored: it counts on '// &
             'the first *'//card%name//' of a step')
          return
       end if
@@ -111,7 +114,9 @@ contains
             ends(load_nodal_heat) = .true.
          case ('DFLUX')
             ends([load_face_heat, load_body_heat]) = .true.
-         case ('FILM')
+         case ('DSFLUX')
+            ends(load_face_heat) = .true.
+         case ('FILM', 'SFILM')
             ends(load_film_coefficient) = .true.
          case ('TEMPERATURE')
             ends(load_temperature) = .true.
@@ -121,12 +126,13 @@ contains
       end associate
    end subroutine end_loads
 
+   !> Index of the amplitude that a parameter names.
    subroutine read_amplitude(card, parameter, model, report, amplitude)
       type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: parameter
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: amplitude
+      character(*), intent(in) :: parameter              !! AMPLITUDE or FILM AMPLITUDE
+      type(model_type), intent(in) :: model              !! amplitudes
+      type(deck_report_type), intent(inout) :: report    !! receives an error
+      integer, intent(inout) :: amplitude                !! as it was without the parameter
       type(string_type), allocatable :: names(:)
       character(:), allocatable :: name
       integer :: i
@@ -153,6 +159,30 @@ contains
          ' becomes negative ('//to_text(minval(amplitude%values))//'), which a film '// &
          'coefficient cannot be; give factors from 0 on')
    end subroutine check_film
+
+   !> Notes what coefficient and sink of a film do where the card gives no amplitude.
+   subroutine note_film(card, ramped, context)
+      type(keyword_card_type), intent(in) :: card
+      logical, intent(in) :: ramped
+      type(deck_context_type), intent(inout) :: context
+      character(:), allocatable :: coefficient
+
+      if (has_parameter(card, 'AMPLITUDE') .and. has_parameter(card, 'FILM AMPLITUDE')) return
+      coefficient = 'the coefficient acts whole at once'
+      if (ramped) coefficient = 'the coefficient ramps over the step'
+      if (has_parameter(card, 'AMPLITUDE')) then
+         call context%note('*'//card%name//', AMPLITUDE='// &
+            to_upper(parameter_text(card, 'AMPLITUDE'))// &
+            ': the sink temperature follows it, '//coefficient)
+      else if (has_parameter(card, 'FILM AMPLITUDE')) then
+         call context%note('*'//card%name//', FILM AMPLITUDE='// &
+            to_upper(parameter_text(card, 'FILM AMPLITUDE'))// &
+            ': the coefficient follows it, the sink temperature acts whole at once')
+      else
+         call context%note('*'//card%name//' without amplitudes: '//coefficient// &
+            ', the sink temperature acts whole at once')
+      end if
+   end subroutine note_film
 
    !> *CLOAD, *CFLUX: node or set, degree of freedom, value; *TEMPERATURE: node or set, value.
    subroutine build_nodal_load(keyword, data, request, model, context, report)
@@ -184,7 +214,9 @@ contains
       end if
       if (.not. valid) return
       request%component = dof
-      if (keyword == 'CLOAD' .and. all(dof /= [1, 2])) then
+      if (keyword == 'CLOAD' .and. dof == dof_rotation) then
+         call add_moment(data, request, model, context, report)
+      else if (keyword == 'CLOAD' .and. all(dof /= [1, 2])) then
          call report%error(field_place(data, 2), 'a force acts on degree of freedom 1 or 2')
       else if (keyword == 'CFLUX' .and. dof /= dof_temperature) then
          call report%error(field_place(data, 2), 'heat acts on degree of freedom 11')
@@ -193,5 +225,32 @@ contains
          call context%loads%add(request)
       end if
    end subroutine build_nodal_load
+
+   !> Puts a moment on the rotation of the reference node of a coupling.
+   subroutine add_moment(data, request, model, context, report)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request
+      type(model_type), intent(in) :: model
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      integer :: i, node
+
+      node = request%item
+      if (request%set > 0) then
+         associate (members => model%mesh%node_sets(request%set)%members)
+            if (size(members) == 1) node = members(1)
+         end associate
+      end if
+      i = findloc(model%couplings%reference, node, dim=1)
+      if (i == 0 .or. node == 0) then
+         call report%error(field_place(data, 2), &
+            'a moment acts on the reference node of a *COUPLING; forces act on 1 and 2')
+         return
+      end if
+      request%set = 0
+      request%item = model%couplings(i)%rotation
+      request%component = 1
+      call context%loads%add(request)
+   end subroutine add_moment
 
 end module deck_builder_loads

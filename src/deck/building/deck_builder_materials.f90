@@ -129,7 +129,7 @@ contains
       if (kind == 'ORTHO') then
          n = min(max(size(cards%data(card%first_data)%fields), 2), 3)
          call read_constants(cards, card, names(:n), context, report, constants(:n), valid)
-         if (n == 3) call context%note('*CONDUCTIVITY: K33 is read and not needed')
+         if (n == 3) call context%note('*CONDUCTIVITY: K33 is ignored')
          if (valid) call refuse_not_positive(cards, card, names, constants, [1, 2], report)
          ! Across the plane most materials conduct as along one of its axes.
          if (valid .and. n == 3 .and. all(abs(constants(:2) - constants(3)) > 0.0_dp)) then

@@ -11,7 +11,7 @@ module deck_builder_mesh
    use element_kinds, only: element_corner_count, element_node_count, plane_strain, quad8
    use element_types, only: take_element_type
    use kinds, only: dp
-   use mesh, only: extent_of, mesh_type, nodes_per_element
+   use mesh, only: add_node, extent_of, mesh_type, nodes_per_element
    use sorting, only: repeated
    use text, only: to_text
    implicit none
@@ -68,7 +68,26 @@ contains
             mesh%node_number(places(j))
       end do
       call context%node_index%build(mesh%node_number)
+      call add_rotations(cards, context, mesh)
    end subroutine build_nodes
+
+   !> Adds a node for the rotation of each coupling, which no card can name.
+   subroutine add_rotations(cards, context, mesh)
+      type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(inout) :: context
+      type(mesh_type), intent(inout) :: mesh
+      real(dp) :: place(2)
+      integer :: k
+
+      if (size(mesh%node_number) == 0) return
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'COUPLING') cycle
+         place = mesh%coordinates(:, 1)
+         call add_node(mesh, place)
+         context%node_place = [context%node_place, cards%keywords(k)%place]
+         context%node_valid = [context%node_valid, .true.]
+      end do
+   end subroutine add_rotations
 
    !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what stands behind z
    !> is the direction of a normal in Abaqus.
@@ -95,11 +114,11 @@ contains
       end do
       call take_field(data, 4, 'z', report, z, valid)
       if (has_field(data, 4)) then
-         call context%note('*NODE: third coordinates of 0 are read and not needed')
+         call context%note('*NODE: third coordinates of 0 are ignored')
       end if
       call check_extra(data, 7, 'number, x, y', report)
-      if (size(data%fields) > 4) call context%note('*NODE: what stands behind the third '// &
-         'coordinate is read and not needed')
+      if (size(data%fields) > 4) call context%note('*NODE: numbers after the third '// &
+         'coordinate are ignored')
    end subroutine build_node
 
    !> All nodes lie in the plane z = 0, but for rounding.
@@ -269,7 +288,7 @@ contains
       if (.not. valid) return
       do q = 2, size(nodes)
          if (all(nodes(:q - 1) /= nodes(q))) cycle
-         call report%error(field_place(data, q + 1), 'a node stands twice in this element')
+         call report%error(field_place(data, q + 1), 'a node appears twice in this element')
          valid = .false.
       end do
    end subroutine read_element_nodes

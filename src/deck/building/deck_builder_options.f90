@@ -1,23 +1,23 @@
-!> *HEADING, *OPTIONS, *SOLVER and *REFINE.
+!> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
    use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &
       parameter_text, take_parameter
    use cards, only: cards_type, keyword_card_type
-   use controls, only: solver_mumps, solver_skyline
+   use controls, only: solver_by_size, solver_mumps, solver_skyline
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
-   use model, only: model_type
+   use model, only: model_type, physical_constants_type
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: build_options
+   public :: build_options, take_levels
 
    integer, parameter :: most_levels = 11   !! *REFINE: one element more often divided is too many
 
 contains
 
-   !> Takes *HEADING, *OPTIONS, *SOLVER and *REFINE.
+   !> Takes *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
    subroutine build_options(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives plane, order, levels, axis
@@ -30,6 +30,7 @@ contains
       model%units%stress = ''
       model%units%power = ''
       model%units%temperature = ''
+      model%solver = solver_by_size
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             select case (card%name)
@@ -38,18 +39,36 @@ contains
                model%heading = cards%data(card%first_data)%fields(1)%text
             case ('OPTIONS')
                call build_option_card(card, context, model, report)
+            case ('PHYSICAL CONSTANTS')
+               call build_constants(card, report, model%constants)
             case ('SOLVER')
                call build_solver(card, model, report)
             case ('REFINE')
                call build_levels(card, context, report)
             case ('CONTROLS', 'SPECIFIC HEAT', 'RESTART')
-               call context%note('*'//card%name//' is read and not needed')
+               call context%note('*'//card%name//' is ignored')
             case default
                cycle
             end select
          end associate
       end do
    end subroutine build_options
+
+   !> Constants of radiation.
+   subroutine build_constants(card, report, constants)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      type(physical_constants_type), intent(inout) :: constants
+
+      call take_parameter(card, 'ABSOLUTE ZERO', report, constants%absolute_zero)
+      call take_parameter(card, 'STEFAN BOLTZMANN', report, constants%stefan_boltzmann)
+      if (has_parameter(card, 'STEFAN BOLTZMANN') .and. constants%stefan_boltzmann <= 0) then
+         call report%error(parameter_place(card, 'STEFAN BOLTZMANN'), &
+            'STEFAN BOLTZMANN= must be positive')
+      end if
+      constants%has_radiation = has_parameter(card, 'ABSOLUTE ZERO') .and. &
+         has_parameter(card, 'STEFAN BOLTZMANN')
+   end subroutine build_constants
 
    subroutine build_option_card(card, context, model, report)
       type(keyword_card_type), intent(in) :: card
@@ -133,18 +152,30 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
 
+      if (has_parameter(card, 'SURFACE') .or. has_parameter(card, 'ELSET')) return
+      if (has_parameter(card, 'DISTANCE')) call report%error(parameter_place(card, 'DISTANCE'), &
+         'DISTANCE= is from a surface or a set: give SURFACE= or ELSET= with it')
       if (context%levels_place%image > 0) then
-         call report%error(card%place, 'a second *REFINE')
+         call report%error(card%place, 'a second *REFINE of the whole model')
          return
       end if
       context%levels_place = parameter_place(card, 'LEVELS')
+      call take_levels(card, report, context%levels)
+   end subroutine build_levels
+
+   !> Takes LEVELS= of *REFINE; 0 after an error.
+   subroutine take_levels(card, report, levels)
+      type(keyword_card_type), intent(in) :: card          !! the *REFINE
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, intent(inout) :: levels                     !! 0 before
+
       if (lacks_parameter(card, 'LEVELS')) call report%error(card%place, &
          '*REFINE needs LEVELS=')
-      call take_parameter(card, 'LEVELS', report, context%levels)
-      if (context%levels >= 0 .and. context%levels <= most_levels) return
+      call take_parameter(card, 'LEVELS', report, levels)
+      if (levels >= 0 .and. levels <= most_levels) return
       call report%error(parameter_place(card, 'LEVELS'), 'LEVELS= must lie between 0 and '// &
          to_text(most_levels))
-      context%levels = 0
-   end subroutine build_levels
+      levels = 0
+   end subroutine take_levels
 
 end module deck_builder_options

@@ -62,6 +62,9 @@ contains
          call choose(card, 'TOTALS', 'YES/NO/ONLY', report, choice)
          request%each_node = choice /= 'ONLY'
          request%totals = choice /= 'NO'
+         choice = 'NO'
+         call choose(card, 'GLOBAL', 'YES/NO', report, choice)
+         request%local_axes = choice == 'NO'
       else
          call take_set(card, 'ELSET', 'element', mesh%element_sets, context, report, request%set)
          call choose(card, 'GLOBAL', 'YES/NO', report, choice)

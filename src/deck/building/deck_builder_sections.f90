@@ -1,7 +1,6 @@
 !> *SOLID SECTION -> material and thickness of elements.
 module deck_builder_sections
-   use card_parameters, only: has_parameter, lacks_parameter, need_parameter, parameter_place, &
-      parameter_text
+   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
    use card_values, only: check_extra, take_field
    use cards, only: cards_type, field_place, keyword_card_type
    use deck_builder_materials, only: find_material
@@ -17,7 +16,7 @@ module deck_builder_sections
    use text, only: string_type, to_text, to_upper
    implicit none
    private
-   public :: build_sections
+   public :: build_sections, named_element_set
 
 contains
 
@@ -110,26 +109,13 @@ contains
       character(:), allocatable :: name
       integer :: set
 
-      if (.not. has_parameter(card, 'ELSET')) then
-         if (lacks_parameter(card, 'ELSET')) call report%error(card%place, &
-            '*SOLID SECTION needs ELSET=')
-         sound = .false.
-         return
-      end if
-      name = to_upper(parameter_text(card, 'ELSET'))
-      set = find_set(mesh%element_sets, name)
-      if (set == 0) then
-         call report_unknown('element set', name, set_names(mesh%element_sets), &
-            parameter_place(card, 'ELSET'), report)
-         sound = .false.
-         return
-      end if
-      if (mesh%element_sets(set)%of_lines) call report_lines(name, &
-         parameter_place(card, 'ELSET'), report, sound)
-      if (mesh%element_sets(set)%of_lines) return
+      call named_element_set(card, mesh, report, set)
+      sound = sound .and. set > 0
+      if (set == 0) return
+      name = mesh%element_sets(set)%name
       if (find_set(line_sets, name) > 0) call report%warning( &
          parameter_place(card, 'ELSET'), 'element set '//name// &
-         ' holds lines, too, which are passed over: bars are not modelled')
+         ' also has lines, which are ignored: bars are not modelled')
       associate (members => mesh%element_sets(set)%members)
          if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
             'this section replaces an earlier one; elements concerned: '// &
@@ -137,5 +123,28 @@ contains
          mesh%element_section(members) = section
       end associate
    end subroutine give_section
+
+   !> Index of the set of elements that ELSET= of a card names; 0 after an error.
+   subroutine named_element_set(card, mesh, report, set)
+      type(keyword_card_type), intent(in) :: card
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, intent(out) :: set
+      character(:), allocatable :: name
+      logical :: valid
+
+      set = 0
+      valid = .true.
+      call need_parameter(card, 'ELSET', report, name)
+      if (len(name) == 0) return
+      set = find_set(mesh%element_sets, name)
+      if (set == 0) then
+         call report_unknown('element set', name, set_names(mesh%element_sets), &
+            parameter_place(card, 'ELSET'), report)
+      else if (mesh%element_sets(set)%of_lines) then
+         call report_lines(name, parameter_place(card, 'ELSET'), report, valid)
+         set = 0
+      end if
+   end subroutine named_element_set
 
 end module deck_builder_sections

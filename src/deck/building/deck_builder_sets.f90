@@ -186,7 +186,7 @@ contains
          call report%missing(field_place(data, 1), 'there is no '//draft%noun//' from '// &
             to_text(first)//' to '//to_text(last), draft%noun)
       else if (missing > 0 .and. .not. report%has_lost(draft%noun)) then
-         call report%warning(field_place(data, 1), 'numbers passed over, for there is no such '// &
+         call report%warning(field_place(data, 1), 'numbers ignored, there is no such '// &
             draft%noun//': '//to_text(missing))
       end if
    end subroutine generate

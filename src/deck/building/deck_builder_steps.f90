@@ -7,6 +7,7 @@ module deck_builder_steps
    use deck_builder_controls, only: build_fixed_point, build_thermal_scheme
    use deck_builder_start, only: build_start
    use deck_builder_increments, only: build_increments
+   use deck_builder_contact_changes, only: build_contact_change
    use deck_builder_loads, only: build_load_card
    use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
@@ -79,17 +80,14 @@ contains
                context%analyses_sound = .false.
                call report%missing(card%place, &
                   'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
-            case ('FIXED POINT')
-               call build_fixed_point(card, report, controls%fixed_point)
+            case ('FIXED POINT', 'START', 'THERMAL SCHEME')
+               call build_control(cards, card, model, report, controls)
                if (n > 0) call set_controls(controls, model%steps(n))
-            case ('START')
-               call build_start(cards, card, model, report, controls%start)
-               if (n > 0) call set_controls(controls, model%steps(n))
-            case ('THERMAL SCHEME')
-               call build_thermal_scheme(cards, card, report, controls%scheme)
-               if (n > 0) call set_controls(controls, model%steps(n))
-            case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'FILM', 'TEMPERATURE')
+            case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
+               'SFILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)
+            case ('CHANGE FRICTION', 'FRICTION', 'MODEL CHANGE', 'CONTACT INTERFERENCE')
+               call build_contact_change(cards, k, n, model, context, report)
             case default
                if (card%meant == 'STATIC') then
                   ! An analysis that is refused is reported already.
@@ -123,6 +121,24 @@ contains
          return
       end do
    end subroutine warn_of_nlgeom
+
+   !> Takes a card that holds for this step and all that follow.
+   subroutine build_control(cards, card, model, report, controls)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(lasting_controls_type), intent(inout) :: controls
+
+      select case (card%name)
+      case ('FIXED POINT')
+         call build_fixed_point(card, report, controls%fixed_point)
+      case ('START')
+         call build_start(cards, card, model, report, controls%start)
+      case default
+         call build_thermal_scheme(cards, card, report, controls%scheme)
+      end select
+   end subroutine build_control
 
    pure subroutine set_controls(controls, step)
       type(lasting_controls_type), intent(in) :: controls
@@ -267,7 +283,7 @@ contains
                to_text(step%largest_increment))
          end if
       else if (has_largest .and. .not. step%direct) then
-         call context%note('largest increment not needed: no increment is longer than the first')
+         call context%note('largest increment ignored: no increment is longer than the first')
       end if
    end subroutine fit_increments
 

@@ -1,9 +1,9 @@
-!> Data cards of *DSLOAD: surface, label, values.
+!> Data cards of *DSLOAD, *DSFLUX and *SFILM: surface, label, values.
 module deck_builder_surface_loads
    use card_values, only: check_extra, need_field
    use card_vectors, only: need_plane_vector
    use cards, only: data_card_type, field_place
-   use deck_builder_element_loads, only: report_label
+   use deck_builder_element_loads, only: build_on_faces, report_label
    use deck_context, only: deck_context_type, report_unknown
    use deck_report, only: deck_report_type
    use kinds, only: dp
@@ -19,22 +19,39 @@ module deck_builder_surface_loads
 contains
 
    !> Takes one data card.
-   subroutine build_surface_load(data, request, model, context, report)
+   subroutine build_surface_load(keyword, data, request, film_amplitude, model, context, report)
+      character(*), intent(in) :: keyword                  !! DSLOAD, DSFLUX or SFILM
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
+      integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
       type(model_type), intent(in) :: model                !! surfaces
       type(deck_context_type), intent(inout) :: context    !! receives the requests
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      character(:), allocatable :: label
-      integer :: surface
+      character(:), allocatable :: label, labels
+      integer :: errors, surface
       logical :: valid
 
       valid = .true.
+      errors = report%error_count()
       call read_surface(data, model%mesh%surfaces, report, surface, valid)
-      call need_field(data, 2, 'P or TRVEC', report, label, valid)
+      select case (keyword)
+      case ('DSFLUX')
+         labels = 'S'
+         call check_extra(data, 3, 'surface, S, heat flux', report)
+      case ('SFILM')
+         labels = 'F'
+         call check_extra(data, 4, 'surface, F, sink temperature, film coefficient', report)
+      case default
+         labels = 'P/TRVEC'
+      end select
+      call need_field(data, 2, labels, report, label, valid)
       if (len(label) == 0) return
       label = to_upper(label)
       request%set = 0
+      if (index('/'//labels//'/', '/'//label//'/') == 0) then
+         call report_label(keyword, label, labels, data, report)
+         return
+      end if
       select case (label)
       case ('P')
          call need_field(data, 3, 'pressure', report, request%value, valid)
@@ -44,7 +61,9 @@ contains
       case ('TRVEC')
          call build_traction(data, request, model, surface, context, report, valid)
       case default
-         call report_label('DSLOAD', label, 'P/TRVEC', data, report)
+         if (surface == 0 .or. report%error_count() > errors) return
+         call build_on_faces(label//'1', model%mesh%surfaces(surface), data, &
+            request, film_amplitude, context, report)
       end select
    end subroutine build_surface_load
 

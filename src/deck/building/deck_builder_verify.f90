@@ -3,6 +3,7 @@ module deck_builder_verify
    use card_parameters, only: choose, lacks_parameter, parameter_text
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field
+   use couplings, only: constrained_nodes
    use deck_builder_mesh, only: data_card_count
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_context_type, read_target, report_unknown
@@ -186,6 +187,8 @@ contains
       if (.not. valid) return
       used = .false.
       used([model%mesh%element_nodes]) = .true.
+      used(1:) = used(1:) .or. constrained_nodes(model%equations, &
+         model%couplings, size(used) - 1)
       nodes = [node]
       if (set > 0) nodes = model%mesh%node_sets(set)%members
       nodes = pack(nodes, used(nodes))

@@ -55,9 +55,10 @@ contains
    end subroutine apply_temperatures
 
    !> Prescribed values, after refinement. What stands before the first step belongs to it.
-   subroutine apply_boundaries(context, model)
+   subroutine apply_boundaries(context, model, report)
       type(deck_context_type), intent(in) :: context       !! requests
       type(model_type), intent(inout) :: model             !! receives the prescribed values
+      type(deck_report_type), intent(in) :: report         !! knows where lines stand
       integer, allocatable :: nodes(:)
       integer :: s, i, j, n, counts(size(model%steps))
 
@@ -71,8 +72,13 @@ contains
          allocate(model%steps(s)%boundaries(counts(s)))
       end do
       counts = 0
+      n = 0
+      if (context%boundaries%count > 0) n = maxval(context%boundaries%items( &
+         :context%boundaries%count)%card)
+      allocate (model%boundary_places(n))
       do i = 1, context%boundaries%count
          associate (request => context%boundaries%items(i))
+            model%boundary_places(request%card)%value = report%source%words_of(request%place)
             if (is_ended(request, model)) cycle
             s = max(1, request%step)
             call find_targets(request, model%mesh%node_sets, nodes)

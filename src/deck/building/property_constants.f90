@@ -107,7 +107,7 @@ contains
       call take_field(data, position, 'temperature', report, temperature, valid)
       call check_extra(data, position, layout//', temperature', report)
       if (has_field(data, position)) then
-         call context%note('the temperature field of a single property row is read and not needed')
+         call context%note('the temperature field of a single property row is ignored')
          if (valid) call check_unneeded_temperature(data, position, report)
       end if
    end subroutine read_temperature

@@ -3,6 +3,7 @@
 module deck_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use elasticity, only: equivalent_poisson
    use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
    use jacobian_checks, only: check_jacobians
@@ -16,7 +17,7 @@ module deck_checks
    use text, only: to_text
    implicit none
    private
-   public :: check_model
+   public :: check_model, check_numbers
 
    !> The entries of all elements' 16 x 16 matrices are numbered in default integers.
    integer, parameter :: most_elements = 2**23 - 1
@@ -51,21 +52,32 @@ contains
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
-      integer(long) :: elements, largest
 
-      elements = size(mesh%element_number)*4_long**context%levels
+      call check_numbers(context%levels_place, &
+         size(mesh%element_number)*4_long**context%levels, mesh, report)
+   end subroutine check_size
+
+   !> A mesh with more elements, its matrices and the new numbers of its nodes fit into default
+   !> integers.
+   subroutine check_numbers(place, elements, mesh, report)
+      type(place_type), intent(in) :: place                !! card that adds them
+      integer(long), intent(in) :: elements                !! elements that there will be
+      type(mesh_type), intent(in) :: mesh                  !! the mesh before
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer(long) :: largest
+
       if (elements > most_elements) then
-         call report%error(context%levels_place, 'the mesh would have '//to_text(elements)// &
+         call report%error(place, 'the mesh would have '//to_text(elements)// &
             ' elements, more than the '//to_text(most_elements)//' that can be numbered')
          return
       end if
-      if (context%levels == 0 .or. elements == 0 .or. size(mesh%node_number) == 0) return
+      if (elements == size(mesh%element_number) .or. size(mesh%node_number) == 0) return
       ! An element brings at most its eight nodes.
       largest = max(maxval(mesh%node_number), maxval(mesh%element_number)) + 8*elements
-      if (largest > huge(1)) call report%error(context%levels_place, &
+      if (largest > huge(1)) call report%error(place, &
          'the numbers of new nodes and elements, behind the largest of the deck, would exceed '// &
          to_text(huge(1)))
-   end subroutine check_size
+   end subroutine check_numbers
 
    !> Every element has a section.
    subroutine check_sections(context, model, report)

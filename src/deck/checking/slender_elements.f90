@@ -40,7 +40,7 @@ contains
          least = min(least, ratio)
       end do
       if (worst > 0) call report%warning(context%element_place(worst), &
-         said(mesh, worst, least)//', and pressures there are known to '// &
+         said(mesh, worst, least)//', and pressures there are accurate to '// &
          to_text(epsilon(1.0_dp)/least**2)//' only (such elements: '//to_text(count_doubtful)//')')
    end subroutine check_slenderness
 

@@ -94,7 +94,7 @@ contains
          select case (card%name)
          case ('CONTACT PAIR', 'TIE')
             refers = has_field_value(cards, card, 2, name)
-         case ('DLOAD', 'DSLOAD', 'DFLUX', 'FILM')
+         case ('DLOAD', 'DSLOAD', 'DFLUX', 'DSFLUX', 'FILM', 'SFILM')
             refers = has_field_value(cards, card, 1, name)
          case default
             refers = has_value(card, 'SURFACE', name)

@@ -75,7 +75,7 @@ contains
                cycle
             else if (opened > 0) then
                if (opened /= told) call report%error(place_type(image, i), &
-                  'no comma may stand inside quotes; write blanks in its place')
+                  'commas are not allowed inside quotes; write blanks instead')
                told = opened
             else
                n = n + 1

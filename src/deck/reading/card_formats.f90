@@ -18,7 +18,7 @@ module card_formats
 
    !> What is wrong with a format that does not begin as one.
    character(*), parameter :: unquoted_format = &
-      'a format stands in brackets and quotes, as in FORMAT="(I5,2F10.0)"'
+      'write a format in parentheses and quotes, as in FORMAT="(I5,2F10.0)"'
 
    !> One edit descriptor.
    type :: edit_type
@@ -65,7 +65,7 @@ contains
          edits(format%again:n)%kind == edit_real)) then
          fault = 'the format reads nothing'
       else if (edits(n)%kind == edit_card) then
-         fault = 'the format ends in a slash: no card is passed over'
+         fault = 'the format ends in a slash: no card is skipped'
       end if
       deallocate(format%edits)
       format%edits = edits(:n)

@@ -32,7 +32,6 @@ contains
       integer, intent(in) :: most                         !! most fields
       character(*), intent(in) :: layout                  !! what a card of its keyword holds
       type(deck_report_type), intent(inout) :: report     !! receives the error
-
       integer :: comma
 
       if (size(data%fields) <= most) return

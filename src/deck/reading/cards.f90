@@ -5,7 +5,7 @@ module cards
    implicit none
    private
    public :: cards_type, keyword_card_type, data_card_type, parameter_type, field_type
-   public :: add_keyword, add_data, extend_data, add_note, trim_cards
+   public :: add_keyword, add_data, extend_data, add_note, trim_cards, replace_cards
    public :: has_field, is_undefined, field_text, field_place
 
    !> One field of a card.
@@ -171,6 +171,18 @@ contains
       call resize_keywords(cards%keywords, cards%keyword_count, cards%keyword_count)
       call resize_data(cards%data, cards%data_count, cards%data_count)
    end subroutine trim_cards
+
+   !> Puts the keyword and data cards of another list in place of those read; the notes stay.
+   subroutine replace_cards(cards, others)
+      type(cards_type), intent(inout) :: cards
+      type(cards_type), intent(inout) :: others       !! its cards move, and are not trimmed yet
+
+      call move_alloc(others%keywords, cards%keywords)
+      call move_alloc(others%data, cards%data)
+      cards%keyword_count = others%keyword_count
+      cards%data_count = others%data_count
+      call trim_cards(cards)
+   end subroutine replace_cards
 
    subroutine resize_keywords(list, kept, length)
       type(keyword_card_type), allocatable, intent(inout) :: list(:)

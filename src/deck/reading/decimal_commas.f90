@@ -111,7 +111,7 @@ contains
       if (.not. may_be_decimals(data, i)) return
       associate (whole => data%fields(i - 1)%text, decimals => data%fields(i)%text)
          call report%warning(field_place(data, i - 1), 'decimal comma? '//whole//','//decimals// &
-            ' is two fields: '//whole//', and '//what//', which is not needed; write '//whole// &
+            ' is two fields: '//whole//', and '//what//', which is ignored; write '//whole// &
             '.'//decimals//', or '//whole//'. if that is meant')
       end associate
    end subroutine check_unneeded

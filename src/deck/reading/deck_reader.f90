@@ -1,5 +1,6 @@
 !> Files -> cards: the deck, the files that it includes, and the width of a card.
 module deck_reader
+   use assembly_cards, only: flatten_cards
    use card_fields, only: is_comment, last_text
    use card_lines, only: card_lines_type, default_width
    use cards, only: cards_type, trim_cards
@@ -40,6 +41,7 @@ contains
       call read_file(path, path, none, open_lines, cards, report, fault)
       call open_lines%finish(cards, report)
       call trim_cards(cards)
+      call flatten_cards(cards, report)
       call generate_cards(cards, report)
       if (len(fault) > 0) then
          call report%error(place_type(), 'the deck cannot be read: '//fault)

@@ -7,7 +7,7 @@ module deck_report
    use utf8, only: character_count, first_byte, printable
    implicit none
    private
-   public :: deck_report_type, severity_error, severity_warning
+   public :: deck_report_type
 
    integer, parameter :: severity_error = 1     !! the deck cannot be solved
    integer, parameter :: severity_warning = 2   !! the deck can be solved, perhaps not as meant

@@ -26,6 +26,7 @@ module deck_source
       type(string_type), allocatable :: paths(:)   !! (files) paths as given
    contains
       procedure :: add_image
+      procedure :: words_of
    end type deck_source_type
 
 contains
@@ -48,6 +49,17 @@ contains
       self%file(self%count) = file
       self%line(self%count) = line
    end subroutine add_image
+
+   !> A place in words, such as 'line 12', or 'line 3 of mesh.inc' of a file that is included.
+   pure function words_of(self, place) result(words)
+      class(deck_source_type), intent(in) :: self
+      type(place_type), intent(in) :: place           !! with an image
+      character(:), allocatable :: words
+
+      words = 'line '//to_text(self%line(place%image))
+      if (self%file(place%image) > 1) words = words//' of '// &
+         self%paths(self%file(place%image))%value
+   end function words_of
 
    !> Doubles the capacity.
    subroutine grow(self)

@@ -143,9 +143,9 @@ contains
          if (.not. is_late(cards%keywords(k), .true.)) exit
          followers = followers//', *'//cards%keywords(k)%name
       end do
-      if (len(followers) > 0) followers = ', and so must the cards behind it: '//followers(3:)
+      if (len(followers) > 0) followers = ', and so must the cards after it: '//followers(3:)
       call report%error(cards%keywords(first)%place, '*'//cards%keywords(first)%name// &
-         ' must stand before the first *STEP'//followers)
+         ' must come before the first *STEP'//followers)
    end subroutine report_late
 
    subroutine check_section(card, step_open, after_step, report)
@@ -159,10 +159,10 @@ contains
          continue
       case (in_step)
          if (.not. step_open .and. card%name /= 'END STEP') call report%error(card%place, &
-            '*'//card%name//' must stand between *STEP and *END STEP')
+            '*'//card%name//' must be between *STEP and *END STEP')
       case default
          if (card%name == 'BOUNDARY' .and. after_step .and. .not. step_open) then
-            call report%error(card%place, '*BOUNDARY must stand in a step or before the first')
+            call report%error(card%place, '*BOUNDARY must be in a step or before the first')
          end if
       end select
    end subroutine check_section
@@ -185,13 +185,14 @@ contains
       end if
    end subroutine check_data_count
 
-   !> Whether a card needs no data because its parameters say all that it has to say: OP=NEW, or an
-   !> element set or surface of which an *NSET takes the nodes.
+   !> Whether a card needs no data because its parameters say all that it has to say: OP=NEW, ROUGH,
+   !> or an element set or surface of which an *NSET takes the nodes.
    pure logical function says_all(card)
       type(keyword_card_type), intent(in) :: card
 
       says_all = to_upper(parameter_text(card, 'OP')) == 'NEW' .or. (card%name == 'NSET' .and. &
-         (has_parameter(card, 'ELSET') .or. has_parameter(card, 'SURFACE')))
+         (has_parameter(card, 'ELSET') .or. has_parameter(card, 'SURFACE'))) .or. &
+         (card%name == 'FRICTION' .and. has_parameter(card, 'ROUGH'))
    end function says_all
 
    pure function most_cards(most) result(words)

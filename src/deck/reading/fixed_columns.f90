@@ -118,7 +118,7 @@ contains
       do bad = 1, last_text(line)
          if (line(bad:bad) == ' ') cycle
          if (line(bad:bad) == achar(9)) then
-            fault = 'no tab may stand on a card of fixed columns'
+            fault = 'tabs are not allowed on a card of fixed columns'
          else if (owner(bad) == undescribed) then
             fault = 'text where the format reads nothing: are the columns shifted? '// &
                'X in the format passes columns over'

@@ -28,7 +28,7 @@ contains
       inner = index(number, ' ')
       if (inner > 0) then
          bad = first + inner - 1
-         fault = 'a blank stands inside this field: are the columns shifted?'
+         fault = 'there is a blank inside this field: are the columns shifted?'
       else if (last < len(text) .and. (whole .or. .not. ends_safely(number))) then
          bad = last + 1
          fault = 'the number must end in the last column of its field, for blanks behind it '// &

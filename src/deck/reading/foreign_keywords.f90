@@ -27,18 +27,22 @@ module foreign_keywords
    character(*), parameter :: plane = &
       'elements are plane: CPE, CPS or CAX, with *SOLID SECTION'
    character(*), parameter :: held = &
-      'bodies are held by *BOUNDARY and by contact only'
-   character(*), parameter :: flat = &
-      'write the input file without parts and assemblies'
+      'bodies are held by *BOUNDARY, contact, *TIE, *EQUATION and *COUPLING'
    character(*), parameter :: fixed = &
-      'contact, materials and elements are the same in all steps'
+      'materials, elements and sections are the same in all steps'
    character(*), parameter :: sums = &
       'sums over a set of nodes: *NODE PRINT, TOTALS=ONLY; over a contact: /contact of the result'
+   character(*), parameter :: general = 'it belongs to *CONTACT'
    character(*), parameter :: fluid = 'there are no fluids'
 
-   type(foreign_keyword_type), parameter :: ignored(12) = [ &
+   type(foreign_keyword_type), parameter :: ignored(17) = [ &
+      foreign_keyword_type('CONTACT INCLUSIONS', passed_over, '', general), &
+      foreign_keyword_type('CONTACT EXCLUSIONS', passed_over, '', general), &
+      foreign_keyword_type('CONTACT PROPERTY ASSIGNMENT', passed_over, '', general), &
+      foreign_keyword_type('CONTACT INITIALIZATION ASSIGNMENT', passed_over, '', general), &
+      foreign_keyword_type('CONTACT FORMULATION', passed_over, '', general), &
+      foreign_keyword_type('CONTACT CONTROLS', passed_over, '', 'contact is exact'), &
       foreign_keyword_type('OUTPUT', passed_over, '', 'fields are written at every increment'), &
-      foreign_keyword_type('PHYSICAL CONSTANTS', passed_over, '', 'there is no radiation'), &
       foreign_keyword_type('DAMPING', passed_over, '', 'loads are slow'), &
       foreign_keyword_type('CONTACT DAMPING', passed_over, '', 'loads are slow'), &
       foreign_keyword_type('NORMAL', passed_over, '', 'the normal of the plane is z'), &
@@ -49,7 +53,7 @@ module foreign_keywords
       foreign_keyword_type('SECTION PRINT', not_printed, '', sums), &
       foreign_keyword_type('FACE PRINT', not_printed, '', sums), &
       foreign_keyword_type('RADIATE', refused_with_data, '', &
-      'heat leaves sides by *FILM and *DFLUX; there is no radiation')]
+      'heat leaves sides by *FILM and *DFLUX; only contact gaps radiate')]
 
    type(foreign_keyword_type), parameter :: properties(19) = [ &
       foreign_keyword_type('PLASTIC', refused_always, '', linear), &
@@ -72,11 +76,11 @@ module foreign_keywords
       foreign_keyword_type('DISTRIBUTION', refused_always, '', &
       'give the axes of each element set on an *ORIENTATION of its own'), &
       foreign_keyword_type('GAP HEAT GENERATION', refused_always, '', 'friction makes no heat'), &
-      foreign_keyword_type('VIEWFACTOR', refused_always, '', 'there is no radiation')]
+      foreign_keyword_type('VIEWFACTOR', refused_always, '', 'only contact gaps radiate')]
 
-   type(foreign_keyword_type), parameter :: connections(17) = [ &
-      foreign_keyword_type('COUPLING', refused_always, '', held), &
-      foreign_keyword_type('KINEMATIC', refused_always, '', held), &
+   type(foreign_keyword_type), parameter :: connections(14) = [ &
+      foreign_keyword_type('CONTACT', refused_always, 'CONTACT PAIR', &
+      'there is no general contact; name the faces of each *CONTACT PAIR'), &
       foreign_keyword_type('KINEMATIC COUPLING', refused_always, '', held), &
       foreign_keyword_type('DISTRIBUTING', refused_always, '', held), &
       foreign_keyword_type('DISTRIBUTING COUPLING', refused_always, '', held), &
@@ -87,13 +91,11 @@ module foreign_keywords
       foreign_keyword_type('DASHPOT', refused_always, '', held), &
       foreign_keyword_type('GAP', refused_always, '', 'name the faces of a *CONTACT PAIR'), &
       foreign_keyword_type('MASS', refused_always, '', 'weight is *DENSITY with GRAV on *DLOAD'), &
-      foreign_keyword_type('MODEL CHANGE', refused_always, '', fixed), &
-      foreign_keyword_type('CHANGE FRICTION', refused_always, '', fixed), &
       foreign_keyword_type('CHANGE MATERIAL', refused_always, '', fixed), &
       foreign_keyword_type('CHANGE SOLID SECTION', refused_always, '', fixed), &
       foreign_keyword_type('CHANGE SURFACE BEHAVIOR', refused_always, '', fixed)]
 
-   type(foreign_keyword_type), parameter :: procedures(20) = [ &
+   type(foreign_keyword_type), parameter :: procedures(14) = [ &
       foreign_keyword_type('FREQUENCY', refused_always, 'STATIC', analyses), &
       foreign_keyword_type('COMPLEX FREQUENCY', refused_always, 'STATIC', analyses), &
       foreign_keyword_type('BUCKLE', refused_always, 'STATIC', analyses), &
@@ -110,15 +112,9 @@ module foreign_keywords
       foreign_keyword_type('NO ANALYSIS', refused_always, 'STATIC', &
       'thercon check DECK reads a deck without solving it'), &
       foreign_keyword_type('TIME POINTS', refused_always, '', &
-      'FREQUENCY= says which increments are printed; *VERIFY meets a time'), &
-      foreign_keyword_type('PART', refused_always, '', flat), &
-      foreign_keyword_type('END PART', refused_always, '', flat), &
-      foreign_keyword_type('ASSEMBLY', refused_always, '', flat), &
-      foreign_keyword_type('END ASSEMBLY', refused_always, '', flat), &
-      foreign_keyword_type('INSTANCE', refused_always, '', flat), &
-      foreign_keyword_type('END INSTANCE', refused_always, '', flat)]
+      'FREQUENCY= says which increments are printed; *VERIFY meets a time')]
 
-   type(foreign_keyword_type), parameter :: all_foreign(68) = &
+   type(foreign_keyword_type), parameter :: all_foreign(64) = &
       [ignored, properties, connections, procedures]
 
 contains

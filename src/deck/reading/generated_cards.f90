@@ -2,30 +2,18 @@
 module generated_cards
    use card_parameters, only: has_parameter, parameter_text
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, field_text, &
-      field_type, keyword_card_type, trim_cards
+   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, field_type, &
+      keyword_card_type, replace_cards
    use deck_report, only: deck_report_type
-   use deck_source, only: place_type
+   use given_cards, only: given_type, position_of
    use keywords, only: find_keyword
    use kinds, only: dp
-   use text, only: read_integer, read_real, string_type, to_text
+   use text, only: string_type, to_text
    implicit none
    private
-   public :: generate_cards
+   public :: generate_cards, exact_text
 
    integer, parameter :: most_generated = 10000000   !! nodes or elements of one data card
-   integer, parameter :: most_nodes = 8              !! of an element
-
-   !> Nodes and elements of the cards so far.
-   type :: given_type
-      integer :: nodes = 0                        !! number of nodes
-      integer, allocatable :: node(:)             !! (capacity) their numbers
-      real(dp), allocatable :: place(:, :)        !! (2, capacity) [length]
-      integer :: elements = 0                     !! number of elements
-      integer, allocatable :: element(:)          !! (capacity) their numbers
-      integer, allocatable :: corners(:, :)       !! (most_nodes, capacity) their nodes, 0 behind
-      integer, allocatable :: keyword(:)          !! (capacity) keyword card that gives the type
-   end type given_type
 
 contains
 
@@ -42,14 +30,13 @@ contains
          if (generates(cards%keywords(k))) exit
       end do
       if (k > size(cards%keywords)) return
-      allocate(given%node(0), given%place(2, 0), given%element(0), given%corners(most_nodes, 0), &
-         given%keyword(0))
+      call given%begin()
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (.not. generates(card)) then
                call add_keyword(all, card)
                do j = card%first_data, card%last_data
-                  call note_given(card%name, cards%data(j), all%keyword_count, given)
+                  call given%note(card%name, cards%data(j), all%keyword_count)
                   call add_data(all, cards%data(j)%fields, cards%data(j)%end)
                end do
             else if (card%name == 'NGEN') then
@@ -63,11 +50,7 @@ contains
             end if
          end associate
       end do
-      call move_alloc(all%keywords, cards%keywords)
-      call move_alloc(all%data, cards%data)
-      cards%keyword_count = all%keyword_count
-      cards%data_count = all%data_count
-      call trim_cards(cards)
+      call replace_cards(cards, all)
    end subroutine generate_cards
 
    !> Whether a card generates something; without data it is reported elsewhere.
@@ -77,67 +60,6 @@ contains
       generates = (card%name == 'NGEN' .or. card%name == 'ELGEN') .and. &
          card%last_data >= card%first_data
    end function generates
-
-   !> Remembers a node or an element; fields that are no numbers are reported elsewhere.
-   subroutine note_given(keyword, data, position, given)
-      character(*), intent(in) :: keyword
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position               ! of the keyword card
-      type(given_type), intent(inout) :: given
-      real(dp) :: place(2)
-      integer :: number, corners(most_nodes), i
-      logical :: valid
-
-      call read_integer(field_text(data, 1), number, valid)
-      if (.not. valid) return
-      if (keyword == 'NODE') then
-         do i = 1, 2
-            call read_real(field_text(data, i + 1), place(i), valid)
-            if (.not. valid) place(i) = 0.0_dp
-         end do
-         call keep_node(number, place, given)
-      else if (keyword == 'ELEMENT') then
-         corners = 0
-         do i = 1, min(most_nodes, size(data%fields) - 1)
-            call read_integer(field_text(data, i + 1), corners(i), valid)
-            if (.not. valid) corners(i) = 0
-         end do
-         call keep_element(number, corners, position, given)
-      end if
-   end subroutine note_given
-
-   subroutine keep_node(number, place, given)
-      integer, intent(in) :: number
-      real(dp), intent(in) :: place(2)
-      type(given_type), intent(inout) :: given
-      integer :: n
-
-      n = given%nodes
-      if (n == size(given%node)) then
-         given%node = [given%node, spread(0, 1, n + 64)]
-         given%place = reshape(given%place, [2, 2*n + 64], pad=[0.0_dp])
-      end if
-      given%node(n + 1) = number
-      given%place(:, n + 1) = place
-      given%nodes = n + 1
-   end subroutine keep_node
-
-   subroutine keep_element(number, corners, position, given)
-      integer, intent(in) :: number, corners(most_nodes), position
-      type(given_type), intent(inout) :: given
-      integer :: n
-
-      n = given%elements
-      if (n == size(given%element)) then
-         given%element = [given%element, spread(0, 1, n + 64)]
-         given%keyword = [given%keyword, spread(0, 1, n + 64)]
-         given%corners = reshape(given%corners, [most_nodes, 2*n + 64], pad=[0])
-      end if
-      given%element(n + 1) = number
-      given%corners(:, n + 1) = corners
-      given%keyword(n + 1) = position
-      given%elements = n + 1
-   end subroutine keep_element
 
    !> First and last node, increment: the nodes between the two, at equal distances on a line.
    subroutine generate_nodes(card, data, given, report, all)
@@ -175,7 +97,7 @@ contains
       if (n > 1) call add_generated(card, 'NODE', '', all)
       do i = 1, n - 1
          place = given%place(:, at(1)) + (given%place(:, at(2)) - given%place(:, at(1)))*i/n
-         call keep_node(ends(1) + i*step, place, given)
+         call given%keep_node(ends(1) + i*step, place)
          words(1)%value = to_text(ends(1) + i*step)
          words(2)%value = exact_text(place(1))
          words(3)%value = exact_text(place(2))
@@ -334,15 +256,6 @@ contains
       end do
       call add_data(all, fields, data%end)
    end subroutine add_fields
-
-   !> Position of a number in a list; 0 where it is not.
-   pure integer function position_of(number, list)
-      integer, intent(in) :: number, list(:)
-
-      do position_of = size(list), 1, -1
-         if (list(position_of) == number) return
-      end do
-   end function position_of
 
    !> A number with all of its digits.
    function exact_text(value) result(string)

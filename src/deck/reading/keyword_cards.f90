@@ -91,7 +91,7 @@ contains
       foreign = find_foreign(name)
       select case (foreign%status)
       case (passed_over)
-         call add_note(cards%notes, '*'//trim(foreign%name)//' is read and not needed: '// &
+         call add_note(cards%notes, '*'//trim(foreign%name)//' is ignored: '// &
             trim(foreign%reason))
       case (not_printed)
          call report%warning(card%place, '*'//trim(foreign%name)//' is not printed; '// &
@@ -101,7 +101,7 @@ contains
          call report%error(card%place, refused_foreign(foreign))
       case (refused_with_data)
          card%refusal_of_data = refused_foreign(foreign)
-         call add_note(cards%notes, '*'//trim(foreign%name)//' without data is not needed')
+         call add_note(cards%notes, '*'//trim(foreign%name)//' without data is ignored')
       case default
          call report_unknown_keyword(name, is_text, report, card)
       end select
@@ -158,7 +158,7 @@ contains
          if (.not. valid) cycle
          if (is_repeated(found(:n), parameter%name)) then
             if (report%error_count() == errors) call report%error(parameter%place, &
-               parameter%name//' stands twice on this card')
+               parameter%name//' appears twice on this card')
             cycle
          end if
          n = n + 1
@@ -192,7 +192,7 @@ contains
       do k = i + 1, size(fields)
          list = list//', '//fields(k)%text
       end do
-      call report%explain(fields(i)%place, 'a number is no parameter; data stand on a card of '// &
+      call report%explain(fields(i)%place, 'a number is not a parameter; put data on a card of '// &
          'their own: write '//list//' below the keyword')
    end subroutine report_number
 
@@ -255,7 +255,7 @@ contains
          (report%error_count() > errors .and. .not. valid)
       if (len(known%name) > 0 .and. known%status == not_needed .and. &
          report%error_count() == errors) call add_note(cards%notes, '*'//card%name//': '// &
-         known%name//' is read and not needed')
+         known%name//' is ignored')
    end subroutine take_parameter
 
    !> The value behind the equals sign.

@@ -106,7 +106,7 @@ module keyword_meanings
    character(*), parameter :: coulomb = 'friction is Coulomb''s with one coefficient; leave it out'
    character(*), parameter :: exact = 'contact is exact; leave it out'
 
-   type(parameter_meaning_type), parameter :: of_parameters(13) = [ &
+   type(parameter_meaning_type), parameter :: of_parameters(11) = [ &
       parameter_meaning_type('', 'RIKS', &
       'loads and temperatures follow the time; leave it out'), &
       parameter_meaning_type('', 'MXDEM', capacity), &
@@ -114,9 +114,7 @@ module keyword_meanings
       parameter_meaning_type('', 'DEPENDENCIES', 'properties are constant; leave it out'), &
       parameter_meaning_type('', 'TEMPERATURE', 'properties are constant; leave it out'), &
       parameter_meaning_type('', 'INPUT', 'data in a file of their own are *INCLUDE, INPUT='), &
-      parameter_meaning_type('', 'INSTANCE', 'write the input file without parts and assemblies'), &
-      parameter_meaning_type('FRICTION', 'ROUGH', 'give a large coefficient of friction'), &
-      parameter_meaning_type('FRICTION', 'TAUMAX', coulomb), &
+      parameter_meaning_type('', 'INSTANCE', 'write the name as INSTANCE.NAME'), &
       parameter_meaning_type('FRICTION', 'LAGRANGE', coulomb), &
       parameter_meaning_type('CONTACT PAIR', 'HCRIT', exact), &
       parameter_meaning_type('CONTACT PAIR', 'MECHANICAL CONSTRAINT', exact), &

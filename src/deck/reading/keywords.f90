@@ -41,23 +41,25 @@ module keywords
    !> Why a keyword, or a parameter of it, is refused.
    type :: refusal_type
       character(32) :: keyword     !! keyword; blank for all that have the parameter
-      character(19) :: parameter   !! parameter, blank for the keyword itself
+      character(20) :: parameter   !! parameter, blank for the keyword itself
       character(72) :: reason      !! why
    end type refusal_type
 
-   type(known_keyword_type), parameter :: model_keywords(29) = [ &
+   type(known_keyword_type), parameter :: model_keywords(30) = [ &
       known_keyword_type('HEADING', built, in_model, 0, many, ''), &
       known_keyword_type('OPTIONS', built, in_model, 0, 0, &
          'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
+      known_keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
+      'ABSOLUTE ZERO=/STEFAN BOLTZMANN=/~NEWTON GRAVITY=/~UNIVERSAL GAS CONSTANT='), &
       known_keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
       known_keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
       known_keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
       known_keyword_type('NGEN', built, in_model, 1, many, 'NSET=/!LINE='), &
       known_keyword_type('ELGEN', built, in_model, 1, many, 'ELSET='), &
       known_keyword_type('NSET', built, in_model, 1, many, &
-      'NSET=/GENERATE/ELSET=/SURFACE=/~INTERNAL/~UNSORTED'), &
+      'NSET=/GENERATE/ELSET=/SURFACE=/INSTANCE=/~INTERNAL/~UNSORTED'), &
       known_keyword_type('ELSET', built, in_model, 1, many, &
-      'ELSET=/GENERATE/~INTERNAL/~UNSORTED'), &
+      'ELSET=/GENERATE/INSTANCE=/~INTERNAL/~UNSORTED'), &
       known_keyword_type('SURFACE', built, in_model, 1, many, 'NAME=/TYPE=/~INTERNAL'), &
       known_keyword_type('MATERIAL', built, in_model, 0, 0, 'NAME='), &
       known_keyword_type('ELASTIC', built, in_model, 1, many, 'TYPE='), &
@@ -72,30 +74,41 @@ module keywords
       'NAME=/TIME=/DEFINITION=/FIXED INTERVAL=/BEGIN=/VALUE=/~SMOOTH=/!USER/!SHIFTX=/!SHIFTY='), &
       known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
       known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 1, 'NAME='), &
-      known_keyword_type('FRICTION', built, in_model, 1, 1, &
-      '~SLIP TOLERANCE=/~ELASTIC SLIP='), &
+      known_keyword_type('FRICTION', built, in_both, 1, 1, &
+      'ROUGH/TAUMAX=/~SLIP TOLERANCE=/~ELASTIC SLIP='), &
       known_keyword_type('GAP CONDUCTANCE', built, in_model, 1, many, &
       'PRESSURE/CLEARANCE/!USER/!DEPENDENCIES='), &
-      known_keyword_type('GAP LAW', built, in_model, 1, many, 'TYPE='), &
+      known_keyword_type('GAP LAW', built, in_model, 1, many, &
+      'TYPE=/JUMP=/ROUGHNESS=/EMISSIVITY='), &
       known_keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
-      'PRESSURE-OVERCLOSURE='), &
+      'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT/!NO SEPARATION'), &
       known_keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
-      'INTERACTION=/NAME=/PAIRING=/~TYPE=/~SMALL SLIDING/!ADJUST=/!TIED'), &
+      'INTERACTION=/NAME=/PAIRING=/ADJUST=/~TYPE=/~SMALL SLIDING/!TIED'), &
       known_keyword_type('TIE', built, in_model, 1, many, 'NAME=/POSITION TOLERANCE=/ADJUST=/'// &
       '~TYPE=/~NO ROTATION/~NO THICKNESS/!CYCLIC SYMMETRY/!MULTISTAGE/!TIED NSET='), &
       known_keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
-      known_keyword_type('TRANSFORM', refused, in_model, 0, many, '')]
+      known_keyword_type('TRANSFORM', built, in_model, 1, 1, 'NSET=/TYPE=')]
 
-   type(known_keyword_type), parameter :: control_keywords(10) = [ &
+   type(known_keyword_type), parameter :: control_keywords(19) = [ &
+      known_keyword_type('PART', built, in_model, 0, 0, 'NAME='), &
+      known_keyword_type('END PART', built, in_model, 0, 0, ''), &
+      known_keyword_type('ASSEMBLY', built, in_model, 0, 0, 'NAME='), &
+      known_keyword_type('END ASSEMBLY', built, in_model, 0, 0, ''), &
+      known_keyword_type('INSTANCE', built, in_model, 0, 2, 'NAME=/PART=/!LIBRARY='), &
+      known_keyword_type('END INSTANCE', built, in_model, 0, 0, ''), &
       known_keyword_type('FIXED POINT', built, in_both, 0, 0, &
       'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
       known_keyword_type('START', built, in_both, 0, many, 'FROM='), &
       known_keyword_type('THERMAL SCHEME', built, in_both, 0, 1, 'TYPE='), &
       known_keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
-      known_keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS='), &
+      known_keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS=/SURFACE=/ELSET=/DISTANCE='), &
       known_keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &
+      known_keyword_type('ACCURACY', built, in_model, 1, many, 'ROUNDS='), &
       known_keyword_type('CONTROLS', not_needed, in_both, 0, many, 'PARAMETERS=/FIELD=/RESET'), &
-      known_keyword_type('EQUATION', refused, in_model, 0, many, ''), &
+      known_keyword_type('EQUATION', built, in_model, 1, many, '!REMOVE/!INPUT='), &
+      known_keyword_type('COUPLING', built, in_model, 0, 0, &
+      'REF NODE=/SURFACE=/CONSTRAINT NAME=/!ORIENTATION=/!ALPHA='), &
+      known_keyword_type('KINEMATIC', built, in_model, 0, many, ''), &
       known_keyword_type('MPC', refused, in_model, 0, many, ''), &
       known_keyword_type('RIGID BODY', refused, in_model, 0, many, '')]
 
@@ -107,7 +120,7 @@ module keywords
    !> Parameters of the damping by which Abaqus stabilizes a step.
    character(*), parameter :: stabilization = '~STABILIZE?/~FACTOR=/~ALLSDTOL=/~CONTINUE=/'
 
-   type(known_keyword_type), parameter :: step_keywords(24) = [ &
+   type(known_keyword_type), parameter :: step_keywords(29) = [ &
       known_keyword_type('STEP', built, in_both, 0, 0, &
       'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM=/~EXTRAPOLATION=/!PERTURBATION'), &
       known_keyword_type('STATIC', built, in_step, 0, 1, &
@@ -130,8 +143,15 @@ module keywords
       'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
       known_keyword_type('FILM', built, in_step, 1, many, &
       'OP=/AMPLITUDE=/FILM AMPLITUDE=/!TIME DELAY=/!FILM TIME DELAY='), &
+      known_keyword_type('DSFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      known_keyword_type('SFILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
       known_keyword_type('TEMPERATURE', built, in_step, 1, many, &
       'OP=/AMPLITUDE=/!TIME DELAY=/!USER/!FILE=/!BSTEP='), &
+      known_keyword_type('CHANGE FRICTION', built, in_step, 0, 0, 'INTERACTION='), &
+      known_keyword_type('MODEL CHANGE', built, in_step, 1, many, &
+      'TYPE=/ADD/REMOVE/!MECHSTRAINTORESIDUAL'), &
+      known_keyword_type('CONTACT INTERFERENCE', built, in_step, 1, many, &
+      'TYPE=/AMPLITUDE=/OP=/SHRINK'), &
       known_keyword_type('NODE FILE', built, in_step, 0, many, file_parameters), &
       known_keyword_type('EL FILE', built, in_step, 0, many, file_parameters), &
       known_keyword_type('CONTACT FILE', built, in_step, 0, many, file_parameters), &
@@ -141,7 +161,7 @@ module keywords
       known_keyword_type('RESTART', not_needed, in_both, 0, 0, &
       '!READ/STEP=/WRITE/FREQUENCY=/OVERLAY'), &
       known_keyword_type('NODE PRINT', built, in_step, 1, many, &
-      'NSET=/FREQUENCY=/TOTALS=/~GLOBAL=/~FREQUENCYF=/!TIME POINTS='), &
+      'NSET=/FREQUENCY=/TOTALS=/GLOBAL=/~FREQUENCYF=/!TIME POINTS='), &
       known_keyword_type('EL PRINT', built, in_step, 1, many, &
       'ELSET=/FREQUENCY=/GLOBAL=/~TOTALS=/~FREQUENCYF=/!TIME POINTS='), &
       known_keyword_type('CONTACT PRINT', built, in_step, 0, many, &
@@ -150,19 +170,25 @@ module keywords
       known_keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Every keyword of the dialect.
-   type(known_keyword_type), parameter :: known_keywords(63) = &
+   type(known_keyword_type), parameter :: known_keywords(78) = &
       [model_keywords, control_keywords, step_keywords]
 
-   type(refusal_type), parameter :: refusals(28) = [ &
-      refusal_type('TRANSFORM', '', 'displacements and forces are along x and y; give them so'), &
-      refusal_type('EQUATION', '', 'bodies are held by *BOUNDARY and by contact only'), &
-      refusal_type('MPC', '', 'bodies are held by *BOUNDARY and by contact only'), &
+   type(refusal_type), parameter :: refusals(32) = [ &
+      refusal_type('EQUATION', 'REMOVE', 'equations hold in all steps'), &
+      refusal_type('EQUATION', 'INPUT', 'take *INCLUDE behind the keyword'), &
+      refusal_type('INSTANCE', 'LIBRARY', 'the mesh is in the deck; give its part'), &
+      refusal_type('COUPLING', 'ORIENTATION', 'faces follow along x and y'), &
+      refusal_type('COUPLING', 'ALPHA', 'small rotations need no penalty'), &
+      refusal_type('MPC', '', 'give its relations by *EQUATION or *COUPLING'), &
       refusal_type('RIGID BODY', '', 'every body is elastic; give it a high modulus'), &
       refusal_type('NGEN', 'LINE', &
       'nodes are generated on straight lines; give those of a curve'), &
       refusal_type('GAP CONDUCTANCE', 'USER', 'no routine of the user is called; give the table'), &
       refusal_type('GAP CONDUCTANCE', 'DEPENDENCIES', 'conductance depends on one quantity only'), &
-      refusal_type('CONTACT PAIR', 'ADJUST', 'it would move nodes; gaps are those of the mesh'), &
+      refusal_type('MODEL CHANGE', 'MECHSTRAINTORESIDUAL', &
+      'strains and stresses go on from step to step'), &
+      refusal_type('SURFACE BEHAVIOR', 'NO SEPARATION', &
+      'faces that do not come apart are those of *TIE'), &
       refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; take *TIE'), &
       refusal_type('TIE', 'CYCLIC SYMMETRY', 'only faces that lie opposite each other are tied'), &
       refusal_type('TIE', 'MULTISTAGE', 'only faces that lie opposite each other are tied'), &

@@ -7,7 +7,7 @@ module surface_chains
    use text, only: to_text
    implicit none
    private
-   public :: surface_chain_type, chain_faces, precedes
+   public :: surface_chain_type, chain_faces, aligned_chains
 
    !> Part of the length of a line by which coordinates count as different.
    real(dp), parameter :: distinct = 1.0e-9_dp
@@ -73,6 +73,41 @@ contains
       if (chain%closed) chain%nodes = chain%nodes(:size(chain%nodes) - 1)
    end subroutine chain_faces
 
+   !> Turns both lines to run from the slave's first contact point on: an open one if its ends so
+   !> lie nearer to the slave's, a closed face of the master always, for it runs against the slave.
+   subroutine aligned_chains(mesh, slave, master, turned)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(inout) :: slave, master   !! as from chain_faces
+      logical, intent(out) :: turned(2)             !! whether they run against their faces then
+      real(dp) :: distance(size(master%nodes))
+      integer :: n, start
+
+      turned(1) = .false.
+      associate (x => mesh%coordinates)
+         if (.not. slave%closed) then
+            n = size(slave%nodes)
+            associate (first => x(:, slave%nodes(1)), last => x(:, slave%nodes(n)))
+               turned(1) = precedes(last, first, norm2(last - first))
+            end associate
+            if (turned(1)) slave%nodes = slave%nodes(n:1:-1)
+         end if
+         n = size(master%nodes)
+         distance = norm2(x(:, master%nodes) - spread(x(:, slave%nodes(1)), 2, n), dim=1)
+         if (master%closed) then
+            start = 1 + (master%side_nodes - 1)*(minloc(distance(::master%side_nodes - 1), dim=1) &
+               - 1)
+            master%nodes = cshift(master%nodes, start - 1)
+            master%nodes(2:) = master%nodes(n:2:-1)
+            turned(2) = .true.
+         else
+            ! Squares of these distances, less what they have in common: bodies may lie far apart.
+            turned(2) = dot_product(x(:, slave%nodes(size(slave%nodes))) - &
+               x(:, slave%nodes(1)), x(:, master%nodes(n)) - x(:, master%nodes(1))) < 0.0_dp
+            if (turned(2)) master%nodes = master%nodes(n:1:-1)
+         end if
+      end associate
+   end subroutine aligned_chains
+
    !> The side that leaves each node, and the side to begin with: that whose first corner no other
    !> side reaches, on a closed face that of the preceding corner, 0 where the line branches.
    subroutine find_first(mesh, sides, leaving, first)
@@ -136,8 +171,8 @@ contains
 
    !> Whether a point comes before another one: by the smaller x, then by the smaller y.
    pure logical function precedes(a, b, extent)
-      real(dp), intent(in) :: a(2), b(2)   !! points [length]
-      real(dp), intent(in) :: extent       !! length of the line, by which rounding is judged
+      real(dp), intent(in) :: a(2), b(2)   ! points [length]
+      real(dp), intent(in) :: extent       ! length of the line, by which rounding is judged
 
       precedes = a(1) < b(1)
       if (abs(a(1) - b(1)) <= distinct*extent) precedes = a(2) < b(2)

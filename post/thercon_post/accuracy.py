@@ -1,0 +1,49 @@
+"""A requested accuracy: the bound of each target's error, over it, against the cost of the rounds."""
+
+import numpy as np
+
+from . import style
+from .errors import UserError
+from .style import plt
+from .tables import stack_tables
+
+SMALLEST = 1e-3  # of a target: bounds below it are drawn here
+
+
+def draw(result, options):
+    """Draw the rounds of a result; return the files written."""
+    rounds = result.file.get("accuracy")
+    if rounds is None:
+        raise UserError(f"{result.path}: no accuracy was requested (*ACCURACY, --accuracy)")
+    cost = np.cumsum(rounds["cpu_seconds"][:])
+    series = list(targets(rounds))
+    if not series:
+        raise UserError(f"{result.path}: no quantity has a target")
+    figure, axes = plt.subplots(
+        figsize=(style.DOUBLE_COLUMN * 0.62, 3.2), layout="constrained"
+    )
+    tables = []
+    for number, (name, rows) in enumerate(series):
+        value, bound, allowed = rows[:, 1], rows[:, 2], rows[:, 3]
+        ratio = np.maximum(bound / allowed, SMALLEST)
+        look = style.SERIES[number % len(style.SERIES)], style.MARKERS[number % len(style.MARKERS)]
+        axes.plot(cost, ratio, color=look[0], marker=look[1], ms=3.5, lw=0.9, label=name)
+        table = {"target": np.full(len(cost), name, dtype=object), "cpu_seconds": cost}
+        table |= {"unknowns": rounds["unknowns"][:], "value": value, "bound": bound}
+        tables.append(table | {"allowed": allowed})
+    axes.axhline(1.0, color=style.GREY, lw=0.8, ls="--")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("CPU time of all rounds, s")
+    axes.set_ylabel("bound of the error / target")
+    figure.legend(loc="outside lower center", ncols=2, fontsize=7)
+    name = style.file_name(result, "accuracy")
+    return style.write(figure, stack_tables(tables), options.out, name)
+
+
+def targets(rounds):
+    """Yield name and rows (step, value, bound, target) of each quantity that is there."""
+    for face, quantities in rounds["bounds"].items():
+        for quantity, rows in quantities.items():
+            if np.any(rows[:, 0] > 0):
+                yield f"{style.plain(face)} {quantity.replace('_', ' ')}", rows[:]

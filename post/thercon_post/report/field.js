@@ -1,0 +1,240 @@
+'use strict';
+// The deformed bodies with one field: a raster of colour bands below outlines in SVG.
+function fieldPicture(data, {$, floats, integers, show, escaped, ticks, loadWords, withUnit, later}) {
+const BANDS = 14, ROUNDING = 1e-6;   // values are stored with seven digits
+const all = data.fields, points = floats(all.points), count = points.length / 2;
+const nodes = integers(all.node_id), displacement = all.displacement && floats(all.displacement);
+const edges = integers(all.edges), boundary = integers(all.boundary);
+const groups = all.cells.map(cell => ({...cell, connectivity: integers(cell.connectivity),
+   body: integers(cell.body), member: integers(cell.member), element: integers(cell.element)}));
+const elements = groups.reduce((sum, group) => sum + group.member.length, 0);
+const quantities = all.quantities.map(each => ({...each, values: floats(each.values)}));
+const bodies = [...new Set(groups.flatMap(group => Array.from(group.body)))].sort((a, b) => a - b);
+const palettes = Object.fromEntries(Object.entries(data.colours).map(([name, hex]) =>
+   [name, hex.match(/.{6}/g).map(c => [0, 2, 4].map(k => parseInt(c.slice(k, k + 2), 16)))]));
+
+$('quantity').innerHTML = quantities.map((each, k) => `<option value="${k}">${escaped(each.label)}</option>`).join('');
+$('quantity').value = String(Math.max(0, quantities.findIndex(each => each.key === 'von_mises')));
+if (!all.near) $('region').parentElement.hidden = true;
+if (!displacement) $('scale').parentElement.hidden = true;
+for (const id of ['quantity', 'region', 'scale', 'fixed']) $(id).addEventListener('input', later);
+
+// Shape functions at the points of a cut element, and its triangles.
+function cut(kind, n) {
+   const weights = [], place = {}, triangles = [], isTriangle = kind === 5 || kind === 22;
+   for (let j = 0; j <= n; j++) for (let i = 0; i <= n; i++) {
+      if (isTriangle && i + j > n) continue;
+      place[[i, j]] = weights.length;
+      weights.push(shape(kind, isTriangle ? i / n : 2 * i / n - 1, isTriangle ? j / n : 2 * j / n - 1));
+   }
+   const add = (...corners) => { if (corners.every(c => c in place)) triangles.push(corners.map(c => place[c])); };
+   for (let j = 0; j < n; j++) for (let i = 0; i < n; i++) {
+      add([i, j], [i + 1, j], [i, j + 1]);
+      add([i + 1, j], [i + 1, j + 1], [i, j + 1]);
+   }
+   return {weights, triangles};
+}
+function shape(kind, r, s) {
+   if (kind === 5) return [1 - r - s, r, s];
+   if (kind === 22) {
+      const t = 1 - r - s;
+      return [t * (2 * t - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * r * t, 4 * r * s, 4 * s * t];
+   }
+   const ends = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
+   if (kind === 9) return ends.map(([a, b]) => 0.25 * (1 + r * a) * (1 + s * b));
+   return [...ends.map(([a, b]) => 0.25 * (1 + r * a) * (1 + s * b) * (r * a + s * b - 1)),
+      0.5 * (1 - r * r) * (1 - s), 0.5 * (1 + r) * (1 - s * s), 0.5 * (1 - r * r) * (1 + s), 0.5 * (1 - r) * (1 - s * s)];
+}
+const pieces = Math.max(1, Math.min(8, Math.round(Math.sqrt(16000 / elements))));
+for (const group of groups) group.cut = cut(group.kind, pieces);
+
+function moved(step, factor) {
+   const found = Float64Array.from(points);
+   if (displacement)
+      for (let k = 0; k < 2 * count; k++) found[k] += factor * displacement[step * 2 * count + k];
+   return found;
+}
+function windowOf(places) {
+   const box = [Infinity, Infinity, -Infinity, -Infinity];
+   if ($('region').value === 'near') {
+      const [[x0, y0], [x1, y1]] = all.near;
+      return [x0, y0, x1, y1];
+   }
+   for (let k = 0; k < count; k++) {
+      box[0] = Math.min(box[0], places[2 * k]); box[2] = Math.max(box[2], places[2 * k]);
+      box[1] = Math.min(box[1], places[2 * k + 1]); box[3] = Math.max(box[3], places[2 * k + 1]);
+   }
+   const room = 0.02 * Math.max(box[2] - box[0], box[3] - box[1]);
+   return [box[0] - room, box[1] - room, box[2] + room, box[3] + room];
+}
+
+// Values of one body that lie in the window, at one step or, for the same colours at all loads, at all.
+function valuesOf(quantity, body, steps, places, box) {
+   const found = [], size = quantity.of === 'points' ? count : elements, taken = new Set();
+   for (const group of groups)
+      for (let e = 0; e < group.member.length; e++) {
+         if (group.body[e] !== body) continue;
+         let inside = false;
+         for (let k = 0; k < group.nodes; k++) {
+            const p = group.connectivity[e * group.nodes + k], x = places[2 * p], y = places[2 * p + 1];
+            const isIn = x >= box[0] && x <= box[2] && y >= box[1] && y <= box[3];
+            inside = inside || isIn;
+            if (quantity.of === 'points' && isIn) taken.add(p);
+         }
+         if (quantity.of === 'elements' && inside) taken.add(group.member[e]);
+      }
+   for (const step of steps) for (const p of taken) found.push(quantity.values[step * size + p]);
+   return found.filter(Number.isFinite).sort((a, b) => a - b);
+}
+// One scale for bodies whose ranges are alike; ranges that differ tenfold have their own.
+function scalesOf(quantity, steps, places, box) {
+   const peak = quantity.values.reduce((most, v) => Number.isFinite(v) ? Math.max(most, Math.abs(v)) : most, 0);
+   const ranges = bodies.map(body => {
+      const values = valuesOf(quantity, body, steps, places, box);
+      const at = part => values[Math.min(values.length - 1, Math.floor(part * values.length))];
+      return quantity.key === 'temperature' ? {body, low: at(0), high: at(1)} : {body, low: at(0.005), high: at(0.995)};
+   }).filter(range => range.low !== undefined).sort((a, b) => (b.high - b.low) - (a.high - a.low));
+   const found = [];
+   for (const range of ranges) {
+      const extent = range.high - range.low, last = found.at(-1);
+      if (last && (extent > 0.1 * last.extent || extent <= ROUNDING * peak)) {
+         last.low = Math.min(last.low, range.low); last.high = Math.max(last.high, range.high);
+         last.bodies.push(range.body);
+      } else found.push({low: range.low, high: range.high, extent, bodies: [range.body]});
+   }
+   return found.map(scale => levelled(scale, quantity, peak));
+}
+function levelled(scale, quantity, peak) {
+   let {low, high} = scale;
+   if (high - low <= ROUNDING * peak) {
+      const room = 0.05 * peak || 0.5;
+      low -= room; high += room;
+   } else if (quantity.signed && low < 0 && high > 0 && Math.min(-low, high) > 0.15 * Math.max(-low, high)) {
+      high = Math.max(-low, high); low = -high;
+   }
+   const inner = ticks(low, high, BANDS - 2), step = inner.length > 1 ? inner[1] - inner[0] : high - low;
+   const first = step * Math.floor(low / step + 1e-6), last = step * Math.ceil(high / step - 1e-6);
+   const balanced = Math.abs(first + last) <= 1e-9 * Math.abs(last);
+   const name = quantity.key === 'temperature' ? 'inferno' : balanced ? 'RdBu_r' : 'viridis';
+   const bands = Math.max(1, Math.round((last - first) / step));
+   let colours = palettes[name];
+   if (name === 'viridis' && last <= -first) colours = colours.slice().reverse();
+   const shades = Array.from({length: bands}, (_, k) => colours[Math.round((bands === 1 ? 0.5 : k / (bands - 1)) * (colours.length - 1))]);
+   return {bodies: scale.bodies, first, last, step, bands, shades};
+}
+
+function paint(places, quantity, step, scales, box, canvas) {
+   const shown = Math.min(900, $('panel').clientWidth || 700);
+   const ratio = (box[3] - box[1]) / (box[2] - box[0]);
+   const width = Math.round(Math.min(2 * shown, 1600, 1500 / ratio)), height = Math.max(1, Math.round(width * ratio));
+   canvas.width = width; canvas.height = height;
+   const context = canvas.getContext('2d'), image = context.createImageData(width, height);
+   const pixels = new Uint32Array(image.data.buffer), size = width / (box[2] - box[0]);
+   const scaleOf = new Map(scales.flatMap(scale => scale.bodies.map(body => [body, scale])));
+   for (const scale of scales) scale.packed = scale.shades.map(([r, g, b]) => (255 << 24 | b << 16 | g << 8 | r) >>> 0);
+   for (const group of groups) {
+      const {weights, triangles} = group.cut, n = group.nodes;
+      const x = new Float64Array(weights.length), y = x.slice(), v = x.slice();
+      for (let e = 0; e < group.member.length; e++) {
+         const scale = scaleOf.get(group.body[e]);
+         if (!scale) continue;
+         for (let p = 0; p < weights.length; p++) {
+            x[p] = y[p] = v[p] = 0;
+            for (let k = 0; k < n; k++) {
+               const node = group.connectivity[e * n + k], w = weights[p][k];
+               x[p] += w * places[2 * node]; y[p] += w * places[2 * node + 1];
+               if (quantity.of === 'points') v[p] += w * quantity.values[step * count + node];
+            }
+            if (quantity.of === 'elements') v[p] = quantity.values[step * elements + group.member[e]];
+            if (quantity.key === 'von_mises') v[p] = Math.max(0, v[p]);
+            x[p] = (x[p] - box[0]) * size; y[p] = height - (y[p] - box[1]) * size;
+         }
+         for (const [a, b, c] of triangles)
+            fill(pixels, width, height, [x[a], y[a], v[a]], [x[b], y[b], v[b]], [x[c], y[c], v[c]], scale);
+      }
+   }
+   context.putImageData(image, 0, 0);
+   return {width, height, size};
+}
+function fill(pixels, width, height, a, b, c, scale) {
+   const area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+   if (area === 0 || !Number.isFinite(a[2] + b[2] + c[2])) return;
+   const left = Math.max(0, Math.ceil(Math.min(a[0], b[0], c[0]) - 0.5)), right = Math.min(width - 1, Math.floor(Math.max(a[0], b[0], c[0]) + 0.5));
+   const top = Math.max(0, Math.ceil(Math.min(a[1], b[1], c[1]) - 0.5)), foot = Math.min(height - 1, Math.floor(Math.max(a[1], b[1], c[1]) + 0.5));
+   for (let j = top; j <= foot; j++) for (let i = left; i <= right; i++) {
+      const s = ((i - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (j - a[1])) / area;
+      const t = ((b[0] - a[0]) * (j - a[1]) - (i - a[0]) * (b[1] - a[1])) / area;
+      if (s < -1e-6 || t < -1e-6 || s + t > 1 + 1e-6) continue;
+      const value = a[2] + s * (b[2] - a[2]) + t * (c[2] - a[2]);
+      const band = Math.floor((value - scale.first) / scale.step + 1e-4);
+      pixels[j * width + i] = scale.packed[Math.max(0, Math.min(scale.bands - 1, band))];
+   }
+}
+
+function curves(list, places, box, {height, size}) {
+   const X = k => ((places[2 * k] - box[0]) * size), Y = k => (height - (places[2 * k + 1] - box[1]) * size);
+   let path = '';
+   for (let e = 0; e < list.length; e += 3) {
+      const [a, b, m] = [list[e], list[e + 1], list[e + 2]];
+      const end = `${X(b).toFixed(1)} ${Y(b).toFixed(1)}`;
+      path += `M${X(a).toFixed(1)} ${Y(a).toFixed(1)}` + (m < 0 ? `L${end}` :
+         `Q${(2 * X(m) - 0.5 * (X(a) + X(b))).toFixed(1)} ${(2 * Y(m) - 0.5 * (Y(a) + Y(b))).toFixed(1)} ${end}`);
+   }
+   return path;
+}
+function drawBars(scales, quantity, tallest) {
+   const H = Math.max(150, Math.min(300, tallest) / scales.length) + 50;
+   $('bars').innerHTML = scales.map(scale => {
+      const tall = (H - 58) / scale.bands, out = [];
+      scale.shades.forEach(([r, g, b], k) => out.push(`<rect x="4" y="${42 + (scale.bands - 1 - k) * tall}" width="18" height="${tall + 0.3}" fill="rgb(${r},${g},${b})"/>`));
+      const every = scale.bands > 8 ? 2 : 1;
+      for (let k = 0; k <= scale.bands; k++) {
+         if (Math.round(scale.first / scale.step + k) % every) continue;
+         const y = 42 + (scale.bands - k) * tall;
+         out.push(`<path d="M22 ${y}h5" stroke="#333"/><text x="31" y="${y + 4}">${show(scale.first + k * scale.step)}</text>`);
+      }
+      const whose = scales.length > 1 ? `bod${scale.bodies.length > 1 ? 'ies' : 'y'} ${scale.bodies.sort((a, b) => a - b).join(', ')}` : '';
+      return `<svg viewBox="0 0 136 ${H}" role="img" aria-label="Colours of ${escaped(quantity.label)} ${whose}"><text x="4" y="14">${escaped(quantity.unit)}</text>` +
+         `<text x="4" y="28">${whose}</text><rect x="4" y="42" width="18" height="${H - 58}" fill="none" stroke="#333"/>${out.join('')}</svg>`;
+   }).join('');
+}
+function tellRange(quantity, step, row, given) {
+   const size = quantity.of === 'points' ? count : elements, values = quantity.values;
+   let low = -1, high = -1;
+   for (let k = step * size; k < (step + 1) * size; k++) {
+      if (!Number.isFinite(values[k])) continue;
+      if (low < 0 || values[k] < values[low]) low = k;
+      if (high < 0 || values[k] > values[high]) high = k;
+   }
+   const names = new Map();
+   if (quantity.of === 'elements') for (const g of groups) g.member.forEach((m, k) => names.set(m, g.element[k]));
+   const where = k => quantity.of === 'points' ? `node ${nodes[k - step * size]}` : `element ${names.get(k - step * size)}`;
+   const said = low < 0 ? 'no values at this increment' :
+      `least ${show(values[low])} at ${where(low)}, largest ${show(values[high])} at ${where(high)}`;
+   const late = row === given ? '' : ` (the page keeps no fields of increment ${given + 1})`;
+   $('range').innerHTML = `${escaped(withUnit(quantity.label, quantity.unit))}, ${escaped(loadWords(row))}${late}: <b>${said}</b>.`;
+}
+
+function draw(given) {
+   let step = 0;
+   for (let k = 0; k < all.rows.length; k++) if (all.rows[k] <= given) step = k;
+   const quantity = quantities[Number($('quantity').value)], factor = displacement ? Math.max(0, Number($('scale').value)) : 0;
+   const places = moved(step, factor), box = windowOf(places);
+   const steps = $('fixed').checked ? all.rows.map((_, k) => k) : [step];
+   const scales = scalesOf(quantity, steps, places, box);
+   const canvas = $('panel').querySelector('canvas'), shape = (box[2] - box[0]) / (box[3] - box[1]);
+   $('panel').style.maxWidth = `min(100%, ${Math.round(640 * shape)}px)`;
+   const frame = paint(places, quantity, step, scales, box, canvas);
+   const thin = edges.length ? `<path d="${curves(edges, places, box, frame)}" fill="none" stroke="#000" stroke-opacity="0.3" stroke-width="0.7"/>` : '';
+   $('lines').innerHTML = `<svg viewBox="0 0 ${frame.width} ${frame.height}" style="overflow:hidden" role="img" aria-label="${escaped(quantity.label)} on the deformed bodies, ${escaped(loadWords(all.rows[step]))}">` +
+      `${thin}<path d="${curves(boundary, places, box, frame)}" fill="none" stroke="#000" stroke-width="2"/></svg>`;
+   drawBars(scales, quantity, $('panel').clientHeight);
+   tellRange(quantity, step, all.rows[step], given);
+   $('field-note').textContent = [
+      factor > 1 && all.overlaps ? `Displacements are drawn ${show(factor)} times too large, the initial gaps are not: bodies that touch seem to overlap by ${show(factor - 1)} times their initial gap.` : '',
+      factor > 1 && !all.overlaps ? `Displacements are drawn ${show(factor)} times too large.` : '',
+      scales.length > 1 ? 'The ranges of the bodies differ more than tenfold: each has its own colours.' : '',
+   ].filter(Boolean).join(' ');
+}
+return {draw};
+}

@@ -1,0 +1,89 @@
+"""What the page takes from the listing of the run: outcome, checks, warnings."""
+
+import re
+from dataclasses import dataclass, field
+
+# card, kind, quantity, where, time, expected, found, deviation, allowed, kind of it, verdict
+CHECK = re.compile(
+    r"^ *(\d+)  (.{10}) (.{24}) (.{16})(.{11})(.{15})(.{15})(.{10})(.{10}) (REL|ABS) +(PASS|FAIL)$"
+)
+REMARK = re.compile(r"^ {8}(source|failed): (.*)$")
+ITEM = re.compile(r"^   - (.*)$")
+
+
+@dataclass
+class Check:
+    """One *VERIFY check, in the words of the listing."""
+
+    card: str
+    kind: str
+    quantity: str
+    where: str
+    time: str
+    expected: str
+    found: str
+    deviation: str
+    allowed: str
+    measure: str
+    verdict: str
+    source: str = ""
+    failed: str = ""
+
+
+@dataclass
+class Listing:
+    """The parts of a listing."""
+
+    outcome: str = ""
+    checks: list = field(default_factory=list)
+    warnings: list = field(default_factory=list)
+
+
+def read_listing(path, cards):
+    """Return the Listing at `path`; None where there is none, or it is not of the deck `cards`."""
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return None
+    if deck_of(lines) != [card.rstrip() for card in cards]:
+        return None
+    summary = [line.strip() for line in section(lines, "SUMMARY")]
+    found = Listing(outcome=next((line for line in summary if line), ""))
+    for line in section(lines, "VERIFICATION", underlined=False):
+        check, remark = CHECK.match(line), REMARK.match(line)
+        if check:
+            found.checks.append(Check(*(part.strip() for part in check.groups())))
+        elif remark and found.checks:
+            setattr(found.checks[-1], *remark.groups())
+    for line in section(lines, "WARNINGS"):
+        item = ITEM.match(line)
+        if item:
+            found.warnings.append(item.group(1))
+        elif line.strip() and found.warnings:
+            found.warnings[-1] += " " + line.strip()
+    return found
+
+
+def section(lines, title, underlined=True):
+    """Return the lines below a title of the listing, up to the next title."""
+    starts = [k for k, line in enumerate(lines) if line == title]
+    if not starts:
+        return []
+    found = []
+    for line in lines[starts[-1] + 1 + underlined :]:
+        if re.match(r"^[A-Z]", line):
+            break
+        found.append(line)
+    return found
+
+
+def deck_of(lines):
+    """Return the card images that the listing ends with; wide ones go on below."""
+    starts = [k for k, line in enumerate(lines) if line == "DECK"]
+    cards = []
+    for line in lines[starts[-1] + 2 :] if starts else ():
+        if line[:8].strip():
+            cards.append(line[10:])
+        elif cards:
+            cards[-1] += line[10:]
+    return [card.rstrip() for card in cards]

@@ -1,0 +1,237 @@
+'use strict';
+(() => {
+const $ = id => document.getElementById(id);
+const data = JSON.parse($('data').textContent);
+const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+const floats = text => new Float32Array(bytes(text).buffer);
+const integers = text => new Int32Array(bytes(text).buffer);
+const BLUE = '#0072b2', ORANGE = '#c26a00', VERMILION = '#d55e00', GREY = '#666';
+
+// ---- words ----
+const escaped = text => String(text).replace(/[&<>"]/g,
+   c => ({'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;'})[c]);
+function show(value, digits = 5) {
+   if (!Number.isFinite(value)) return '–';
+   const size = Math.abs(value);
+   const words = value === 0 ? '0' : size >= 1e6 || size < 1e-4 ?
+      value.toExponential(digits - 2).replace(/\.?0+e/, 'e').replace('e+', 'e') :
+      String(Number(value.toPrecision(digits)));
+   return words.replaceAll('-', '−');
+}
+const withUnit = (words, unit) => unit ? `${words} (${unit})` : words;
+const unit = name => data.units[name] || '';
+const force = () => unit('stress') && unit('length') ? `${unit('stress')} ${unit('length')}²` : '';
+
+// ---- one chart: axes, lines, marks ----
+function ticks(low, high, most) {
+   const raw = (high - low) / most, power = 10 ** Math.floor(Math.log10(raw));
+   const step = power * [1, 2, 2.5, 5, 10].find(m => m * power >= raw * 0.999);
+   const found = [];
+   for (let k = Math.ceil(low / step - 1e-6); k * step <= high + 1e-6 * step; k++)
+      found.push(Number((k * step).toPrecision(12)));
+   return found;
+}
+const finite = values => Array.from(values).filter(Number.isFinite);
+function rangeOf(values, zero) {
+   let low = zero ? 0 : Infinity, high = zero ? 0 : -Infinity;
+   for (const v of values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
+   if (low > high || (low === 0 && high === 0)) return [0, 1];
+   const room = high > low ? 0.06 * (high - low) : 0.5 * Math.abs(high) || 0.5;
+   return [zero && low === 0 && high > 0 ? 0 : low - room, zero && high === 0 && low < 0 ? 0 : high + room];
+}
+// lines: {x, y, colour, dash, mark, name}; clouds: {points, shape, colour, name}; uprights: [x]
+function chart(box, options) {
+   const W = options.width || 480, H = options.height || 300;
+   const [x0, x1] = options.xRange, [y0, y1] = options.yRange;
+   const widest = Math.max(...ticks(y0, y1, 5).map(t => show(t).length));
+   const left = Math.max(50, 30 + 7.5 * widest), right = 10, top = 14, bottom = 44;
+   const X = v => left + (v - x0) / (x1 - x0) * (W - left - right);
+   const Y = v => H - bottom - (v - y0) / (y1 - y0) * (H - top - bottom);
+   const out = [], id = `${box.id}-clip`;
+   out.push(`<clipPath id="${id}"><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}"/></clipPath>`);
+   for (const t of ticks(x0, x1, 6))
+      out.push(`<path d="M${X(t)} ${H - bottom}v5" stroke="#333"/><text class="tick" x="${X(t)}" y="${H - bottom + 18}" text-anchor="middle">${show(t)}</text>`);
+   for (const t of ticks(y0, y1, 5))
+      out.push(`<path d="M${left} ${Y(t)}H${W - right}" stroke="#e6e6e6"/><text class="tick" x="${left - 6}" y="${Y(t) + 4}" text-anchor="end">${show(t)}</text>`);
+   out.push(`<g clip-path="url(#${id})">`);
+   for (const cloud of options.clouds || [])
+      out.push(`<path d="${cloud.points.map(([x, y]) => cloud.shape(X(x), Y(y))).join('')}" fill="${cloud.fill}" stroke="${cloud.colour}"/>`);
+   if (y0 < 0 && y1 > 0) out.push(`<path d="M${left} ${Y(0)}H${W - right}" stroke="#888"/>`);
+   for (const x of options.uprights || [])
+      out.push(`<path d="M${X(x)} ${top}V${H - bottom}" stroke="#333" stroke-dasharray="2 3" class="upright"/>`);
+   for (const line of options.lines) {
+      let path = '', pen = 'M', marks = '';
+      for (let k = 0; k < line.x.length; k++) {
+         const a = line.x[k], b = line.y[k];
+         if (!Number.isFinite(a) || !Number.isFinite(b)) { pen = 'M'; continue; }
+         path += `${pen}${X(a).toFixed(1)} ${Y(b).toFixed(1)}`;
+         pen = 'L';
+         if (line.mark && !(line.plain && line.plain[k]))
+            marks += `M${(X(a) - 2.6).toFixed(1)} ${Y(b).toFixed(1)}a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0 -5.2 0`;
+      }
+      out.push(`<path d="${path}" fill="none" stroke="${line.colour}" stroke-width="${line.width || 1.6}" stroke-dasharray="${line.dash || ''}"/>`);
+      if (marks) out.push(`<path d="${marks}" fill="${line.hollow ? '#fff' : line.colour}" stroke="${line.colour}"/>`);
+   }
+   out.push(`</g><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}" fill="none" stroke="#333"/>`);
+   out.push(`<text x="${(left + W - right) / 2}" y="${H - 8}" text-anchor="middle">${escaped(options.xLabel)}</text>`);
+   if (options.yLabel)
+      out.push(`<text transform="translate(14 ${(top + H - bottom) / 2}) rotate(-90)" text-anchor="middle">${escaped(options.yLabel)}</text>`);
+   const total = H + legend(out, [...options.lines, ...(options.clouds || [])].filter(e => e.name), W, left, H + 14) ;
+   const caption = options.caption ? `<figcaption>${options.caption}</figcaption>` : '';
+   box.innerHTML = `<svg viewBox="0 0 ${W} ${total}" role="img" aria-label="${escaped(options.title)}">${out.join('')}</svg>${caption}`;
+}
+// Adds the entries below the axes; returns the height they take.
+function legend(out, entries, width, left, top) {
+   let x = left, y = top;
+   for (const entry of entries) {
+      const room = 38 + 7 * entry.name.length;
+      if (x > left && x + room > width) { x = left; y += 18; }
+      out.push(entry.shape ? `<path d="${entry.shape(x + 12, y - 4)}" fill="${entry.fill}" stroke="${entry.colour}"/>` :
+         `<path d="M${x} ${y - 4}h24" stroke="${entry.colour}" stroke-width="1.8" stroke-dasharray="${entry.dash || ''}"/>`);
+      out.push(`<text x="${x + 30}" y="${y}">${escaped(entry.name)}</text>`);
+      x += room + 10;
+   }
+   return entries.length ? y - top + 22 : 0;
+}
+const square = r => (x, y) => `M${(x - r).toFixed(1)} ${(y - r).toFixed(1)}h${2 * r}v${2 * r}h${-2 * r}z`;
+const disc = r => (x, y) => `M${(x - r).toFixed(1)} ${y.toFixed(1)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+
+// ---- loads ----
+const times = data.load.times, count = times.length;
+const abscissa = data.load.rises ? data.load.values : times;
+let row = count - 1;
+const loadWords = k => `${data.load.label} ${show(data.load.values[k])} ${data.load.unit}`.trim();
+function tellLoad() {
+   const time = data.load.label === 'time' ? '' : `, time ${show(times[row])}`;
+   $('now').textContent = `${row + 1} of ${count}: ${loadWords(row)}${time}`;
+   $('load').setAttribute('aria-valuetext', $('now').textContent);
+}
+
+// ---- contact ----
+const contacts = data.contacts.map(each => {
+   const decoded = {...each, at: floats(each.at), status: bytes(each.status), profiles: {}, edges: {}, main: {}};
+   for (const key in each.profiles) decoded.profiles[key] = floats(each.profiles[key]);
+   for (const key in each.edges) decoded.edges[key] = floats(each.edges[key]);
+   for (const key in each.main) decoded.main[key] = floats(each.main[key]);
+   return decoded;
+});
+const contact = () => contacts[$('interface') ? Number($('interface').value) : 0];
+const rowOf = (values, width, k = row) => values.subarray(k * width, (k + 1) * width);
+function drawZones() {
+   const c = contact(), m = c.at.length, states = [[], [], []];
+   for (let k = 0; k < count; k++)
+      for (let i = 0; i < m; i++) states[c.status[k * m + i]].push([abscissa[k], c.at[i]]);
+   const frictionless = !c.profiles.shear || c.friction === 0;
+   const room = 0.03 * (Math.max(...abscissa) - Math.min(...abscissa)) || 0.5;
+   const margin = 0.04 * (c.window[1] - c.window[0]) || 0.5;
+   const small = Math.min(3, Math.max(0.8, 130 / Math.max(count, 1)));
+   chart($('zones'), {
+      title: `Zones of interface ${c.name}: open, slip and stick over the load; the upright line is the load chosen`,
+      xLabel: data.load.axis, yLabel: withUnit(c.axis, unit('length')),
+      xRange: [Math.min(...abscissa) - room, Math.max(...abscissa) + room],
+      yRange: [c.window[0] - margin, c.window[1] + margin],
+      uprights: [abscissa[row]],
+      clouds: [
+         {points: states[0], shape: disc(0.4 * small), fill: '#999', colour: '#999', name: 'open'},
+         {points: states[1], shape: disc(small), fill: '#fff', colour: BLUE, name: frictionless ? 'closed' : 'slip'},
+         {points: states[2], shape: square(0.9 * small), fill: '#e69f00', colour: '#e69f00', name: 'stick'},
+      ].filter(cloud => cloud.points.length),
+      lines: [
+         {x: abscissa, y: c.main.contact, colour: '#000', name: 'edge of contact'},
+         {x: abscissa, y: c.main.stick, colour: '#000', dash: '6 3', name: 'edge of stick'},
+      ].filter(line => finite(line.y).length),
+      caption: `Zones. Each symbol is a contact point at an increment.`,
+   });
+}
+function profile(id, title, quantities, label, zero, caption) {
+   const c = contact(), m = c.at.length, lines = [], all = [], uprights = [];
+   for (const [key, name, colour, dash, factor = 1] of quantities) {
+      const whole = c.profiles[key];
+      if (!whole) continue;
+      // The range is that of all loads, so that the curves of two of them can be compared.
+      for (let i = 0; i < whole.length; i++)
+         if (c.at[i % m] >= c.window[0] && c.at[i % m] <= c.window[1]) all.push(factor * whole[i]);
+      const values = Array.from(rowOf(whole, m), v => factor * v);
+      const points = values.map((v, i) => [c.at[i], v, false]);
+      // Tractions end where the contact does.
+      if (zero) for (const e of finite(rowOf(c.edges.contact, 4)))
+         if (e > c.at[0] && e < c.at[m - 1]) points.push([e, 0, true]);
+      points.sort((a, b) => a[0] - b[0]);
+      lines.push({x: points.map(p => p[0]), y: points.map(p => p[1]), plain: points.map(p => p[2]),
+         colour, dash, name, mark: !dash, hollow: key === 'shear'});
+   }
+   $(id).innerHTML = '';
+   if (!lines.length) return;
+   for (const key of ['contact', 'stick']) uprights.push(...finite(rowOf(c.edges[key], 4)));
+   const room = 0.02 * (c.window[1] - c.window[0]) || 0.5;
+   chart($(id), {title: `${title} along interface ${c.name}, ${loadWords(row)}`, lines, uprights,
+      xLabel: withUnit(c.axis, unit('length')), yLabel: label, caption,
+      xRange: [c.window[0] - room, c.window[1] + room], yRange: rangeOf(all, true)});
+}
+function drawProfiles() {
+   const c = contact(), said = loadWords(row), mu = c.friction;
+   const shear = c.profiles.shear && c.profiles.shear.some(v => v !== 0);
+   const sign = shear && c.profiles.shear.reduce((a, b) => a + (b || 0), 0) < 0 ? -1 : 1;
+   const tractions = [['pressure', 'pressure p', '#000', '']];
+   if (shear) tractions.push(['shear', sign < 0 ? 'friction −τ' : 'friction τ', VERMILION, '', sign]);
+   if (shear && mu) tractions.push(['pressure', 'μp', GREY, '3 3', mu]);
+   profile('tractions', 'Contact tractions', tractions, withUnit('traction', unit('stress')), true,
+      `Tractions, ${escaped(said)}. Dotted lines are the edges of contact and stick.`);
+   profile('flux', 'Heat flux', [['heat_flux', 'heat flux q', '#000', '']], withUnit('heat flux q', unit('flux')), false,
+      `Heat flux from slave to master, ${escaped(said)}.`);
+   profile('gap', 'Gap', [['gap', 'gap', BLUE, '']], withUnit('gap', unit('length')), false, `Gap, ${escaped(said)}.`);
+}
+function drawTotals() {
+   const c = contact(), m = c.at.length, words = [];
+   const add = (name, value, of) => { if (Number.isFinite(value)) words.push(`<span>${name} <b>${show(value)}</b> ${escaped(of)}</span>`); };
+   for (const [key, name, of] of [['normal_force', 'normal force', force()], ['shear_force', 'shear force', force()], ['heat_rate', 'heat rate', unit('power')]])
+      if (c.totals[key]) add(name, c.totals[key][row], of);
+   add('peak pressure', Math.max(...rowOf(c.profiles.pressure, m)), unit('stress'));
+   add(`edge of contact ${c.axis} =`, c.main.contact[row], unit('length'));
+   add(`edge of stick ${c.axis} =`, c.main.stick[row], unit('length'));
+   $('totals').innerHTML = words.join('');
+}
+function drawContact() {
+   if (!contacts.length) return;
+   drawZones();
+   drawProfiles();
+   drawTotals();
+}
+
+// ---- history ----
+function drawHistories() {
+   const low = Math.min(...abscissa), high = Math.max(...abscissa), room = 0.03 * (high - low) || 0.5;
+   const box = $('histories');
+   if (!box.childElementCount)
+      box.innerHTML = data.history.map((_, k) => `<figure id="history-${k}"></figure>`).join('');
+   data.history.forEach((each, k) => chart($(`history-${k}`), {
+      width: 360, height: 200, title: `${each.label} over the load`,
+      xLabel: data.load.axis, xRange: [low - room, high + room],
+      yRange: rangeOf(each.values.map(v => v === null ? NaN : v), true), uprights: [abscissa[row]],
+      lines: [{x: abscissa, y: each.values.map(v => v === null ? NaN : v), colour: BLUE, mark: count <= 60}],
+      caption: `${escaped(each.label)}: <b>${show(each.values[row] === null ? NaN : each.values[row])}</b> ${escaped(each.unit)}`,
+   }));
+}
+
+// ---- the rest of the page ----
+let waiting = false;
+function draw() {
+   tellLoad();
+   drawContact();
+   drawHistories();
+   if (data.fields) fields.draw(row);
+   waiting = false;
+}
+function later() {
+   if (!waiting) requestAnimationFrame(draw);
+   waiting = true;
+}
+const fields = data.fields ? fieldPicture(data, {$, floats, integers, show, escaped, ticks, loadWords, withUnit, later}) : null;
+if (!fields) $('fields').hidden = true;
+$('load').addEventListener('input', () => { row = Number($('load').value) - 1; later(); });
+if ($('interface')) $('interface').addEventListener('change', later);
+for (const form of document.forms) form.addEventListener('submit', event => event.preventDefault());
+addEventListener('beforeprint', () => { for (const each of document.querySelectorAll('details')) each.open = true; });
+$('load').value = String(count);
+draw();
+})();

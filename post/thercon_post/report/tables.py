@@ -1,0 +1,160 @@
+"""Tables of the page that do not change with the load."""
+
+from html import escape
+
+import numpy as np
+
+from ..result import text
+from .data import contacts_of, plain, unit_of
+
+FACTS = {  # attribute of /run -> words
+    "modelled": "modelled",
+    "solver": "solver",
+    "equations_thermal": "unknown temperatures",
+    "equations_mechanical": "unknown displacements",
+    "contact_unknowns": "contact unknowns",
+}
+# name in /errors and /contact -> words, kind of unit, whether it is an edge
+BOUNDED = {
+    "normal_force": ("normal force", "force", False),
+    "shear_force": ("shear force", "force", False),
+    "heat_rate": ("heat rate", "power", False),
+    "peak_pressure": ("peak pressure", "stress", False),
+    "edge_contact": ("edge of contact, s", "length", True),
+    "edge_stick": ("edge of stick, s", "length", True),
+}
+
+
+def table(caption, head, rows, numbers=()):
+    """Return a table; `rows` are cells of HTML, those in the columns `numbers` set as numbers."""
+    looks = [' class="number"' if k in numbers else "" for k in range(len(head))]
+    top = "".join(f'<th scope="col"{look}>{each}</th>' for look, each in zip(looks, head))
+    lines = []
+    for row in rows:
+        cells = [f'<th scope="row">{row[0]}</th>']
+        for k, cell in enumerate(row[1:], 1):
+            cells.append(f"<td{looks[k]}>{cell}</td>")
+        lines.append(f"<tr>{''.join(cells)}</tr>")
+    return (
+        f'<div class="wide"><table><caption>{caption}</caption><thead><tr>{top}</tr></thead>'
+        f"<tbody>{''.join(lines)}</tbody></table></div>"
+    )
+
+
+def facts(result, listing):
+    """Return what the run was."""
+    run, cells = result.file["run"].attrs, result.cells
+    bodies = {int(b) for group in cells.bodies.values() for b in group}
+    seconds = sum(float(run[key]) for key in run if key.startswith("seconds_"))
+    rows = [("outcome", escape(listing.outcome))] if listing and listing.outcome else []
+    rows += [
+        ("increments", result.increments),
+        ("last increment", escape(last_load(result))),
+        ("checks", f"{int(run.get('verify_passed', 0))} passed, "
+         f"{int(run.get('verify_failed', 0))} failed"),
+        ("mesh", f"{cells.count} elements, {len(np.unique(cells.node_id))} nodes, "
+         f"{len(bodies)} bod{'y' if len(bodies) == 1 else 'ies'}"),
+    ]
+    rows += [(words, escape(text(run[key]))) for key, words in FACTS.items() if key in run]
+    rows += [("time of the run", f"{seconds:.2f} s")]
+    listed = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in rows)
+    return f'<dl class="facts">{listed}</dl>'
+
+
+def last_load(result):
+    """Return time and load of the last increment in words."""
+    words = f"time {result.history['time'][-1]:g}"
+    if result.load_label == "time":
+        return words
+    load = result.units.load_value(result.load_label, result.history["load"][-1])
+    return f"{words}, {plain(load)}"
+
+
+def bounds(result):
+    """Return the quantities of every interface at the last increment, with the bounds of their
+    errors."""
+    found = []
+    for contact in contacts_of(result):
+        rows = []
+        for key, (words, kind, is_edge) in BOUNDED.items():
+            values = contact["pressure"].max(axis=1) if key == "peak_pressure" else contact.get(key)
+            if values is None or np.isnan(values[-1]) or (key == "shear_force" and not values[-1]):
+                continue
+            rows.append(bound_row(result, contact.name, key, float(values[-1]), is_edge))
+            rows[-1][0], rows[-1][3] = words, unit_of(result, kind)
+        head = ["quantity", "value", "error below", "unit", "by the mesh", "by increments",
+                "by iteration"]
+        caption = f"Interface {escape(contact.name)} at the last increment"
+        found.append(table(caption, head, rows, (1, 2, 4, 5, 6)))
+    return "".join(found)
+
+
+def bound_row(result, name, key, value, is_edge):
+    """Return value, bound and its parts; words where nothing is known of them."""
+    errors = result.file.get(f"errors/{name}/{key}")
+    row = ["", number(value), "not estimated", "", "–", "–", "–"]
+    if errors is None or len(errors) == 0 or result.file["errors/time"][-1] != \
+            result.history["time"][-1]:
+        return row
+    _, by_mesh, by_increments, by_iteration = errors[-1]
+    total = abs(by_mesh) + abs(by_increments) if is_edge else abs(by_mesh + by_increments)
+    total += by_iteration
+    row[4:] = [number(part, 2) for part in (by_mesh, by_increments, by_iteration)]
+    row[2] = "uncertain"
+    if np.isfinite(total):
+        share = f" ({number(100.0 * total / abs(value), 2)} %)" if value else ""
+        row[2] = f"± {number(total, 2)}{share}"
+    return row
+
+
+def number(value, digits=6):
+    """Return a number in words; a dash where there is none."""
+    return "–" if np.isnan(value) else f"{value:.{digits}g}".replace("-", "−")
+
+
+def missing(result):
+    """Return the note where the listing of the run is not beside its result."""
+    name = escape(result.path.with_suffix(".lst").name)
+    return (f'<p class="note">They are in the listing of the run, but {name} beside the result is '
+            "missing, incomplete or of another deck.</p>")
+
+
+def checks(result, listing):
+    """Return the verdicts of the *VERIFY cards."""
+    run = result.file["run"].attrs
+    passed, failed = (int(run.get(f"verify_{key}", 0)) for key in ("passed", "failed"))
+    if passed + failed == 0:
+        return "<p>The deck has no *VERIFY checks.</p>"
+    told = f"<p>{passed} passed, {failed} failed.</p>"
+    if listing is None:
+        return told + missing(result)
+    head = ["card", "quantity", "where", "time", "expected", "found", "deviation", "allowed",
+            "verdict", "kind and source"]
+    rows = []
+    for check in sorted(listing.checks, key=lambda each: each.verdict == "PASS"):
+        source = escape(f"{check.kind}: {check.source}" if check.source else check.kind)
+        verdict = f'<span class="{check.verdict.lower()}">{check.verdict}</span>'
+        if check.failed:
+            verdict += f" {escape(check.failed)}"
+        words = (check.card, check.quantity, check.where, check.time, check.expected, check.found,
+                 check.deviation, f"{check.allowed} {check.measure}")
+        rows.append([*map(escape, words), verdict, source])
+    return told + table("*VERIFY checks, failed ones first", head, rows, (3, 4, 5, 6, 7))
+
+
+def warnings(result, listing):
+    """Return the warnings of the run."""
+    if listing is None:
+        return missing(result)
+    if not listing.warnings:
+        return "<p>No warnings.</p>"
+    items = "".join(f"<li>{escape(words)}</li>" for words in listing.warnings)
+    return f'<ul class="warnings">{items}</ul>'
+
+
+def deck(result):
+    """Return the card images with their numbers."""
+    width = len(str(len(result.deck)))
+    cards = "\n".join(f"{k:{width}}  {card}" for k, card in enumerate(result.deck, 1))
+    return (f"<details><summary>{len(result.deck)} cards</summary>"
+            f'<pre tabindex="0" aria-label="Deck">{escape(cards)}</pre></details>')

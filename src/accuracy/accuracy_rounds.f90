@@ -1,0 +1,336 @@
+!> The rounds of a requested accuracy: what each found at the ends of its steps.
+!>
+!> The bound takes the estimated error of the mesh as one that falls with h only, and adds how much
+!> the quantity scatters over the increments before, which the estimate at one load may miss: errors
+!> change their sign as the edge of contact passes a node. Fourth differences show it, for in them
+!> what is smooth vanishes. It also takes the change from one round to the next. A round that
+!> divides elements leaves less than a part of the error (`left_by_round`), so that this part of the
+!> change bounds what is left; alone where nothing else is known of the mesh, as for faces whose
+!> nodes do not match, ties, and quantities that the path of friction decides.
+module accuracy_rounds
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use accuracy_targets, only: accuracy_request_type, accuracy_target_type
+   use contact_points, only: contact_points_type
+   use contact_quantities, only: contact_values, estimated
+   use error_estimator, only: of_halved_elements
+   use interface_quantities, only: closed_length, edge_resolution
+   use kinds, only: dp
+   use quantity_types, only: find_quantity, quantity_type
+   use records, only: contact_record_type, increment_record_type, interface_errors_type
+   implicit none
+   private
+   public :: accuracy_rounds_type, accuracy_round_type, finding_type
+
+   real(dp), parameter :: early = 0.25_dp     !! part of the largest value so far: least scale
+   !> The bound in the estimate: errors that fall with h are twice the change of halved elements.
+   real(dp), parameter :: of_estimate = 2.0_dp/of_halved_elements
+   integer, parameter :: scattered = 9        !! increments over which a quantity's scatter is taken
+   !> Standard deviation of the fourth difference of independent values, over theirs.
+   real(dp), parameter :: of_difference = sqrt(70.0_dp)
+   !> Part of the change from round to round: what is left where estimates of the mesh agree, and
+   !> where there are none.
+   real(dp), parameter :: left_by_round = 0.5_dp, left_without_estimate = 1.0_dp
+
+   !> Two rounds that leave more than this part of the excess are the last, from this round on.
+   real(dp), parameter :: nearer = 0.7_dp
+   integer, parameter :: least_rounds = 4
+
+   !> A target of one quantity of one interface.
+   type :: demand_type
+      integer :: quantity = 0              !! index into estimated
+      integer :: interface = 0             !! index into the interfaces
+      real(dp) :: target = 0.0_dp          !! a part of the value, or in its unit
+      logical :: is_relative = .true.      !! which of these
+      character(:), allocatable :: idle    !! why there is nothing to judge; empty otherwise
+   end type demand_type
+
+   !> What one demand found at the end of one step.
+   type :: finding_type
+      logical :: is_there = .false.        !! whether the quantity has a value and an error
+      real(dp) :: value = 0.0_dp           !! of the quantity
+      real(dp) :: mesh = 0.0_dp            !! bound of the error of the mesh; NaN: unknown
+      real(dp) :: increment = 0.0_dp       !! of the increments; NaN: unknown
+      real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: unknown
+      real(dp) :: allowed = 0.0_dp         !! what the target allows
+   contains
+      procedure :: is_met
+   end type finding_type
+
+   !> One round.
+   type :: accuracy_round_type
+      integer :: unknowns = 0              !! temperatures, displacements and contact unknowns
+      integer :: elements = 0
+      integer :: increments = 0
+      real(dp) :: cpu_seconds = 0.0_dp     !! [s]
+      logical :: is_whole = .false.        !! whether all steps were solved
+      type(finding_type), allocatable :: findings(:, :)   !! (demands, steps)
+   contains
+      procedure :: worst_step
+      procedure :: excess
+   end type accuracy_round_type
+
+   !> All rounds of a run.
+   type :: accuracy_rounds_type
+      logical :: is_on = .false.                             !! whether anything is requested
+      logical :: goes_on = .false.                           !! whether another round follows
+      logical :: has_checks = .false.                        !! whether round 1 judged *VERIFY cards
+      type(demand_type), allocatable :: demands(:)
+      type(accuracy_round_type), allocatable :: rounds(:)    !! the last is the present one
+      real(dp), allocatable :: largest(:)                    !! (demands) scale so far in the round
+      !> (scattered, demands) values at the last increments of the step, the newest last
+      real(dp), allocatable :: values(:, :)
+   contains
+      procedure :: begin_round
+      procedure :: follow
+      procedure :: is_reached
+      procedure :: stands_still
+      procedure :: name_idle
+   end type accuracy_rounds_type
+
+contains
+
+   !> Begins a round; the first one takes what is requested.
+   subroutine begin_round(self, request, interfaces, steps)
+      class(accuracy_rounds_type), intent(inout) :: self
+      type(accuracy_request_type), intent(in) :: request
+      integer, intent(in) :: interfaces                      !! number of them
+      integer, intent(in) :: steps                           !! number of them
+      type(accuracy_round_type), allocatable :: rounds(:)
+      integer :: i, n
+
+      self%is_on = allocated(request%targets)
+      self%goes_on = .false.
+      if (.not. self%is_on) return
+      if (.not. allocated(self%demands)) then
+         allocate (self%demands(0), self%rounds(0))
+         do i = 1, size(request%targets)
+            call add_demands(request%targets(i), interfaces, self%demands)
+         end do
+      end if
+      n = size(self%rounds)
+      allocate (rounds(n + 1))
+      rounds(:n) = self%rounds
+      allocate (rounds(n + 1)%findings(size(self%demands), steps))
+      call move_alloc(rounds, self%rounds)
+      self%largest = [(0.0_dp, i=1, size(self%demands))]
+      if (.not. allocated(self%values)) allocate (self%values(scattered, size(self%demands)))
+   end subroutine begin_round
+
+   !> Adds the target of one interface or of all.
+   subroutine add_demands(target, interfaces, demands)
+      type(accuracy_target_type), intent(in) :: target
+      integer, intent(in) :: interfaces
+      type(demand_type), allocatable, intent(inout) :: demands(:)
+      type(demand_type), allocatable :: longer(:)
+      integer :: first, i, last, n
+
+      first = merge(1, target%interface, target%interface == 0)
+      last = merge(interfaces, target%interface, target%interface == 0)
+      n = size(demands)
+      allocate (longer(n + last - first + 1))
+      longer(:n) = demands
+      do i = first, last
+         n = n + 1
+         longer(n)%quantity = find_quantity(estimated, target%quantity)
+         longer(n)%interface = i
+         longer(n)%target = target%bound
+         longer(n)%is_relative = target%is_relative
+         longer(n)%idle = ''
+      end do
+      call move_alloc(longer, demands)
+   end subroutine add_demands
+
+   !> Follows an accepted increment; the end of a step is judged.
+   subroutine follow(self, interfaces, record)
+      class(accuracy_rounds_type), intent(inout) :: self
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(increment_record_type), intent(in) :: record
+      real(dp) :: scale, value(1)
+      integer :: d, n
+
+      if (.not. self%is_on) return
+      n = size(self%rounds)
+      if (record%increment_in_step == 1) self%values = ieee_value(1.0_dp, ieee_quiet_nan)
+      self%values(:scattered - 1, :) = self%values(2:, :)
+      self%rounds(n)%increments = record%increment
+      do d = 1, size(self%demands)
+         associate (points => interfaces(self%demands(d)%interface), &
+            contact => record%contacts(self%demands(d)%interface))
+            value = contact_values(estimated(self%demands(d)%quantity)%name, points, contact)
+            self%values(scattered, d) = value(1)
+            scale = scale_of(self%demands(d), value(1), points, contact)
+            if (.not. ieee_is_nan(scale)) self%largest(d) = max(self%largest(d), scale)
+            if (.not. allocated(record%errors)) cycle
+            if (ieee_is_nan(scale)) scale = 0.0_dp
+            scale = max(scale, early*self%largest(d))
+            self%rounds(n)%findings(d, record%step) = found(self%demands(d), points, &
+               record%errors(self%demands(d)%interface), scale, scatter(self%values(:, d)))
+            call add_change(self%rounds, d, record%step)
+         end associate
+      end do
+   end subroutine follow
+
+   !> What a relative target refers to: the value, or of an edge the length of the contact; NaN
+   !> where there is no value.
+   function scale_of(demand, value, points, contact) result(scale)
+      type(demand_type), intent(in) :: demand
+      real(dp), intent(in) :: value
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+      type(quantity_type) :: quantity
+      real(dp) :: scale
+
+      quantity = estimated(demand%quantity)
+      scale = abs(value)
+      if (quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(scale)) scale = &
+         closed_length(contact, points%arc_length)
+   end function scale_of
+
+   !> The estimates of one quantity at the end of a step. Where an edge is the end of the interface
+   !> there is nothing to judge.
+   function found(demand, points, errors, scale, scatter) result(finding)
+      type(demand_type), intent(in) :: demand
+      type(contact_points_type), intent(in) :: points
+      type(interface_errors_type), intent(in) :: errors
+      real(dp), intent(in) :: scale, scatter
+      type(finding_type) :: finding
+      real(dp) :: resolution(size(estimated))
+
+      associate (q => demand%quantity)
+         finding%value = errors%value(q)
+         finding%allowed = demand%target*merge(scale, 1.0_dp, demand%is_relative)
+         finding%is_there = .not. ieee_is_nan(finding%value) .and. scale > 0.0_dp
+         if (.not. finding%is_there) return
+         resolution = edge_resolution(points, errors%value)
+         finding%mesh = of_estimate*abs(errors%mesh(q)) + scatter
+         if (estimated(q)%resolution > 0.0_dp) then
+            finding%is_there = resolution(q) > 0.0_dp
+            finding%mesh = abs(errors%mesh(q))
+         end if
+         finding%increment = abs(errors%increment(q)) + errors%iteration(q)
+         finding%bound = finding%mesh + finding%increment
+      end associate
+   end function found
+
+   !> How much values scatter about a smooth course; 0 where there are too few of them.
+   pure real(dp) function scatter(values)
+      real(dp), intent(in) :: values(:)
+      real(dp) :: difference(size(values) - 4)
+      integer :: k
+
+      scatter = 0.0_dp
+      if (any(ieee_is_nan(values))) return
+      do k = 1, size(difference)
+         difference(k) = values(k) - 4*values(k + 1) + 6*values(k + 2) - 4*values(k + 3) + &
+            values(k + 4)
+      end do
+      scatter = sqrt(sum(difference**2)/size(difference))/of_difference
+   end function scatter
+
+   !> Lets the change from the round before count.
+   subroutine add_change(rounds, d, step)
+      type(accuracy_round_type), intent(inout) :: rounds(:)
+      integer, intent(in) :: d, step
+      real(dp) :: change
+      integer :: n
+
+      n = size(rounds)
+      if (n == 1) return
+      associate (now => rounds(n)%findings(d, step), before => rounds(n - 1)%findings(d, step))
+         if (.not. (now%is_there .and. before%is_there)) return
+         change = abs(now%value - before%value)
+         if (ieee_is_nan(now%mesh)) then
+            now%mesh = left_without_estimate*change
+         else
+            now%mesh = max(now%mesh, left_by_round*change)
+         end if
+         now%bound = now%mesh + now%increment
+      end associate
+   end subroutine add_change
+
+   !> Whether a bound is inside its target.
+   elemental logical function is_met(self)
+      class(finding_type), intent(in) :: self
+
+      is_met = .not. self%is_there
+      if (.not. is_met) is_met = self%bound <= self%allowed
+   end function is_met
+
+   !> Whether the present round meets all targets.
+   pure logical function is_reached(self)
+      class(accuracy_rounds_type), intent(in) :: self
+
+      associate (last => self%rounds(size(self%rounds)))
+         is_reached = last%is_whole .and. all(last%findings%is_met())
+      end associate
+   end function is_reached
+
+   !> The step in which a demand is furthest from its target; 0 where none has it.
+   pure integer function worst_step(self, d)
+      class(accuracy_round_type), intent(in) :: self
+      integer, intent(in) :: d                    !! the demand
+      real(dp) :: excess, largest
+      integer :: s
+
+      worst_step = 0
+      largest = -1.0_dp
+      do s = 1, size(self%findings, 2)
+         associate (finding => self%findings(d, s))
+            if (.not. finding%is_there) cycle
+            excess = over_target(finding)
+            if (excess <= largest) cycle
+            largest = excess
+            worst_step = s
+         end associate
+      end do
+   end function worst_step
+
+   !> Largest bound over what its target allows; huge where one is unknown.
+   pure real(dp) function excess(self)
+      class(accuracy_round_type), intent(in) :: self
+      integer :: d, step
+
+      excess = 0.0_dp
+      do d = 1, size(self%findings, 1)
+         step = self%worst_step(d)
+         if (step == 0) cycle
+         excess = max(excess, over_target(self%findings(d, step)))
+      end do
+   end function excess
+
+   !> A bound over what its target allows; huge where it is unknown.
+   pure real(dp) function over_target(finding)
+      type(finding_type), intent(in) :: finding
+
+      over_target = huge(1.0_dp)
+      if (.not. ieee_is_nan(finding%bound)) over_target = finding%bound/finding%allowed
+   end function over_target
+
+   !> Whether the last two rounds brought the targets no nearer, as where a pressure grows without
+   !> limit.
+   pure logical function stands_still(self)
+      class(accuracy_rounds_type), intent(in) :: self
+      integer :: n
+
+      n = size(self%rounds)
+      stands_still = n >= least_rounds
+      if (stands_still) stands_still = self%rounds(n)%excess() > nearer*self%rounds(n - 2)%excess()
+   end function stands_still
+
+   !> Says of each demand that no step of the present round has why that is so.
+   subroutine name_idle(self)
+      class(accuracy_rounds_type), intent(inout) :: self
+      integer :: d
+
+      do d = 1, size(self%demands)
+         associate (demand => self%demands(d), findings => self%rounds(size(self%rounds))%findings)
+            demand%idle = ''
+            if (any(findings(d, :)%is_there)) cycle
+            demand%idle = 'it is 0 at the end of each step'
+            if (any(estimated(demand%quantity:demand%quantity)%resolution > 0.0_dp)) demand%idle = &
+               'no step ends with one between the ends of the interface'
+         end associate
+      end do
+   end subroutine name_idle
+
+end module accuracy_rounds

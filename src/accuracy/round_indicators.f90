@@ -1,0 +1,275 @@
+!> What the next round of a requested accuracy varies: how often each element is divided, and the
+!> size of the increments.
+!>
+!> Elements are divided where the energy norm of the error that recovery finds in stress and heat
+!> flux (Zienkiewicz & Zhu) is largest, each body and field counted by its relative error (the
+!> marking of Doerfler, SIAM J. Numer. Anal. 33 (1996) 1106), and at the edges of zones, where the
+!> fields of the interface have roots; there alone as long as an edge is only not resolved. For the
+!> peak pressure errors count by their influence on it: the field of a point force falls as 1/r,
+!> what an element cannot represent of it as 1/r^4.
+module round_indicators
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use accuracy_rounds, only: accuracy_rounds_type, finding_type
+   use contact_points, only: contact_points_type
+   use contact_quantities, only: estimated
+   use element_kinds, only: element_corner_count
+   use interface_quantities, only: closed_length
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use model, only: model_type
+   use quantity_types, only: quantity_type
+   use recovered_error, only: error_record_type
+   use records, only: contact_record_type, increment_record_type
+   use refined_regions, only: element_levels_type
+   use variations, only: variation_type
+   implicit none
+   private
+   public :: round_indicators_type
+
+   real(dp), parameter :: marked = 0.5_dp       !! part of the squared error that is marked
+   real(dp), parameter :: far = 16.0_dp         !! bound over target that takes two divisions
+   real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
+   real(dp), parameter :: near = 1.5_dp         !! spacings from an edge
+   real(dp), parameter :: reach = 0.5_dp        !! of the contact length: where influence falls
+   integer, parameter :: most_levels = 3        !! divisions of an element in one round
+   integer, parameter :: most_halvings = 2      !! of the increments in one round
+
+   !> What the ends of the steps of a round ask for.
+   type :: round_indicators_type
+      private
+      integer, allocatable :: levels(:)         !! (elements) divisions
+      integer :: halvings = 0                   !! of the increments
+   contains
+      procedure :: start
+      procedure :: take
+      procedure :: add_to
+      procedure :: asks_for_nothing
+   end type round_indicators_type
+
+contains
+
+   !> Starts a round.
+   subroutine start(self, model)
+      class(round_indicators_type), intent(out) :: self
+      type(model_type), intent(in) :: model
+
+      allocate (self%levels(size(model%mesh%element_kind)), source=0)
+   end subroutine start
+
+   !> Takes the end of a step, whose findings the last round has.
+   subroutine take(self, model, interfaces, rounds, record)
+      class(round_indicators_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(accuracy_rounds_type), intent(in) :: rounds
+      type(increment_record_type), intent(in) :: record
+      type(finding_type) :: finding
+      real(dp) :: weight(size(self%levels))
+      integer :: at_edges, d, levels
+
+      do d = 1, size(rounds%demands)
+         finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
+         if (finding%is_met()) cycle
+         self%halvings = max(self%halvings, halvings_for(finding))
+         levels = levels_for(finding)
+         if (levels == 0) cycle
+         associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity)
+            at_edges = levels_of_edges(interfaces(i), record, i, q, finding%allowed)
+            call mark_edges(self, model%mesh, interfaces(i), edges_for(q, record%contacts(i)), &
+               max(levels, at_edges))
+            if (at_edges > 0) cycle
+            weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
+            call mark_elements(self, model%mesh, record, weight, levels)
+         end associate
+      end do
+   end subroutine take
+
+   !> How often the increments are halved: where their part of the bound is the larger one, or
+   !> leaves the mesh less than half of the target.
+   pure integer function halvings_for(finding) result(halvings)
+      type(finding_type), intent(in) :: finding
+
+      halvings = 0
+      if (ieee_is_nan(finding%increment)) then
+         halvings = 1
+      else if (finding%increment > 0.5_dp*finding%allowed) then
+         halvings = min(most_halvings, ceiling(log(2.0_dp*finding%increment/finding%allowed)/ &
+            log(2.0_dp)))
+      end if
+   end function halvings_for
+
+   !> How often elements are divided: not where the mesh leaves the increments half of the target.
+   pure integer function levels_for(finding) result(levels)
+      type(finding_type), intent(in) :: finding
+
+      levels = 1
+      if (ieee_is_nan(finding%mesh)) return
+      if (finding%mesh <= 0.5_dp*finding%allowed) levels = 0
+      if (finding%mesh > far*finding%allowed) levels = 2
+   end function levels_for
+
+   !> How often the sides at an edge must be divided for its resolution.
+   function levels_of_edges(points, record, i, q, allowed) result(levels)
+      type(contact_points_type), intent(in) :: points
+      type(increment_record_type), intent(in) :: record
+      integer, intent(in) :: i, q
+      real(dp), intent(in) :: allowed
+      type(quantity_type) :: quantity
+      integer :: k, levels, m
+
+      levels = 0
+      quantity = estimated(q)
+      associate (s => points%arc_length, edge => record%errors(i)%value(q))
+         m = size(s)
+         if (.not. quantity%resolution > 0.0_dp .or. m < 2) return
+         k = min(max(count(s <= edge), 1), m - 1)
+         levels = min(most_levels, max(0, ceiling(log(quantity%resolution*(s(k + 1) - s(k))/ &
+            (part*allowed))/log(2.0_dp))))
+      end associate
+   end function levels_of_edges
+
+   !> The edges near which a quantity errs: those of stick only for what friction decides.
+   pure function edges_for(q, contact) result(edges)
+      integer, intent(in) :: q
+      type(contact_record_type), intent(in) :: contact
+      real(dp), allocatable :: edges(:)
+
+      edges = contact%edges_contact
+      if (any([character(24) :: 'edge_stick', 'shear_force'] == estimated(q)%name)) edges = &
+         [edges, contact%edges_stick]
+   end function edges_for
+
+   !> How much the squared error of each element counts for a quantity.
+   pure function influence(q, mesh, points, contact) result(weight)
+      integer, intent(in) :: q
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+      real(dp) :: weight(size(mesh%element_kind)), length, middle(2)
+      integer :: e, n, peak
+
+      weight = 1.0_dp
+      if (estimated(q)%name /= 'peak_pressure') return
+      peak = maxloc(contact%pressure, dim=1)
+      length = reach*closed_length(contact, points%arc_length)
+      if (length <= 0.0_dp) return
+      do e = 1, size(weight)
+         n = element_corner_count(mesh%element_kind(e))
+         middle = sum(mesh%coordinates(:, mesh%element_nodes(:n, e)), dim=2)/n
+         weight(e) = (1.0_dp + norm2(middle - points%position(:, peak))/length)**(-8)
+      end do
+   end function influence
+
+   !> Marks the elements at contact points near the edges of zones, on both faces.
+   subroutine mark_edges(self, mesh, points, edges, levels)
+      class(round_indicators_type), intent(inout) :: self
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: edges(:)
+      integer, intent(in) :: levels
+      logical :: at_edge(0:size(mesh%node_number))
+      integer :: e, i, k
+
+      at_edge = .false.
+      associate (s => points%arc_length)
+         do k = 1, size(s)
+            do i = 1, size(edges)
+               if (ieee_is_nan(edges(i))) cycle
+               if (abs(s(k) - edges(i)) > near*max(s(min(k + 1, size(s))) - s(k), &
+                  s(k) - s(max(k - 1, 1)))) cycle
+               at_edge([points%slave_node(k), points%master_node(k)]) = .true.
+            end do
+         end do
+      end associate
+      at_edge(0) = .false.
+      do e = 1, size(self%levels)
+         if (any(at_edge(mesh%element_nodes(:, e)))) self%levels(e) = max(self%levels(e), levels)
+      end do
+   end subroutine mark_edges
+
+   !> Marks the elements with the largest errors of stress and heat flux.
+   subroutine mark_elements(self, mesh, record, weight, levels)
+      class(round_indicators_type), intent(inout) :: self
+      type(mesh_type), intent(in) :: mesh
+      type(increment_record_type), intent(in) :: record
+      real(dp), intent(in) :: weight(:)   ! (elements) of squared errors
+      integer, intent(in) :: levels
+      real(dp) :: error(size(self%levels)), left
+      integer :: e
+
+      error = 0.0_dp
+      call add_errors(mesh, record%stress_error, error)
+      call add_errors(mesh, record%heat_flux_error, error)
+      error = error*weight
+      left = marked*sum(error)
+      do while (left > 0.0_dp)
+         e = maxloc(error, dim=1)
+         if (error(e) <= 0.0_dp) exit
+         left = left - error(e)
+         error(e) = 0.0_dp
+         self%levels(e) = max(self%levels(e), levels)
+      end do
+   end subroutine mark_elements
+
+   !> Adds the part that each element has in the squared relative error of its body.
+   subroutine add_errors(mesh, estimate, error)
+      type(mesh_type), intent(in) :: mesh
+      type(error_record_type), intent(in) :: estimate
+      real(dp), intent(inout) :: error(:)
+      real(dp) :: square(size(error)), sums(mesh%body_count)
+      integer :: e
+
+      if (.not. allocated(estimate%element)) return
+      sums = 0.0_dp
+      do e = 1, size(error)
+         square(e) = estimate%element(e)**2*area_of(mesh, e)
+         sums(mesh%element_body(e)) = sums(mesh%element_body(e)) + square(e)
+      end do
+      do e = 1, size(error)
+         associate (b => mesh%element_body(e))
+            if (sums(b) > 0.0_dp) error(e) = error(e) + estimate%body(b)**2*square(e)/sums(b)
+         end associate
+      end do
+   end subroutine add_errors
+
+   !> Area of an element between its corners.
+   pure real(dp) function area_of(mesh, e) result(area)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e
+      integer :: corners, i
+
+      area = 0.0_dp
+      corners = element_corner_count(mesh%element_kind(e))
+      do i = 1, corners
+         associate (a => mesh%coordinates(:, mesh%element_nodes(i, e)), &
+            b => mesh%coordinates(:, mesh%element_nodes(mod(i, corners) + 1, e)))
+            area = area + 0.5_dp*(a(1)*b(2) - a(2)*b(1))
+         end associate
+      end do
+      area = abs(area)
+   end function area_of
+
+   !> Whether no other mesh and no other increments would help.
+   pure logical function asks_for_nothing(self)
+      class(round_indicators_type), intent(in) :: self
+
+      asks_for_nothing = self%halvings == 0 .and. .not. any(self%levels > 0)
+   end function asks_for_nothing
+
+   !> Adds the divisions and the increments of the next round to those of the present one.
+   subroutine add_to(self, variation)
+      class(round_indicators_type), intent(in) :: self
+      type(variation_type), intent(inout) :: variation
+      type(element_levels_type), allocatable :: divisions(:)
+      integer :: n
+
+      variation%increments = variation%increments*0.5_dp**self%halvings
+      n = 0
+      if (allocated(variation%divisions)) n = size(variation%divisions)
+      allocate (divisions(n + 1))
+      if (n > 0) divisions(:n) = variation%divisions
+      divisions(n + 1)%levels = self%levels
+      call move_alloc(divisions, variation%divisions)
+   end subroutine add_to
+
+end module round_indicators

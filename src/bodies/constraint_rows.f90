@@ -1,0 +1,226 @@
+!> Rows of linear constraints, and what degrees of freedom they write.
+!>
+!> A row says that a sum of values is zero. Values are numbered: the degrees of freedom u, then
+!> those that rows introduce, such as relative displacements of contact points, then the prescribed
+!> value of each degree of freedom, then marks that tell rows apart. A support is the row u - g = 0.
+!> Row after row writes one degree of freedom by other values. A row of degrees of freedom alone is
+!> a tie.
+module constraint_rows
+   use kinds, only: dp
+   use sum_lists, only: add_terms, sum_list_type
+   implicit none
+   private
+   public :: constraint_rows_type, elimination_type, write_values, resolve, largest, &
+      least_coefficients, negligible, negligible_in_tie
+
+   !> Sum of coefficients that is rounding, as part of the row's largest coefficient.
+   real(dp), parameter :: negligible = 1.0e-14_dp
+
+   !> Coefficient below which a term is dropped, as part of the row's largest coefficient. Rows of
+   !> faces that do not match couple each corner to the next ones, ever more weakly.
+   real(dp), parameter :: dropped = 1.0e-17_dp
+
+   !> The same for ties. On faces that do not match, ties that say nearly the same leave more than
+   !> rounding; a body would be stiff along what is left of them.
+   real(dp), parameter :: negligible_in_tie = 1.0e-9_dp
+
+   !> Part of a row's largest coefficient that a degree of freedom needs to be written by the row.
+   real(dp), parameter :: pivot_of_choice = 0.1_dp, least_pivot = 0.5_dp
+
+   !> The rows.
+   type, extends(sum_list_type) :: constraint_rows_type
+      integer :: components = 1                 !! degrees of freedom of a node
+      integer :: dofs = 0                       !! degrees of freedom
+      logical, allocatable :: on_tail(:)        !! (introduced values) those that contact acts on
+      !> (dofs) those that it acts on likewise; unallocated where there are none
+      logical, allocatable :: dof_on_tail(:)
+      !> (rows) the constraint that a row is part of; its rows follow each other
+      integer, allocatable :: constraint(:)
+      !> (rows) degree of freedom to be written, if left; 0 for any
+      integer, allocatable :: choice(:)
+   end type constraint_rows_type
+
+   !> Degrees of freedom as they are written by other values.
+   type :: elimination_type
+      type(sum_list_type) :: sums               !! what degrees of freedom are written by
+      integer, allocatable :: writer(:)         !! (values) sum that writes a value, or 0
+      integer, allocatable :: entry(:)          !! (values) when a value first entered the rows
+      logical, allocatable :: linked(:)         !! (rows) those that become links
+      logical, allocatable :: tie(:)            !! (rows) those of degrees of freedom alone
+      integer, allocatable :: written(:)        !! (rows) what a tie writes, 0 for a condition
+      real(dp), allocatable :: least(:)         !! (rows) coefficient below which none is left
+   end type elimination_type
+
+contains
+
+   !> Coefficients below which rows have no degree of freedom left.
+   pure function least_coefficients(rows) result(least)
+      type(constraint_rows_type), intent(in) :: rows
+      real(dp) :: least(rows%count)
+      integer :: i
+
+      least = [(largest(rows, i)*merge(negligible_in_tie, negligible, is_tie(rows, i)), &
+         i=1, rows%count)]
+   end function least_coefficients
+
+   !> Whether a row is one of degrees of freedom alone, beside the mark that may tell it.
+   pure logical function is_tie(rows, row)
+      type(constraint_rows_type), intent(in) :: rows
+      integer, intent(in) :: row
+
+      associate (value => rows%value(rows%start(row):rows%start(row + 1) - 1))
+         is_tie = all(value <= rows%dofs .or. value > 2*rows%dofs + size(rows%on_tail))
+      end associate
+   end function is_tie
+
+   !> Writes a degree of freedom by every row whose constraint does not become a link.
+   pure subroutine write_values(rows, values, found)
+      type(constraint_rows_type), intent(in) :: rows
+      integer, intent(in) :: values
+      type(elimination_type), intent(inout) :: found    ! its least coefficients are set
+      integer :: i, k, n
+
+      allocate (found%writer(values), found%entry(values), source=0)
+      allocate (found%linked(rows%count), source=.false.)
+      allocate (found%written(rows%count), source=0)
+      found%tie = [(is_tie(rows, i), i=1, rows%count)]
+      call found%sums%reserve(rows%count, size(rows%value))
+      n = 0
+      do i = 1, rows%count
+         do k = rows%start(i + 1) - 1, rows%start(i), -1
+            n = n + 1
+            if (found%entry(rows%value(k)) == 0) found%entry(rows%value(k)) = n
+         end do
+      end do
+      associate (last_tie => findloc(found%tie, .true., dim=1, back=.true.))
+         call write_section(rows, 1, last_tie, found)
+         call write_section(rows, last_tie + 1, rows%count, found)
+      end associate
+   end subroutine write_values
+
+   !> Writes values by the rows of some whole constraints. Those whose choice is written already
+   !> come last: what they say beside the others is then all that they have left. In turn, each
+   !> would write its neighbour's choice, and along a face whose end is held the coefficients would
+   !> grow by a factor of four from corner to corner.
+   pure subroutine write_section(rows, from, to, found)
+      type(constraint_rows_type), intent(in) :: rows
+      integer, intent(in) :: from, to
+      type(elimination_type), intent(inout) :: found
+      logical :: done(from:to)
+      integer :: first, last, pass
+
+      done = .false.
+      do pass = 1, 2
+         last = from - 1
+         do while (last < to)
+            first = last + 1
+            last = last_of(rows, first)
+            if (done(first)) cycle
+            associate (choice => rows%choice(first:last))
+               done(first) = pass == 2 .or. all(found%writer(pack(choice, choice > 0)) == 0)
+            end associate
+            if (done(first)) call write_constraint(rows, first, last, found)
+         end do
+      end do
+   end subroutine write_section
+
+   !> Last row of the constraint with a first row.
+   pure integer function last_of(rows, first) result(last)
+      type(constraint_rows_type), intent(in) :: rows
+      integer, intent(in) :: first
+
+      do last = first, rows%count - 1
+         if (rows%constraint(last + 1) /= rows%constraint(first)) return
+      end do
+   end function last_of
+
+   !> Writes a degree of freedom by every row of a constraint, or makes all of them links.
+   pure subroutine write_constraint(rows, first, last, found)
+      type(constraint_rows_type), intent(in) :: rows
+      integer, intent(in) :: first, last
+      type(elimination_type), intent(inout) :: found
+      integer :: i, written
+
+      written = found%sums%count
+      do i = first, last
+         call write_one(rows, i, found)
+      end do
+      if (found%tie(first) .or. found%sums%count - written == last - first + 1) return
+      found%linked(first:last) = .true.
+      where (found%writer > written) found%writer = 0
+      found%sums%count = written
+   end subroutine write_constraint
+
+   !> Writes a degree of freedom by one row, if it has any left.
+   pure subroutine write_one(rows, row, found)
+      type(constraint_rows_type), intent(in) :: rows
+      integer, intent(in) :: row
+      type(elimination_type), intent(inout) :: found
+      integer, allocatable :: value(:)
+      real(dp), allocatable :: coefficient(:)
+      logical, allocatable :: left(:)
+      integer :: chosen
+      real(dp) :: pivot
+
+      call resolve(found, rows, row, value, coefficient)
+      left = value <= rows%dofs .and. abs(coefficient) > found%least(row)
+      if (.not. any(left)) return
+      pivot = maxval(abs(coefficient), mask=left)
+      chosen = findloc(left .and. value == rows%choice(row) .and. &
+         abs(coefficient) >= pivot_of_choice*pivot, .true., dim=1)
+      if (chosen == 0) chosen = maxloc(found%entry(value), &
+         mask=left .and. abs(coefficient) >= least_pivot*pivot, dim=1)
+      found%writer(value(chosen)) = found%sums%count + 1
+      if (found%tie(row)) found%written(row) = value(chosen)
+      associate (factor => -1.0_dp/coefficient(chosen))
+         coefficient(chosen) = 0.0_dp
+         call found%sums%add(value, factor*coefficient)
+      end associate
+   end subroutine write_one
+
+   !> Largest coefficient of a degree of freedom in a row.
+   pure real(dp) function largest(rows, row)
+      type(constraint_rows_type), intent(in) :: rows
+      integer, intent(in) :: row
+
+      associate (first => rows%start(row), last => rows%start(row + 1) - 1)
+         largest = maxval(abs(rows%coefficient(first:last)), &
+            mask=rows%value(first:last) <= rows%dofs)
+      end associate
+   end function largest
+
+   !> A sum by the values that nothing writes, each once. What writes a value has no values that
+   !> were written before, so those written first are replaced first, and each of them once.
+   pure subroutine resolve(found, sums, i, value, coefficient)
+      type(elimination_type), intent(in) :: found
+      class(sum_list_type), intent(in) :: sums
+      integer, intent(in) :: i
+      integer, allocatable, intent(out) :: value(:)
+      real(dp), allocatable, intent(out) :: coefficient(:)
+      integer :: k, writer
+      real(dp) :: factor, scale
+
+      value = sums%value(sums%start(i):sums%start(i + 1) - 1)
+      coefficient = sums%coefficient(sums%start(i):sums%start(i + 1) - 1)
+      if (all(found%writer(value) == 0)) return
+      scale = maxval(abs(coefficient))
+      do
+         k = minloc(found%writer(value), mask=found%writer(value) > 0, dim=1)
+         if (k == 0) exit
+         writer = found%writer(value(k))
+         factor = coefficient(k)
+         coefficient = [coefficient(:k - 1), coefficient(k + 1:)]
+         value = [value(:k - 1), value(k + 1:)]
+         if (abs(factor) <= dropped*scale) cycle
+         associate (first => found%sums%start(writer), last => found%sums%start(writer + 1) - 1)
+            call add_terms(found%sums%value(first:last), &
+               factor*found%sums%coefficient(first:last), value, coefficient)
+         end associate
+      end do
+      associate (kept => abs(coefficient) > dropped*scale)
+         value = pack(value, kept)
+         coefficient = pack(coefficient, kept)
+      end associate
+   end subroutine resolve
+
+end module constraint_rows

@@ -1,0 +1,154 @@
+!> Whether the equations of the deck say something new, and leave the relative motion of contact
+!> points free.
+module equation_checks
+   use all_contact_points, only: all_contact_points_type
+   use constraint_rows, only: constraint_rows_type
+   use contact_constraints, only: displacement_rows, equation_of, first_tied, temperature_rows
+   use errors, only: error_type, set_error, status_deck
+   use linear_constraints, only: linear_constraints_type
+   use load_histories, only: load_history_type
+   use loads, only: loads_type
+   use model, only: model_type
+   use reduced_bodies, only: reduced_bodies_type
+   use row_origins, only: origins_of
+   use steps, only: solves_heat, solves_mechanics
+   use text, only: to_text
+   implicit none
+   private
+   public :: check_equations
+
+contains
+
+   !> Checks the constraints of a step.
+   !> Errors: an equation that follows from supports or from other equations, or contradicts them; a
+   !> contact point whose relative motion ties, supports and equations prescribe.
+   subroutine check_equations(model, bodies, loads, step, error)
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies       !! numbered for the step
+      type(loads_type), intent(in) :: loads                 !! supports of the step
+      integer, intent(in) :: step                           !! the step
+      type(error_type), allocatable, intent(out) :: error
+      type(constraint_rows_type) :: rows
+      logical :: as_found(size(bodies%points%slave))
+
+      as_found = .false.
+      associate (analysis => model%steps(step)%analysis, points => bodies%points)
+         if (solves_mechanics(analysis)) then
+            if (needs_words(bodies%mechanical%map, points)) then
+               rows = displacement_rows(loads%displacement%active, points, as_found)
+               call check_field(model, points, bodies%mechanical%map, rows, loads%displacement, &
+                  error)
+            end if
+            if (.not. allocated(error)) call check_contact(model, points, bodies%mechanical%map, &
+               loads%displacement, error)
+         end if
+         if (allocated(error) .or. .not. solves_heat(analysis)) return
+         if (.not. needs_words(bodies%thermal%map, points)) return
+         rows = temperature_rows(loads%temperature%active, points, as_found)
+         call check_field(model, points, bodies%thermal%map, rows, loads%temperature, error)
+      end associate
+   end subroutine check_equations
+
+   !> Whether an equation is left no degree of freedom.
+   pure logical function needs_words(map, points)
+      type(linear_constraints_type), intent(in) :: map
+      type(all_contact_points_type), intent(in) :: points
+
+      needs_words = any(equation_of(map%condition, size(map%by_unknowns%start) - 1, &
+         size(points%slave)) > 0)
+   end function needs_words
+
+   !> Reports the first equation of a field that is left no degree of freedom.
+   subroutine check_field(model, points, map, rows, supports, error)
+      type(model_type), intent(in) :: model
+      type(all_contact_points_type), intent(in) :: points
+      type(linear_constraints_type), intent(in) :: map
+      type(constraint_rows_type), intent(in) :: rows
+      type(load_history_type), intent(in) :: supports
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: others
+      integer :: i, equation
+      logical :: supported
+
+      do i = 1, size(map%condition)
+         equation = equation_of(map%condition(i), rows%dofs, size(points%slave))
+         if (equation <= 0) cycle
+         call name_origins(model, points, rows, supports, map%condition(i), others, supported)
+         if (len(others) == 0) cycle
+         associate (own => points%equations(equation))
+            if (supported) then
+               call set_error(error, status_deck, own%title//' is over-determined: all that it '// &
+                  'relates is prescribed by '//others//'; free one of its degrees of freedom, '// &
+                  'or leave it out', own%card)
+            else
+               call set_error(error, status_deck, own%title//' is circular or repeated: what '// &
+                  'it says follows from '//others//'; leave one out', own%card)
+            end if
+         end associate
+         return
+      end do
+   end subroutine check_field
+
+   !> Reports a contact point whose relative motion is prescribed.
+   subroutine check_contact(model, points, map, supports, error)
+      type(model_type), intent(in) :: model
+      type(all_contact_points_type), intent(in) :: points
+      type(linear_constraints_type), intent(in) :: map
+      type(load_history_type), intent(in) :: supports
+      type(error_type), allocatable, intent(out) :: error
+      type(constraint_rows_type) :: rows
+      character(:), allocatable :: others
+      logical :: as_found(size(points%slave)), supported
+      integer :: i, k
+
+      if (size(model%ties) + size(points%equations) == 0) return
+      k = first_tied(map, points)
+      if (k == 0) return
+      as_found = .false.
+      rows = displacement_rows(supports%active, points, as_found)
+      call name_origins(model, points, rows, supports, rows%dofs + k, others, supported)
+      i = count(points%interface_start <= k)
+      associate (number => model%mesh%node_number)
+         call set_error(error, status_deck, model%contacts(i)%title()//': how slave node '// &
+            to_text(number(points%slave(k)))//' moves against master node '// &
+            to_text(number(points%master(k)))//' is prescribed by '//others//', so that their '// &
+            'contact force is undetermined; free one of the two, or leave the nodes out of the '// &
+            '*CONTACT PAIR', model%contacts(i)%card)
+      end associate
+   end subroutine check_contact
+
+   !> The cards from which the rows of a constraint follow, in words; empty where only the axis of
+   !> symmetry is.
+   subroutine name_origins(model, points, rows, supports, constraint, names, supported)
+      type(model_type), intent(in) :: model
+      type(all_contact_points_type), intent(in) :: points
+      type(constraint_rows_type), intent(in) :: rows
+      type(load_history_type), intent(in) :: supports
+      integer, intent(in) :: constraint
+      character(:), allocatable, intent(out) :: names
+      logical, intent(out) :: supported             ! whether supports are among them
+      integer, allocatable :: origins(:)
+      character(:), allocatable :: name
+      integer :: i
+
+      names = ''
+      supported = .false.
+      origins = origins_of(rows, constraint)
+      do i = 1, size(origins)
+         name = ''
+         if (origins(i) < 0) then
+            name = model%ties(points%ties%tie(-origins(i)))%faces%title()
+         else if (origins(i) <= rows%dofs) then
+            supported = .true.
+            if (supports%card(origins(i)) == 0) cycle
+            name = '*BOUNDARY, '//model%boundary_places(supports%card(origins(i)))%value
+         else if (equation_of(origins(i), rows%dofs, size(points%slave)) > 0) then
+            name = points%equations(equation_of(origins(i), rows%dofs, size(points%slave)))%title
+         end if
+         if (len(name) == 0 .or. index(names//' and ', name//' and ') > 0) cycle
+         if (len(names) > 0) names = names//' and '
+         names = names//name
+      end do
+   end subroutine name_origins
+
+end module equation_checks

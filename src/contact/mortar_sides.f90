@@ -1,0 +1,271 @@
+!> Sides of a slave face, their segments, and the points of the master opposite (mortar_segments).
+module mortar_sides
+   use chain_geometry, only: chain_tangents, side_positions, side_total, two_pi
+   use kinds, only: dp
+   use shape_functions, only: side_shape, side_slope
+   implicit none
+   private
+   public :: face_line_type, opposed_shapes_type, side_type
+   public :: beside_normal, hats, opposed_shapes, opposite_coordinate, outward_normals, project, &
+      side_opposite, sides_of
+
+   real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
+   integer, parameter :: curved_parts = 4           !! of a segment between sides that are not plain
+   real(dp), parameter :: beside = 1.0e-9_dp        !! of a side's coordinate beyond its end
+   integer, parameter :: most_steps = 60            !! of an iteration
+
+   !> The line of nodes of one face.
+   type :: face_line_type
+      real(dp), allocatable :: x(:, :)     !! (2, nodes) coordinates [length]
+      integer :: side_nodes = 2            !! nodes of a side, 2 or 3
+      logical :: closed = .false.          !! whether the last side leads back to the first node
+      real(dp) :: outward = 1.0_dp         !! 1 where the body is on the left of the line, else -1
+   end type face_line_type
+
+   !> One side of the slave, with its nodes' normals.
+   type :: side_type
+      integer, allocatable :: nodes(:)        !! places of its nodes along the line
+      integer :: corners(2) = 0               !! its corners
+      real(dp), allocatable :: x(:, :)        !! (2, nodes) [length]
+      real(dp), allocatable :: normal(:, :)   !! (2, nodes)
+      real(dp), allocatable :: kinks(:)       !! its coordinates where segments end, ascending
+      integer, allocatable :: opposite(:)     !! (segments) side of the master, 0 for none
+      real(dp) :: covered(2) = [1.0_dp, -1.0_dp] !! its coordinates where the covered part ends
+   end type side_type
+
+   !> Shape functions of both faces at two points that lie opposite each other.
+   type :: opposed_shapes_type
+      integer, allocatable :: facing(:)      !! (nodes) of the master's side, along its line
+      real(dp), allocatable :: of_slave(:)   !! (nodes of the slave's side)
+      real(dp), allocatable :: of_master(:)  !! (nodes of the master's side)
+      real(dp) :: area = 0.0_dp              !! dA/dxi [length^2]
+   end type opposed_shapes_type
+
+contains
+
+   !> The sides of the slave, with the normals of their nodes and their segments.
+   pure function sides_of(slave, master) result(side)
+      type(face_line_type), intent(in) :: slave, master
+      type(side_type), allocatable :: side(:)
+      real(dp) :: normal(2, size(slave%x, 2))
+      integer :: corners, s
+
+      allocate (side(side_total(size(slave%x, 2), slave%side_nodes, slave%closed)))
+      corners = size(side) + merge(0, 1, slave%closed)
+      normal = outward_normals(slave)
+      do s = 1, size(side)
+         side(s)%nodes = side_positions(s, slave%side_nodes, size(slave%x, 2))
+         side(s)%corners = [s, modulo(s, corners) + 1]
+         side(s)%x = slave%x(:, side(s)%nodes)
+         side(s)%normal = normal(:, side(s)%nodes)
+         call find_kinks(side(s), master)
+      end do
+   end function sides_of
+
+   !> Shape functions of both faces at a point of a segment, and the area per coordinate.
+   pure function opposed_shapes(side, segment, xi, master, section) result(shapes)
+      type(side_type), intent(in) :: side
+      integer, intent(in) :: segment               !! one with a master opposite
+      real(dp), intent(in) :: xi                   !! coordinate of the side
+      type(face_line_type), intent(in) :: master
+      real(dp), intent(in) :: section              !! thickness, 0 about an axis [length]
+      type(opposed_shapes_type) :: shapes
+      real(dp) :: eta, radius
+
+      shapes%facing = side_positions(side%opposite(segment), master%side_nodes, size(master%x, 2))
+      eta = 0.0_dp
+      call project(side, xi, master%x(:, shapes%facing), eta)
+      shapes%of_slave = side_shape(size(side%nodes), xi)
+      shapes%of_master = side_shape(master%side_nodes, eta)
+      radius = 0.5_dp*(dot_product(shapes%of_slave, side%x(1, :)) + &
+         dot_product(shapes%of_master, master%x(1, shapes%facing)))
+      shapes%area = norm2(matmul(side%x, side_slope(size(side%nodes), xi)))* &
+         merge(section, two_pi*abs(radius), section > 0.0_dp)
+   end function opposed_shapes
+
+   !> Hat functions of the corners of a side that the master covers at least in part; outside the
+   !> covered part their values at its end.
+   pure function hats(side, xi)
+      type(side_type), intent(in) :: side
+      real(dp), intent(in) :: xi              !! coordinate of the side
+      real(dp) :: hats(2)
+
+      associate (ends => side%covered, at => min(max(xi, side%covered(1)), side%covered(2)))
+         hats = [ends(2) - at, at - ends(1)]/(ends(2) - ends(1))
+      end associate
+   end function hats
+
+   !> Outward unit normals at the nodes of a line; at a corner midway between those of its sides.
+   pure function outward_normals(line) result(normal)
+      type(face_line_type), intent(in) :: line
+      real(dp) :: normal(2, size(line%x, 2))  !! (2, nodes)
+      real(dp) :: tangent(2, size(line%x, 2))
+
+      tangent = chain_tangents(line%x, line%side_nodes, line%closed)
+      normal(1, :) = line%outward*tangent(2, :)
+      normal(2, :) = -line%outward*tangent(1, :)
+   end function outward_normals
+
+   !> Finds where the segments of a slave's side end, its own ends and where corners of the master
+   !> lie opposite, and what lies opposite them.
+   pure subroutine find_kinks(side, master)
+      type(side_type), intent(inout) :: side
+      type(face_line_type), intent(in) :: master
+      real(dp) :: ends(2), xi
+      integer :: j
+
+      side%kinks = [-1.0_dp, 1.0_dp]
+      do j = 1, size(master%x, 2), master%side_nodes - 1
+         ends = [beside_normal(side, -1.0_dp, master%x(:, j)), &
+            beside_normal(side, 1.0_dp, master%x(:, j))]
+         if (ends(1)*ends(2) >= 0.0_dp) cycle
+         xi = opposite_coordinate(side, master%x(:, j), ends)
+         side%kinks = [pack(side%kinks, side%kinks <= xi), xi, pack(side%kinks, side%kinks > xi)]
+      end do
+      allocate (side%opposite(size(side%kinks) - 1), source=0)
+      do j = 1, size(side%opposite)
+         ends = side%kinks(j:j + 1)
+         if (ends(2) - ends(1) <= no_segment) cycle
+         side%opposite(j) = side_opposite(side, 0.5_dp*(ends(1) + ends(2)), master)
+         if (side%opposite(j) == 0) cycle
+         side%covered = [min(side%covered(1), ends(1)), max(side%covered(2), ends(2))]
+      end do
+      call divide_segments(side, master)
+   end subroutine find_kinks
+
+   !> Divides the segments between sides of which one is curved or has its midside node off the
+   !> middle: there the integrand is no polynomial.
+   pure subroutine divide_segments(side, master)
+      type(side_type), intent(inout) :: side
+      type(face_line_type), intent(in) :: master
+      real(dp), allocatable :: kinks(:)
+      integer, allocatable :: opposite(:)
+      integer :: j, parts, q
+
+      kinks = side%kinks(:1)
+      allocate (opposite(0))
+      do j = 1, size(side%opposite)
+         parts = curved_parts
+         associate (facing => side_positions(max(side%opposite(j), 1), master%side_nodes, &
+            size(master%x, 2)))
+            if (side%opposite(j) == 0 .or. (is_plain(side%x) .and. &
+               is_plain(master%x(:, facing)))) parts = 1
+         end associate
+         do q = 1, parts - 1
+            kinks = [kinks, side%kinks(j) + q*(side%kinks(j + 1) - side%kinks(j))/parts]
+         end do
+         kinks = [kinks, side%kinks(j + 1)]
+         opposite = [opposite, spread(side%opposite(j), 1, parts)]
+      end do
+      side%kinks = kinks
+      side%opposite = opposite
+   end subroutine divide_segments
+
+   !> Whether a side is straight, with any midside node at its middle.
+   pure logical function is_plain(x)
+      real(dp), intent(in) :: x(:, :)
+
+      is_plain = size(x, 2) == 2
+      if (is_plain) return
+      is_plain = norm2(2*x(:, 2) - x(:, 1) - x(:, 3)) <= beside*norm2(x(:, 3) - x(:, 1))
+   end function is_plain
+
+   !> How far a point lies beside the normal at a point of a side.
+   pure real(dp) function beside_normal(side, xi, x)
+      type(side_type), intent(in) :: side
+      real(dp), intent(in) :: xi              !! coordinate of the side
+      real(dp), intent(in) :: x(2)            !! the point [length]
+
+      associate (psi => side_shape(size(side%x, 2), xi))
+         beside_normal = cross(matmul(side%normal, psi), x - matmul(side%x, psi))
+      end associate
+   end function beside_normal
+
+   !> Coordinate of a side whose normal meets a point, by the Illinois method: false position, in
+   !> which an end that stays counts half as much each time.
+   pure function opposite_coordinate(side, x, at_ends) result(xi)
+      type(side_type), intent(in) :: side
+      real(dp), intent(in) :: x(2)            !! the point [length]
+      real(dp), intent(in) :: at_ends(2)      !! beside_normal at the side's ends, of opposite signs
+      real(dp) :: xi
+      real(dp) :: before, ends(2), value, values(2)
+      integer :: step
+
+      ends = [-1.0_dp, 1.0_dp]
+      values = at_ends
+      xi = 2.0_dp
+      do step = 1, most_steps
+         before = xi
+         xi = (ends(1)*values(2) - ends(2)*values(1))/(values(2) - values(1))
+         value = beside_normal(side, xi, x)
+         if (abs(value) <= 0.0_dp .or. abs(xi - before) <= epsilon(xi)) exit
+         if (value*values(2) < 0.0_dp) then
+            ends(1) = ends(2)
+            values(1) = values(2)
+         else
+            values(1) = 0.5_dp*values(1)
+         end if
+         ends(2) = xi
+         values(2) = value
+      end do
+   end function opposite_coordinate
+
+   !> Side of the master that the normal at a point of the slave meets nearest to it, of those that
+   !> face the slave; 0 where none does.
+   pure integer function side_opposite(side, xi, master)
+      type(side_type), intent(in) :: side
+      real(dp), intent(in) :: xi              !! coordinate of the slave's side
+      type(face_line_type), intent(in) :: master
+      real(dp) :: ends(2), eta, gap, nearest, normal(2), point(2), tangent(2)
+      integer :: s
+
+      side_opposite = 0
+      nearest = huge(nearest)
+      normal = matmul(side%normal, side_shape(size(side%x, 2), xi))
+      point = matmul(side%x, side_shape(size(side%x, 2), xi))
+      do s = 1, side_total(size(master%x, 2), master%side_nodes, master%closed)
+         associate (x => master%x(:, side_positions(s, master%side_nodes, size(master%x, 2))))
+            ends = [cross(normal, x(:, 1) - point), cross(normal, x(:, size(x, 2)) - point)]
+            if (ends(1)*ends(2) > 0.0_dp) cycle
+            eta = 0.0_dp
+            call project(side, xi, x, eta)
+            if (abs(eta) > 1.0_dp + beside) cycle
+            tangent = matmul(x, side_slope(size(x, 2), eta))
+            if (master%outward*cross(normal, tangent) >= 0.0_dp) cycle
+            gap = norm2(matmul(x, side_shape(size(x, 2), eta)) - point)
+            if (gap >= nearest) cycle
+            nearest = gap
+            side_opposite = s
+         end associate
+      end do
+   end function side_opposite
+
+   !> Coordinate eta of the master's side x at which the normal at xi of a slave's side meets it, by
+   !> Newton's method.
+   pure subroutine project(side, xi, x, eta)
+      type(side_type), intent(in) :: side
+      real(dp), intent(in) :: xi              !! coordinate of the slave's side
+      real(dp), intent(in) :: x(:, :)         !! (2, nodes) [length]
+      real(dp), intent(inout) :: eta          !! in: a guess
+      real(dp) :: change, normal(2), point(2), rate
+      integer :: step
+
+      normal = matmul(side%normal, side_shape(size(side%x, 2), xi))
+      point = matmul(side%x, side_shape(size(side%x, 2), xi))
+      do step = 1, most_steps
+         rate = cross(normal, matmul(x, side_slope(size(x, 2), eta)))
+         if (abs(rate) <= 0.0_dp) return
+         change = -cross(normal, matmul(x, side_shape(size(x, 2), eta)) - point)/rate
+         eta = min(max(eta + change, -2.0_dp), 2.0_dp)
+         if (abs(change) <= 4*epsilon(eta)) return
+      end do
+   end subroutine project
+
+   !> a x b.
+   pure real(dp) function cross(a, b)
+      real(dp), intent(in) :: a(2), b(2)
+
+      cross = a(1)*b(2) - a(2)*b(1)
+   end function cross
+
+end module mortar_sides

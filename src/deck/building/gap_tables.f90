@@ -1,0 +1,160 @@
+!> The rows of a table of conductance over the gap or the pressure, at one mean temperature of the
+!> faces or at several.
+module gap_tables
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, field_place, has_field, keyword_card_type
+   use decimal_commas, only: check_unneeded_temperature, decimal_comma, report_decimal_comma
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use kinds, only: dp
+   use piecewise_lines, only: line_value
+   use text, only: to_text
+   implicit none
+   private
+   public :: gap_table_type, read_table, read_temperatures, note_ends
+
+   !> A table. That of several temperatures has all abscissas at each of them, on the straight lines
+   !> between the rows of this temperature.
+   type :: gap_table_type
+      real(dp), allocatable :: abscissa(:)       !! (rows) gap or pressure, ascending
+      real(dp), allocatable :: omega(:)          !! (rows) conductance, at the first temperature
+      real(dp), allocatable :: temperature(:)    !! (columns) ascending; unallocated for one
+      real(dp), allocatable :: columns(:, :)     !! (rows, columns) conductance; likewise
+   end type gap_table_type
+
+contains
+
+   !> Rows of conductance and what it belongs to. Those of a table with temperatures have one behind
+   !> it and stand in groups of one temperature.
+   subroutine read_table(cards, card, noun, temperature, report, table)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
+      real(dp), intent(in) :: temperature(:)               !! (rows) alike for one temperature
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(gap_table_type), intent(out) :: table
+      integer :: i, n
+      logical :: valid(2), valid_before
+
+      n = card%last_data - card%first_data + 1
+      allocate (table%abscissa(n), table%omega(n), source=0.0_dp)
+      valid_before = .false.
+      associate (abscissa => table%abscissa, omega => table%omega)
+         do i = 1, n
+            associate (data => cards%data(card%first_data + i - 1))
+               valid = .true.
+               call need_field(data, 1, 'conductance', report, omega(i), valid(1))
+               call need_field(data, 2, noun, report, abscissa(i), valid(2))
+               if (card%name == 'GAP CONDUCTANCE') then
+                  call check_extra(data, 3, 'conductance, '//noun//', temperature', report)
+               else
+                  call check_extra(data, 2, 'conductance, '//noun, report)
+               end if
+               if (valid(1) .and. omega(i) < 0.0_dp) then
+                  call report%error(field_place(data, 1), 'the conductance must not be negative')
+               end if
+               if (i > 1) valid_before = valid_before .and. &
+                  abs(temperature(i) - temperature(max(i - 1, 1))) <= 0.0_dp
+               if (valid(2) .and. abscissa(i) < 0.0_dp) then
+                  call report%error(field_place(data, 2), 'the '//noun//' must not be negative')
+               else if (valid(2) .and. valid_before) then
+                  if (abscissa(i) <= abscissa(i - 1)) then
+                     call report%error(field_place(data, 2), noun//'s must ascend')
+                  end if
+               end if
+               valid_before = valid(2)
+            end associate
+         end do
+      end associate
+      if (any(abs(temperature - temperature(1)) > 0.0_dp)) call make_columns(temperature, table)
+   end subroutine read_table
+
+   !> Temperatures behind the rows of a *GAP CONDUCTANCE: one for all of them means nothing, several
+   !> ascend.
+   subroutine read_temperatures(cards, card, context, report, temperature)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      real(dp), allocatable, intent(out) :: temperature(:) !! (rows) 0 for none
+      integer :: comma, i
+      logical :: valid
+
+      associate (rows => cards%data(card%first_data:card%last_data))
+         allocate (temperature(size(rows)), source=0.0_dp)
+         valid = .true.
+         do i = 1, size(rows)
+            call take_field(rows(i), 3, 'temperature', report, temperature(i), valid)
+         end do
+         if (.not. valid) temperature = 0.0_dp
+         do i = 2, size(rows)
+            if (.not. (has_field(rows(i), 3) .neqv. has_field(rows(i - 1), 3))) cycle
+            if (all(abs(temperature - temperature(1)) <= 0.0_dp)) exit
+            comma = decimal_comma(rows(i))
+            if (comma > 0 .and. size(rows(i)%fields) > size(rows(1)%fields)) then
+               call report_decimal_comma(rows(i), comma, report)
+            else
+               call report%error(field_place(rows(i), 3), 'a temperature in some rows only; '// &
+                  'give one in each row or in none')
+            end if
+            return
+         end do
+         do i = 2, size(rows)
+            if (temperature(i) >= temperature(i - 1)) cycle
+            call report%error(field_place(rows(i), 3), 'temperatures must ascend, and the rows '// &
+               'of each temperature must be consecutive')
+            return
+         end do
+         if (any(temperature > temperature(1)) .or. .not. valid) return
+         call check_unneeded_temperature(rows(1), 3, report)
+         do i = 1, size(rows)
+            if (has_field(rows(i), 3)) call context%note('*GAP CONDUCTANCE: the temperature, '// &
+               'the same in every row, is ignored')
+         end do
+      end associate
+   end subroutine read_temperatures
+
+   !> One column for each temperature.
+   subroutine make_columns(temperature, table)
+      real(dp), intent(in) :: temperature(:)               ! (rows as written) ascending
+      type(gap_table_type), intent(inout) :: table
+      real(dp), allocatable :: grid(:)
+      logical :: here(size(temperature))
+      integer :: i, k
+
+      grid = ascending(table%abscissa)
+      table%temperature = ascending(temperature)
+      allocate (table%columns(size(grid), size(table%temperature)))
+      do k = 1, size(table%temperature)
+         here = abs(temperature - table%temperature(k)) <= 0.0_dp
+         table%columns(:, k) = [(line_value(pack(table%abscissa, here), &
+            pack(table%omega, here), grid(i)), i=1, size(grid))]
+      end do
+      call move_alloc(grid, table%abscissa)
+      table%omega = table%columns(:, 1)
+   end subroutine make_columns
+
+   !> Each of some values once.
+   pure function ascending(values) result(sorted)
+      real(dp), intent(in) :: values(:)
+      real(dp), allocatable :: sorted(:)
+
+      sorted = [minval(values)]
+      do while (any(values > sorted(size(sorted))))
+         sorted = [sorted, minval(values, mask=values > sorted(size(sorted)))]
+      end do
+   end function ascending
+
+   !> Notes that a table holds its end values.
+   subroutine note_ends(what, name, noun, abscissas, context)
+      character(*), intent(in) :: what                     !! the card
+      character(*), intent(in) :: name                     !! name of the surface interaction
+      character(*), intent(in) :: noun                     !! gaps, pressures or temperatures
+      real(dp), intent(in) :: abscissas(:)                 !! (rows) ascending
+      type(deck_context_type), intent(inout) :: context    !! receives the note
+
+      call context%note(what//' of '//name//': the table holds its end values outside the '// &
+         noun//' '//to_text(abscissas(1))//' to '//to_text(abscissas(size(abscissas))))
+   end subroutine note_ends
+
+end module gap_tables

@@ -1,0 +1,323 @@
+!> *PART, *INSTANCE and *ASSEMBLY of Abaqus -> the flat deck that they stand for.
+!>
+!> An instance repeats the cards of its part, and may have cards of its own. Its sets and surfaces
+!> become INSTANCE.NAME. Nodes and elements of the first instance keep their numbers; those of the
+!> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
+module assembly_cards
+   use card_parameters, only: has_parameter, parameter_place, parameter_text
+   use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_text, &
+      field_type, keyword_card_type, replace_cards
+   use deck_report, only: deck_report_type
+   use instance_copies, only: copy_card, instance_type, members_of_instance, read_motion
+   use kinds, only: long
+   use text, only: append, nearest_known, read_integer, string_type, to_text, to_upper
+   implicit none
+   private
+   public :: flatten_cards
+
+   ! Where a card stands.
+   integer, parameter :: at_model = 0, at_part = 1, at_assembly = 2, at_instance = 3
+
+   !> What is open while the cards are taken.
+   type :: reading_type
+      integer :: level = at_model
+      integer :: opened = 0                              !! keyword card that opened it
+      type(string_type), allocatable :: parts(:)         !! names of the parts so far, upper case
+      integer, allocatable :: first(:), last(:)          !! (parts) keyword cards within each
+      type(instance_type), allocatable :: instances(:)   !! those so far
+      type(instance_type) :: assembly                    !! cards of the assembly itself
+      integer :: step = 0                                !! power of ten between instances
+   end type reading_type
+
+contains
+
+   !> Replaces parts and instances by the cards that they stand for, at the place of the instance.
+   !> Cards keep the places where the user wrote them.
+   subroutine flatten_cards(cards, report)
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      type(cards_type) :: all
+      type(reading_type) :: open
+      integer :: k, n
+
+      if (.not. any([(is_structure(cards%keywords(k)), k=1, size(cards%keywords))])) return
+      allocate (open%parts(0), open%first(0), open%last(0), open%instances(0))
+      open%assembly%name = ''
+      n = count([(cards%keywords(k)%name == 'INSTANCE', k=1, size(cards%keywords))])
+      call find_step(cards, n, report, open%step)
+      open%assembly%offset = n*open%step
+      call move_alloc(cards%notes, all%notes)
+      do k = 1, size(cards%keywords)
+         call take_card(cards, k, open, all, report)
+      end do
+      if (open%level /= at_model) call report%error(cards%keywords(open%opened)%place, '*'// &
+         cards%keywords(open%opened)%name//' has no *END '//cards%keywords(open%opened)%name)
+      call move_alloc(all%notes, cards%notes)
+      call replace_cards(cards, all)
+   end subroutine flatten_cards
+
+   !> Whether a card is of parts and assemblies.
+   pure logical function is_structure(card)
+      type(keyword_card_type), intent(in) :: card
+
+      select case (card%name)
+      case ('PART', 'END PART', 'ASSEMBLY', 'END ASSEMBLY', 'INSTANCE', 'END INSTANCE')
+         is_structure = .true.
+      case default
+         is_structure = has_parameter(card, 'INSTANCE')
+      end select
+   end function is_structure
+
+   !> The smallest power of ten above all numbers of nodes and elements.
+   subroutine find_step(cards, instances, report, step)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: instances
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: step
+      integer(long) :: largest
+      integer :: k, j
+
+      largest = 1
+      do k = 1, size(cards%keywords)
+         select case (cards%keywords(k)%name)
+         case ('NODE', 'ELEMENT', 'NGEN', 'ELGEN')
+            do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
+               largest = max(largest, largest_number(cards%keywords(k)%name, cards%data(j)))
+            end do
+         case default
+            cycle
+         end select
+      end do
+      step = 10
+      do while (step <= largest .and. step < 10**9)
+         step = 10*step
+      end do
+      if (instances == 0 .or. (step > largest .and. (instances + 1_long)*step <= huge(step))) return
+      call report%error(cards%last, 'the numbers of nodes and elements of '//to_text(instances)// &
+         ' instances would exceed '//to_text(huge(1)))
+      step = 0
+   end subroutine find_step
+
+   !> Largest number that a data card gives.
+   integer(long) function largest_number(keyword, data)
+      character(*), intent(in) :: keyword
+      type(data_card_type), intent(in) :: data
+      integer(long) :: values(7)
+      integer :: i, number
+      logical :: valid
+
+      values = [0, 1, 1, 1, 1, 1, 1]
+      do i = 1, 7
+         call read_integer(field_text(data, i), number, valid)
+         if (valid) values(i) = abs(number)
+      end do
+      largest_number = values(1)
+      if (keyword == 'NGEN') largest_number = maxval(values(:2))
+      if (keyword == 'ELGEN') largest_number = values(1) + (values(2) - 1)*values(4) + &
+         (values(5) - 1)*values(7)
+   end function largest_number
+
+   !> Takes one card where it stands.
+   subroutine take_card(cards, k, open, all, report)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: k
+      type(reading_type), intent(inout) :: open
+      type(cards_type), intent(inout) :: all
+      type(deck_report_type), intent(inout) :: report
+      logical :: enters
+
+      associate (card => cards%keywords(k))
+         select case (card%name)
+         case ('PART')
+            call enter(card, k, at_model, at_part, open, report, enters)
+            if (enters) then
+               call append(open%parts, to_upper(name_of(card, report)))
+               open%first = [open%first, k + 1]
+               open%last = [open%last, k]
+            end if
+         case ('ASSEMBLY')
+            call enter(card, k, at_model, at_assembly, open, report, enters)
+         case ('INSTANCE')
+            call enter(card, k, at_assembly, at_instance, open, report, enters)
+            if (enters) call open_instance(cards, card, open, all, report)
+         case ('END PART')
+            call leave(card, at_part, at_model, open, report)
+         case ('END ASSEMBLY')
+            call leave(card, at_assembly, at_model, open, report)
+         case ('END INSTANCE')
+            call leave(card, at_instance, at_assembly, open, report)
+         case default
+            select case (open%level)
+            case (at_part)
+               open%last(size(open%last)) = k
+            case (at_instance)
+               call copy_card(cards, card, open%instances(size(open%instances)), all)
+            case default
+               call take_flat(cards, card, open, all, report)
+            end select
+         end select
+      end associate
+   end subroutine take_card
+
+   !> Opens something where it may stand.
+   subroutine enter(card, k, from, to, open, report, enters)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: k, from, to
+      type(reading_type), intent(inout) :: open
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(out) :: enters
+      character(*), parameter :: where_to(2) = [character(60) :: &
+         ' is not within another *PART or *ASSEMBLY', &
+         ' stands between *ASSEMBLY and *END ASSEMBLY']
+
+      enters = open%level == from
+      if (enters) then
+         open%level = to
+         open%opened = k
+      else
+         call report%error(card%place, '*'//card%name//trim(where_to(merge(2, 1, &
+            to == at_instance))))
+      end if
+   end subroutine enter
+
+   !> Closes what is open.
+   subroutine leave(card, from, to, open, report)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: from, to
+      type(reading_type), intent(inout) :: open
+      type(deck_report_type), intent(inout) :: report
+
+      if (open%level == from) then
+         open%level = to
+      else
+         call report%error(card%place, '*'//card%name//' without *'//card%name(5:))
+      end if
+   end subroutine leave
+
+   function name_of(card, report) result(name)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: name
+
+      name = parameter_text(card, 'NAME')
+      if (len(name) == 0 .and. .not. card%flawed) call report%error(card%place, '*'//card%name// &
+         ' needs NAME=')
+   end function name_of
+
+   !> Begins an instance with the cards of its part.
+   subroutine open_instance(cards, card, open, all, report)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(reading_type), intent(inout) :: open
+      type(cards_type), intent(inout) :: all
+      type(deck_report_type), intent(inout) :: report
+      type(instance_type) :: instance
+      character(:), allocatable :: part
+      integer :: i, k
+
+      instance%name = to_upper(name_of(card, report))
+      instance%offset = size(open%instances)*open%step
+      do i = 1, size(open%instances)
+         if (open%instances(i)%name == instance%name) call report%error( &
+            parameter_place(card, 'NAME'), 'instance '//instance%name//' is defined twice')
+      end do
+      call read_motion(cards, card, report, instance)
+      open%instances = [open%instances, instance]
+      if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name// &
+         ': numbers of its nodes and elements are those of the part plus '// &
+         to_text(instance%offset))
+      part = to_upper(parameter_text(card, 'PART'))
+      if (len(part) == 0) then
+         if (.not. card%flawed) call report%error(card%place, '*INSTANCE needs PART=')
+         return
+      end if
+      do i = 1, size(open%parts)
+         if (open%parts(i)%value /= part) cycle
+         do k = open%first(i), open%last(i)
+            call copy_card(cards, cards%keywords(k), instance, all)
+         end do
+         return
+      end do
+      call report%missing(parameter_place(card, 'PART'), 'unknown part '//part// &
+         nearest_known(part, open%parts), 'part', part)
+   end subroutine open_instance
+
+   !> Takes a card of the assembly or of the model as it is, but for INSTANCE= of its members,
+   !> INSTANCE.number, and the numbers of the assembly's own nodes and elements.
+   subroutine take_flat(cards, card, open, all, report)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(reading_type), intent(in) :: open
+      type(cards_type), intent(inout) :: all
+      type(deck_report_type), intent(inout) :: report
+      type(instance_type) :: owner
+      integer :: k, first
+
+      first = all%keyword_count + 1
+      if (has_parameter(card, 'INSTANCE')) then
+         call find_owner(card, open, report, owner)
+         call copy_card(cards, card, owner, all)
+      else if (open%level == at_assembly) then
+         call copy_card(cards, card, open%assembly, all)
+      else
+         call copy_as_is(cards, card, all)
+      end if
+      associate (copy => all%keywords(first))
+         do k = 1, size(copy%parameters)
+            ! The set of the assembly, whose members are those of an instance.
+            if (copy%parameters(k)%name == card%name) copy%parameters(k)%text = &
+               card%parameters(k)%text
+            call members_of_instance(open%instances, copy%parameters(k)%text)
+         end do
+      end associate
+      do k = all%keywords(first)%first_data, all%data_count
+         call name_members(open%instances, all%data(k)%fields)
+      end do
+   end subroutine take_flat
+
+   subroutine copy_as_is(cards, card, all)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(cards_type), intent(inout) :: all
+      type(field_type), allocatable :: fields(:)
+      integer :: j
+
+      call add_keyword(all, card)
+      do j = card%first_data, card%last_data
+         fields = cards%data(j)%fields
+         call add_data(all, fields, cards%data(j)%end)
+      end do
+   end subroutine copy_as_is
+
+   subroutine name_members(instances, fields)
+      type(instance_type), intent(in) :: instances(:)
+      type(field_type), intent(inout) :: fields(:)
+      integer :: i
+
+      do i = 1, size(fields)
+         call members_of_instance(instances, fields(i)%text)
+      end do
+   end subroutine name_members
+
+   !> The instance that INSTANCE= of a set names.
+   subroutine find_owner(card, open, report, owner)
+      type(keyword_card_type), intent(in) :: card
+      type(reading_type), intent(in) :: open
+      type(deck_report_type), intent(inout) :: report
+      type(instance_type), intent(out) :: owner
+      type(string_type), allocatable :: names(:)
+      integer :: i
+
+      owner%name = to_upper(parameter_text(card, 'INSTANCE'))
+      allocate (names(0))
+      do i = 1, size(open%instances)
+         call append(names, open%instances(i)%name)
+         if (open%instances(i)%name /= owner%name) cycle
+         owner = open%instances(i)
+         return
+      end do
+      call report%missing(parameter_place(card, 'INSTANCE'), 'unknown instance '//owner%name// &
+         nearest_known(owner%name, names), 'instance', owner%name)
+   end subroutine find_owner
+
+end module assembly_cards

@@ -1,0 +1,235 @@
+!> Which elements a local refinement divides: those at a surface or of a set, or near them, and with
+!> them those that must be divided so that elements side by side differ by one level, and so that
+!> faces whose nodes match still do.
+module local_refinement
+   use contact_definitions, only: contact_definition_type, pairing_surfaces
+   use element_kinds, only: element_corner_count
+   use element_sides, only: element_sides_type, find_sides, side_ends
+   use errors, only: error_type
+   use hanging_nodes, only: coarse_side, fine_sides, hanging_count
+   use kinds, only: dp
+   use line_distances, only: distance_of_lines
+   use mesh, only: mesh_type
+   use model, only: model_type
+   use refined_regions, only: refined_region_type
+   use surface_chains, only: aligned_chains, chain_faces, surface_chain_type
+   implicit none
+   private
+   public :: elements_in_region, choose_neighbours
+
+   !> Part of DISTANCE= by which an element must come nearer: what only touches stays out.
+   real(dp), parameter :: rounding = 1.0e-9_dp
+
+contains
+
+   !> Chooses the elements that must be divided with those that are chosen.
+   subroutine choose_neighbours(model, chosen)
+      type(model_type), intent(in) :: model
+      logical, intent(inout) :: chosen(:)                  !! (elements) those that are divided
+      integer, allocatable :: together(:, :)
+      type(element_sides_type) :: sides
+      logical :: is_new
+
+      call find_opposite(model, together)
+      sides = find_sides(model%mesh)
+      do
+         call choose_opposite(together, chosen, is_new)
+         call choose_coarse(model%mesh, sides, chosen, is_new)
+         if (.not. is_new) exit
+      end do
+   end subroutine choose_neighbours
+
+   !> Elements that a region asks to divide.
+   function elements_in_region(mesh, region) result(inside)
+      type(mesh_type), intent(in) :: mesh
+      type(refined_region_type), intent(in) :: region
+      logical :: inside(size(mesh%element_number))         !! (elements)
+      real(dp), allocatable :: lines(:, :, :)
+      integer :: e, f, i
+
+      inside = .false.
+      if (allocated(region%surfaces)) then
+         do i = 1, size(region%surfaces)
+            inside(mesh%surfaces(region%surfaces(i))%faces(1, :)) = .true.
+         end do
+      else
+         inside(mesh%element_sets(region%set)%members) = .true.
+      end if
+      if (region%distance <= 0.0_dp) return
+      call find_lines(mesh, region, lines)
+      do e = 1, size(inside)
+         do f = 1, element_corner_count(mesh%element_kind(e))
+            if (inside(e)) exit
+            inside(e) = is_near(side_line(mesh, side_ends(mesh, e, f)), lines, &
+               region%distance*(1.0_dp - rounding))
+         end do
+      end do
+   end function elements_in_region
+
+   !> Sides from which the distance counts: those of the surfaces, or those that elements of the set
+   !> do not share.
+   subroutine find_lines(mesh, region, lines)
+      type(mesh_type), intent(in) :: mesh
+      type(refined_region_type), intent(in) :: region
+      real(dp), allocatable, intent(out) :: lines(:, :, :)   ! (2, 3, sides)
+      type(element_sides_type) :: sides
+      integer :: i, k, n
+      logical :: is_member(0:size(mesh%element_number))
+
+      n = 0
+      if (allocated(region%surfaces)) then
+         allocate(lines(2, 3, sum([(size(mesh%surfaces(region%surfaces(k))%faces, 2), &
+            k=1, size(region%surfaces))])))
+         do k = 1, size(region%surfaces)
+            associate (faces => mesh%surfaces(region%surfaces(k))%faces)
+               do i = 1, size(faces, 2)
+                  n = n + 1
+                  lines(:, :, n) = side_line(mesh, side_ends(mesh, faces(1, i), faces(2, i)))
+               end do
+            end associate
+         end do
+         return
+      end if
+      is_member = .false.
+      is_member(mesh%element_sets(region%set)%members) = .true.
+      sides = find_sides(mesh)
+      allocate(lines(2, 3, sides%count))
+      do i = 1, sides%count
+         if (count(is_member(sides%elements(:, i))) /= 1) cycle
+         n = n + 1
+         lines(:, :, n) = side_line(mesh, sides%ends(:, i))
+      end do
+      lines = lines(:, :, :n)
+   end subroutine find_lines
+
+   !> A side as three points; where it has no midside node, the one in its middle.
+   pure function side_line(mesh, ends) result(line)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: ends(3)            ! as in side_ends
+      real(dp) :: line(2, 3)
+
+      line(:, [1, 3]) = mesh%coordinates(:, ends([1, 3]))
+      line(:, 2) = 0.5_dp*(line(:, 1) + line(:, 3))
+      if (ends(2) > 0) line(:, 2) = mesh%coordinates(:, ends(2))
+   end function side_line
+
+   !> Whether a line is nearer than a distance to any of others.
+   pure logical function is_near(line, others, distance)
+      real(dp), intent(in) :: line(2, 3), others(:, :, :), distance
+      real(dp) :: low(2), high(2)
+      integer :: i
+
+      low = minval(line, dim=2) - distance
+      high = maxval(line, dim=2) + distance
+      is_near = .true.
+      do i = 1, size(others, 3)
+         if (any(minval(others(:, :, i), dim=2) > high)) cycle
+         if (any(maxval(others(:, :, i), dim=2) < low)) cycle
+         if (distance_of_lines(line, others(:, :, i)) < distance) return
+      end do
+      is_near = .false.
+   end function is_near
+
+   !> Pairs of elements on both faces of interfaces and ties whose nodes match.
+   subroutine find_opposite(model, pairs)
+      type(model_type), intent(in) :: model
+      integer, allocatable, intent(out) :: pairs(:, :)   ! (2, pairs)
+      integer :: i
+
+      allocate(pairs(2, 0))
+      if (allocated(model%contacts)) then
+         do i = 1, size(model%contacts)
+            call add_opposite(model%mesh, model%contacts(i), pairs)
+         end do
+      end if
+      if (.not. allocated(model%ties)) return
+      do i = 1, size(model%ties)
+         call add_opposite(model%mesh, model%ties(i)%faces, pairs)
+      end do
+   end subroutine find_opposite
+
+   !> Faces with equally many sides count as matching: if they do not, dividing both does no harm.
+   !> Surfaces that form no line are reported elsewhere.
+   subroutine add_opposite(mesh, definition, pairs)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      integer, allocatable, intent(inout) :: pairs(:, :)
+      type(surface_chain_type) :: slave, master
+      type(error_type), allocatable :: error
+      integer, allocatable :: of_slave(:), of_master(:)
+      logical :: turned(2)
+
+      if (definition%pairing == pairing_surfaces) return
+      call chain_faces(mesh, mesh%surfaces(definition%slave), slave, error)
+      if (allocated(error)) return
+      call chain_faces(mesh, mesh%surfaces(definition%master), master, error)
+      if (allocated(error)) return
+      if (size(slave%nodes) /= size(master%nodes)) return
+      if (slave%side_nodes /= master%side_nodes .or. (slave%closed .neqv. master%closed)) return
+      call aligned_chains(mesh, slave, master, turned)
+      call elements_along(mesh, mesh%surfaces(definition%slave)%faces, slave, of_slave)
+      call elements_along(mesh, mesh%surfaces(definition%master)%faces, master, of_master)
+      pairs = reshape([pairs, transpose(reshape([of_slave, of_master], [size(of_slave), 2]))], &
+         [2, size(pairs, 2) + size(of_slave)])
+   end subroutine add_opposite
+
+   !> The elements of the sides of a line, in its order.
+   pure subroutine elements_along(mesh, faces, chain, elements)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: faces(:, :)                ! (2, sides)
+      type(surface_chain_type), intent(in) :: chain
+      integer, allocatable, intent(out) :: elements(:)  ! (sides)
+      integer :: position(size(mesh%node_number)), ends(3), i, k
+
+      position = 0
+      do i = 1, size(chain%nodes)
+         position(chain%nodes(i)) = i
+      end do
+      allocate(elements(size(faces, 2)), source=0)
+      do i = 1, size(faces, 2)
+         ends = side_ends(mesh, faces(1, i), faces(2, i))
+         associate (a => minval(position(ends([1, 3]))), b => maxval(position(ends([1, 3]))))
+            ! The last side of a closed face leads back to its first node.
+            k = merge((a - 1)/(chain%side_nodes - 1) + 1, size(elements), &
+               b - a == chain%side_nodes - 1)
+         end associate
+         elements(k) = faces(1, i)
+      end do
+   end subroutine elements_along
+
+   !> Chooses the elements opposite to those that are chosen.
+   pure subroutine choose_opposite(pairs, chosen, is_new)
+      integer, intent(in) :: pairs(:, :)
+      logical, intent(inout) :: chosen(:)
+      logical, intent(out) :: is_new            ! whether any was chosen
+      integer :: i
+
+      is_new = .false.
+      do i = 1, size(pairs, 2)
+         if (chosen(pairs(1, i)) .eqv. chosen(pairs(2, i))) cycle
+         chosen(pairs(:, i)) = .true.
+         is_new = .true.
+      end do
+   end subroutine choose_opposite
+
+   !> Chooses the elements with sides twice as long beside those that are chosen.
+   pure subroutine choose_coarse(mesh, sides, chosen, is_new)
+      type(mesh_type), intent(in) :: mesh
+      type(element_sides_type), intent(in) :: sides
+      logical, intent(inout) :: chosen(:)
+      logical, intent(inout) :: is_new          ! .true. if any was chosen
+      integer :: h
+
+      do h = 1, hanging_count(mesh)
+         associate (large => sides%elements(1, sides%index_of(coarse_side(mesh, h))), &
+            small => fine_sides(mesh, h))
+            if (chosen(large)) cycle
+            if (.not. (chosen(sides%elements(1, sides%index_of(small(:, 1)))) .or. &
+               chosen(sides%elements(1, sides%index_of(small(:, 2)))))) cycle
+            chosen(large) = .true.
+            is_new = .true.
+         end associate
+      end do
+   end subroutine choose_coarse
+
+end module local_refinement

@@ -1,0 +1,194 @@
+!> Conductance laws at given temperatures of the two faces, and how they change with these.
+!>
+!> Tables go by the mean temperature T = (T1 + T2)/2. Radiation between two grey faces carries
+!> sigma eps (T1^4 - T2^4), T1 and T2 absolute, which is omega (T1 - T2) with
+!>
+!>    omega = sigma eps (T1^2 + T2^2)(T1 + T2) = 4 sigma eps T (T^2 + d^2/4),   d = T1 - T2:
+!>
+!> with the mean and the jump of the faces nothing of it is lost.
+module temperature_laws
+   use conductance_laws, only: conductance, conductance_law_type, law_by_temperature_type, &
+      law_jump, law_none, law_pressure, varies_with_temperature
+   use kinds, only: dp
+   use piecewise_lines, only: line_slope, line_value
+   implicit none
+   private
+   public :: face_temperatures_type, law_at, temperature_derivatives, law_jumps, largest_jump
+   public :: is_below_zero, radiation_ends
+
+   !> Temperatures of the two faces at a contact point.
+   type :: face_temperatures_type
+      real(dp) :: mean = 0.0_dp   !! (T_xi + T_eta)/2 [temperature]
+      real(dp) :: jump = 0.0_dp   !! T_xi - T_eta [temperature]
+   end type face_temperatures_type
+
+contains
+
+   !> A law with the values that it has at given temperatures.
+   pure function law_at(law, faces) result(there)
+      type(conductance_law_type), intent(in) :: law
+      type(face_temperatures_type), intent(in) :: faces
+      type(conductance_law_type) :: there
+
+      there = law
+      if (.not. allocated(law%by_temperature)) return
+      associate (rows => law%by_temperature, mean => faces%mean)
+         if (allocated(rows%gas_temperature)) then
+            there%gas_a = line_value(rows%gas_temperature, rows%gas_a, mean)
+            there%gas_b = line_value(rows%gas_temperature, rows%gas_b, mean)
+         end if
+         if (allocated(rows%open_temperature)) there%open_omega = &
+            column_value(rows%open_temperature, rows%open_columns, mean)
+         if (allocated(rows%closed_temperature)) there%closed_omega = &
+            column_value(rows%closed_temperature, rows%closed_columns, mean)
+         there%radiation = 4*rows%radiance*max(mean - rows%absolute_zero, 0.0_dp)* &
+            ((mean - rows%absolute_zero)**2 + 0.25_dp*faces%jump**2)
+      end associate
+   end function law_at
+
+   !> Derivatives of omega by the mean temperature and by the jump, at constant gap or pressure.
+   pure function temperature_derivatives(law, faces, closed, gap, pressure) result(derivatives)
+      type(conductance_law_type), intent(in) :: law      !! as the deck has it
+      type(face_temperatures_type), intent(in) :: faces  !! temperatures
+      logical, intent(in) :: closed                      !! whether the contact point is closed
+      real(dp), intent(in) :: gap                        !! gamma >= 0 [length]
+      real(dp), intent(in) :: pressure                   !! p >= 0 in compression [stress]
+      real(dp) :: derivatives(2)                         !! [omega/temperature]
+
+      derivatives = 0.0_dp
+      if (.not. allocated(law%by_temperature)) return
+      if (closed .and. law%closed_kind == law_pressure) then
+         associate (rows => law%by_temperature)
+            if (allocated(rows%closed_temperature)) derivatives(1) = line_value( &
+               law%table_pressure, column_slope(rows%closed_temperature, rows%closed_columns, &
+               faces%mean), max(pressure, 0.0_dp))
+         end associate
+      else if (.not. closed) then
+         derivatives = open_derivatives(law, law%by_temperature, faces, max(gap, 0.0_dp))
+      else if (law%closed_kind == law_none .or. law%closed_adds) then
+         derivatives = open_derivatives(law, law%by_temperature, faces, 0.0_dp)
+      end if
+   end function temperature_derivatives
+
+   !> Those of the open side.
+   pure function open_derivatives(law, rows, faces, gap) result(derivatives)
+      type(conductance_law_type), intent(in) :: law
+      type(law_by_temperature_type), intent(in) :: rows
+      type(face_temperatures_type), intent(in) :: faces
+      real(dp), intent(in) :: gap
+      real(dp) :: derivatives(2)
+      type(conductance_law_type) :: there
+      real(dp) :: length
+
+      derivatives = 0.0_dp
+      there = law_at(law, faces)
+      if (allocated(rows%gas_temperature)) then
+         length = there%gas_b + there%added_length + gap
+         derivatives(1) = line_slope(rows%gas_temperature, rows%gas_a, faces%mean)/length - &
+            there%gas_a/length*line_slope(rows%gas_temperature, rows%gas_b, faces%mean)/length
+      end if
+      if (allocated(rows%open_temperature)) then
+         there%open_omega = column_slope(rows%open_temperature, rows%open_columns, faces%mean)
+         derivatives(1) = conductance(there, .false., gap, 0.0_dp)
+      end if
+      if (there%radiation > 0.0_dp) then
+         derivatives(1) = derivatives(1) + rows%radiance* &
+            (12*(faces%mean - rows%absolute_zero)**2 + faces%jump**2)
+         derivatives(2) = 2*rows%radiance*(faces%mean - rows%absolute_zero)*faces%jump
+      end if
+   end function open_derivatives
+
+   !> A table at a mean temperature, from its columns.
+   pure function column_value(temperature, columns, mean) result(omega)
+      real(dp), intent(in) :: temperature(:)    ! (columns) ascending
+      real(dp), intent(in) :: columns(:, :)     ! (rows, columns)
+      real(dp), intent(in) :: mean
+      real(dp) :: omega(size(columns, 1))
+      integer :: i
+
+      omega = [(line_value(temperature, columns(i, :), mean), i=1, size(omega))]
+   end function column_value
+
+   !> How it changes with the mean temperature.
+   pure function column_slope(temperature, columns, mean) result(slope)
+      real(dp), intent(in) :: temperature(:)    ! (columns) ascending
+      real(dp), intent(in) :: columns(:, :)     ! (rows, columns)
+      real(dp), intent(in) :: mean
+      real(dp) :: slope(size(columns, 1))
+      integer :: i
+
+      slope = [(line_slope(temperature, columns(i, :), mean), i=1, size(slope))]
+   end function column_slope
+
+   !> Whether the law jumps at gamma = p = 0 by more than rounding, at any temperature.
+   elemental logical function law_jumps(law)
+      type(conductance_law_type), intent(in) :: law      !! as the deck has it
+
+      if (.not. varies_with_temperature(law)) then
+         law_jumps = jumps_here(law)
+      else
+         law_jumps = radiation_ends(law)
+         if (.not. law_jumps) law_jumps = jumps_here(law_at(law, largest_jump(law)))
+      end if
+   end function law_jumps
+
+   !> The same with the values that the law has.
+   pure logical function jumps_here(law)
+      type(conductance_law_type), intent(in) :: law
+      real(dp), parameter :: rounding = 1.0e-12_dp
+
+      jumps_here = abs(law_jump(law)) > rounding*max(conductance(law, .true., 0.0_dp, 0.0_dp), &
+         conductance(law, .false., 0.0_dp, 0.0_dp))
+   end function jumps_here
+
+   !> Whether faces radiate until they meet, and no longer when they have.
+   elemental logical function radiation_ends(law)
+      type(conductance_law_type), intent(in) :: law      !! as the deck has it
+
+      radiation_ends = .false.
+      if (.not. allocated(law%by_temperature)) return
+      radiation_ends = law%by_temperature%radiance > 0.0_dp .and. &
+         law%closed_kind /= law_none .and. .not. law%closed_adds
+   end function radiation_ends
+
+   !> Temperatures, both faces alike, at which the law without radiation jumps most at gamma = p =
+   !> 0: among those of its tables, between which the jump is no larger but for a B that varies.
+   pure function largest_jump(law) result(faces)
+      type(conductance_law_type), intent(in) :: law      !! as the deck has it
+      type(face_temperatures_type) :: faces
+      type(conductance_law_type) :: there
+      real(dp), allocatable :: temperature(:)
+      real(dp) :: largest
+      integer :: i
+
+      if (.not. allocated(law%by_temperature)) return
+      temperature = [real(dp) ::]
+      associate (rows => law%by_temperature)
+         faces%mean = rows%absolute_zero
+         if (allocated(rows%gas_temperature)) temperature = rows%gas_temperature
+         if (allocated(rows%open_temperature)) temperature = [temperature, rows%open_temperature]
+         if (allocated(rows%closed_temperature)) temperature = [temperature, &
+            rows%closed_temperature]
+      end associate
+      largest = -1.0_dp
+      do i = 1, size(temperature)
+         there = law_at(law, face_temperatures_type(mean=temperature(i)))
+         there%radiation = 0.0_dp
+         if (abs(law_jump(there)) <= largest) cycle
+         largest = abs(law_jump(there))
+         faces%mean = temperature(i)
+      end do
+   end function largest_jump
+
+   !> Whether a face that radiates is below absolute zero.
+   elemental logical function is_below_zero(law, faces)
+      type(conductance_law_type), intent(in) :: law      !! as the deck has it
+      type(face_temperatures_type), intent(in) :: faces
+
+      is_below_zero = .false.
+      if (.not. allocated(law%by_temperature)) return
+      is_below_zero = law%by_temperature%radiance > 0.0_dp .and. &
+         faces%mean - 0.5_dp*abs(faces%jump) < law%by_temperature%absolute_zero
+   end function is_below_zero
+
+end module temperature_laws

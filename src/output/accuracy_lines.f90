@@ -1,0 +1,133 @@
+!> A requested accuracy in words: which targets are met, and what each round cost.
+module accuracy_lines
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use accuracy_rounds, only: accuracy_round_type, accuracy_rounds_type, finding_type
+   use contact_points, only: contact_points_type
+   use contact_quantities, only: estimated
+   use kinds, only: dp
+   use summary, only: two_digits, words_of
+   use text, only: append, counted, string_type, to_text
+   implicit none
+   private
+   public :: add_accuracy, add_missed
+
+   integer, parameter :: name_width = 30   !! columns of interface and quantity
+
+contains
+
+   !> Adds verdict, targets and rounds; no line where nothing is requested.
+   subroutine add_accuracy(accuracy, interfaces, lines)
+      type(accuracy_rounds_type), intent(in) :: accuracy
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      integer :: d, i
+
+      if (.not. accuracy%is_on) return
+      call append(lines, 'requested accuracy '//trim(merge('reached    ', 'not reached', &
+         accuracy%is_reached()))//' after '//counted(size(accuracy%rounds), 'round'))
+      do d = 1, size(accuracy%demands)
+         call append(lines, target_words(accuracy, d, interfaces))
+      end do
+      if (size(accuracy%rounds) > 1 .and. accuracy%has_checks) call append(lines, &
+         '   the *VERIFY checks were judged in round 1, on the deck as it is written')
+      call append(lines, '   round   CPU seconds    unknowns    elements  increments  '// &
+         'largest bound/target')
+      do i = 1, size(accuracy%rounds)
+         call append(lines, round_words(i, accuracy%rounds(i)))
+      end do
+   end subroutine add_accuracy
+
+   !> Adds one line for each target that is not met.
+   subroutine add_missed(accuracy, interfaces, lines)
+      type(accuracy_rounds_type), intent(in) :: accuracy
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      integer :: d
+
+      if (.not. accuracy%is_on .or. accuracy%goes_on) return
+      associate (last => accuracy%rounds(size(accuracy%rounds)))
+         do d = 1, size(accuracy%demands)
+            if (all(last%findings(d, :)%is_met())) cycle
+            call append(lines, 'the requested accuracy is not reached: '//trim(adjustl( &
+               target_words(accuracy, d, interfaces))))
+         end do
+      end associate
+   end subroutine add_missed
+
+   !> A target, and the bound at the end of the step that is furthest from it.
+   function target_words(accuracy, d, interfaces) result(words)
+      type(accuracy_rounds_type), intent(in) :: accuracy
+      integer, intent(in) :: d
+      type(contact_points_type), intent(in) :: interfaces(:)
+      character(:), allocatable :: words
+      type(finding_type) :: finding
+      character(name_width) :: name
+      integer :: step
+
+      associate (demand => accuracy%demands(d), last => accuracy%rounds(size(accuracy%rounds)))
+         name = interfaces(demand%interface)%name//' '//words_of(estimated(demand%quantity)%name)
+         words = '   '//name
+         if (demand%idle /= '') then
+            words = words//' skipped: '//demand%idle
+            return
+         end if
+         step = last%worst_step(d)
+         if (step == 0) then
+            words = words//' not judged'
+            return
+         end if
+         finding = last%findings(d, step)
+         words = words//trim(merge(' met:    ', ' not met:', finding%is_met()))
+         if (ieee_is_nan(finding%bound)) then
+            words = words//' uncertain'
+         else
+            words = words//' bound '//amount(finding%bound)
+         end if
+         words = words//', target '//amount(finding%allowed)
+         if (size(last%findings, 2) > 1) words = words//', step '//to_text(step)
+         if (.not. finding%is_met()) words = words//reason(finding)
+      end associate
+   contains
+      !> A bound, with its part of the value's scale where the target is one.
+      function amount(bound)
+         real(dp), intent(in) :: bound
+         character(:), allocatable :: amount
+
+         amount = two_digits(bound)
+         associate (demand => accuracy%demands(d))
+            if (demand%is_relative) amount = two_digits(100*demand%target*bound/ &
+               finding%allowed)//' %'
+         end associate
+      end function amount
+   end function target_words
+
+   !> What is the larger part of a bound.
+   function reason(finding)
+      type(finding_type), intent(in) :: finding
+      character(:), allocatable :: reason
+
+      reason = ' (of the mesh)'
+      if (ieee_is_nan(finding%mesh)) return
+      if (ieee_is_nan(finding%increment)) then
+         reason = ' (of the increments)'
+      else if (finding%increment > finding%mesh) then
+         reason = ' (of the increments)'
+      end if
+   end function reason
+
+   function round_words(number, round) result(words)
+      integer, intent(in) :: number
+      type(accuracy_round_type), intent(in) :: round
+      character(:), allocatable :: words
+      character(80) :: line
+      write (line, '(i8, f14.2, 3i12)') number, round%cpu_seconds, round%unknowns, &
+         round%elements, round%increments
+      words = trim(line)//'  '
+      if (round%excess() < huge(1.0_dp)) then
+         words = words//two_digits(round%excess())
+      else
+         words = words//'uncertain'
+      end if
+   end function round_words
+
+end module accuracy_lines

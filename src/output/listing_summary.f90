@@ -1,0 +1,65 @@
+!> The summary at the head of the listing.
+module listing_summary
+   use listing_text, only: page_width
+   use summary, only: summary_type
+   use text, only: counted, string_type, to_text
+   use verification, only: verifier_type
+   implicit none
+   private
+   public :: ending, checks, warnings_below, summary_block
+
+   integer, parameter :: run_lines = 3   !! ending, checks, warnings
+
+contains
+
+   !> How the run ended.
+   pure function ending(has_failed, increments) result(line)
+      logical, intent(in) :: has_failed          !! whether it ended early
+      integer, intent(in) :: increments          !! accepted ones
+      character(:), allocatable :: line
+
+      line = 'solved, '//counted(increments, 'increment')
+      if (has_failed) line = 'ended early after '//counted(increments, 'increment')// &
+         ', see ENDED EARLY below'
+   end function ending
+
+   !> How many checks passed.
+   pure function checks(verifier) result(line)
+      type(verifier_type), intent(in) :: verifier
+      character(:), allocatable :: line
+
+      line = 'no *VERIFY checks'
+      if (size(verifier%outcomes) > 0) line = counted(verifier%passed_count(), 'check')// &
+         ' passed, '//to_text(verifier%failed_count())//' failed'
+      if (verifier%unjudged_count() > 0) line = line//', '// &
+         to_text(verifier%unjudged_count())//' not judged'
+   end function checks
+
+   !> How many warnings there are.
+   pure function warnings_below(warnings) result(line)
+      integer, intent(in) :: warnings            !! number of them
+      character(:), allocatable :: line
+
+      line = 'no warnings'
+      if (warnings > 0) line = counted(warnings, 'warning')//', see WARNINGS below'
+   end function warnings_below
+
+   !> The summary as it is in the file: always as many lines of the same length, so that it can be
+   !> written over.
+   pure function summary_block(lines, interfaces) result(block)
+      type(string_type), intent(in) :: lines(:)
+      integer, intent(in) :: interfaces               !! number of them
+      character(:), allocatable :: block
+      type(summary_type) :: summary
+      character(page_width) :: line
+      integer :: i
+
+      block = ''
+      do i = 1, run_lines + summary%most_lines(interfaces)
+         line = ''
+         if (i <= size(lines)) line = '   '//lines(i)%value
+         block = block//line//new_line('a')
+      end do
+   end function summary_block
+
+end module listing_summary

@@ -1,0 +1,158 @@
+!> What a run comes to, in a few lines: the quantities of every interface at the last accepted
+!> increment, with the bounds of their errors where these are estimated.
+module summary
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_points, only: contact_points_type
+   use contact_quantities, only: contact_values, estimated, total_errors
+   use kinds, only: dp
+   use model, only: model_type
+   use quantity_types, only: needs_heat
+   use records, only: contact_record_type, increment_record_type, interface_errors_type
+   use run_summaries, only: or_blank
+   use text, only: append, string_type, to_text
+   use unit_labels, only: unit_label
+   implicit none
+   private
+   public :: summary_type, two_digits, words_of
+
+   integer, parameter :: name_width = 17    !! columns of the name of a quantity
+   integer, parameter :: value_width = 13   !! of its value
+   integer, parameter :: bound_width = 25   !! and of its bound
+
+   !> What the last accepted increment leaves.
+   type :: summary_type
+      private
+      integer, public :: increment = 0                             !! its number; 0 before the first
+      real(dp) :: time = 0.0_dp                                    !! total time [time]
+      real(dp) :: load = 0.0_dp                                    !! value on the load axis
+      type(contact_record_type), allocatable, public :: contacts(:)   !! (interfaces)
+      type(interface_errors_type), allocatable :: errors(:)        !! (interfaces) or unallocated
+   contains
+      procedure :: take
+      procedure :: add_lines
+      procedure, nopass :: most_lines
+   end type summary_type
+
+contains
+
+   !> Takes an accepted increment.
+   pure subroutine take(self, record)
+      class(summary_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
+
+      self%increment = record%increment
+      self%time = record%time
+      self%load = record%load
+      self%contacts = record%contacts
+      if (allocated(self%errors)) deallocate (self%errors)
+      if (allocated(record%errors)) self%errors = record%errors
+   end subroutine take
+
+   !> Most lines that there can be.
+   pure integer function most_lines(interfaces)
+      integer, intent(in) :: interfaces   !! number of interfaces
+
+      most_lines = 1 + interfaces*(1 + size(estimated))
+   end function most_lines
+
+   !> Adds when that increment was, then each interface with a line for each quantity that it has;
+   !> none before the first increment and without an interface.
+   subroutine add_lines(self, model, interfaces, lines)
+      class(summary_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:)
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      integer :: i
+
+      if (self%increment == 0 .or. size(interfaces) == 0) return
+      call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
+      do i = 1, size(interfaces)
+         call append(lines, interfaces(i)%name)
+         call add_quantities(self, model, interfaces(i), i, lines)
+      end do
+   end subroutine add_lines
+
+   pure function when(self, load_label) result(words)
+      class(summary_type), intent(in) :: self
+      character(*), intent(in) :: load_label
+      character(:), allocatable :: words
+
+      words = 'time '//to_text(self%time)//' (increment '//to_text(self%increment)//')'
+      if (load_label /= '' .and. load_label /= 'time') words = words//', '//load_label//' '// &
+         to_text(self%load)
+   end function when
+
+   subroutine add_quantities(self, model, points, i, lines)
+      class(summary_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: points
+      integer, intent(in) :: i                       ! number of the interface
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      character(:), allocatable :: words
+      character(name_width) :: name
+      character(value_width) :: value
+      real(dp) :: bounds(size(estimated)), values(1)
+      logical :: has_heat
+      integer :: q
+
+      has_heat = allocated(self%contacts(i)%heat_flux)
+      if (allocated(self%errors)) bounds = abs(total_errors(self%errors(i)))
+      do q = 1, size(estimated)
+         if (estimated(q)%needs == needs_heat .and. .not. has_heat) cycle
+         values = contact_values(estimated(q)%name, points, self%contacts(i))
+         if (ieee_is_nan(values(1))) cycle
+         if (estimated(q)%is_path_dependent .and. .not. abs(values(1)) > 0.0_dp) cycle
+         name = words_of(estimated(q)%name)
+         value = to_text(values(1))
+         words = '  '//name//adjustr(value)
+         if (allocated(self%errors)) words = words//bound_words(bounds(q), values(1))
+         call append(lines, trim(words//' '//unit_label(estimated(q)%unit, model%units)))
+      end do
+   end subroutine add_quantities
+
+   !> A name as one speaks it.
+   pure function words_of(name) result(words)
+      character(*), intent(in) :: name
+      character(:), allocatable :: words
+      integer :: k
+
+      words = trim(name)
+      k = index(words, 'edge_')
+      if (k == 1) words = 'edge of '//words(6:)
+      do k = 1, len(words)
+         if (words(k:k) == '_') words(k:k) = ' '
+      end do
+   end function words_of
+
+   !> The bound of an error with two digits, and in per cent.
+   pure function bound_words(bound, value) result(words)
+      real(dp), intent(in) :: bound, value
+      character(bound_width) :: words
+      character(9) :: number
+
+      words = ' (uncertain)'
+      if (ieee_is_nan(bound)) return
+      number = two_digits(bound)
+      words = ' +- '//number
+      if (abs(value) > 0.0_dp) words = ' +- '//number//'('//two_digits(100.0_dp*bound/ &
+         abs(value))//' %)'
+   end function bound_words
+
+   !> A number >= 0 with two digits, plain where that is short.
+   pure function two_digits(number) result(words)
+      real(dp), intent(in) :: number
+      character(:), allocatable :: words
+      character(16) :: buffer
+      integer :: decimals
+
+      write (buffer, '(es16.1e3)') number
+      if (number >= 9.5e-5_dp .and. number < 9.95e5_dp) then
+         decimals = max(0, 1 - floor(log10(number*(1.0_dp + 1.0e-12_dp))))
+         write (buffer, '(f16.'//to_text(decimals)//')') number
+      end if
+      words = trim(adjustl(buffer))
+      if (words(:1) == '.') words = '0'//words
+      if (words(len(words):) == '.') words = words(:len(words) - 1)
+   end function two_digits
+
+end module summary

@@ -1,0 +1,61 @@
+!> Units of reported quantities in the labels of *OPTIONS, UNITS=.
+module unit_labels
+   use model, only: unit_labels_type
+   implicit none
+   private
+   public :: unit_label, unit_in_words, load_unit
+
+contains
+
+   !> The unit of a quantity, such as `MPa cm^2` for `stress length^2`; empty where the deck has no
+   !> labels, '-' for a pure number.
+   pure function unit_label(unit, labels) result(words)
+      character(*), intent(in) :: unit                  !! unit of quantity_type
+      type(unit_labels_type), intent(in) :: labels      !! those of the deck
+      character(:), allocatable :: words
+
+      words = trim(unit)
+      if (words == '-') return
+      if (.not. allocated(labels%length)) words = ''
+      if (len(words) > 0) then
+         if (labels%length == '') words = ''
+      end if
+      if (words == '') return
+      words = with('length', labels%length, words)
+      words = with('stress', labels%stress, words)
+      words = with('power', labels%power, words)
+      words = with('temperature', labels%temperature, words)
+   end function unit_label
+
+   !> The same; where the deck has no labels, what is measured.
+   pure function unit_in_words(unit, labels) result(words)
+      character(*), intent(in) :: unit                  !! unit of quantity_type
+      type(unit_labels_type), intent(in) :: labels      !! those of the deck
+      character(:), allocatable :: words
+
+      words = unit_label(unit, labels)
+      if (words == '') words = trim(unit)
+   end function unit_in_words
+
+   !> What is measured on the load axis, by its label.
+   pure function load_unit(load_label) result(unit)
+      character(*), intent(in) :: load_label            !! such as `temperature of TOP`
+      character(:), allocatable :: unit
+
+      unit = 'time'
+      if (index(load_label, 'temperature') == 1) unit = 'temperature'
+      if (index(load_label, 'displacement') == 1) unit = 'length'
+   end function load_unit
+
+   !> A text with another word for one of its words.
+   pure recursive function with(word, label, text) result(changed)
+      character(*), intent(in) :: word, label, text
+      character(:), allocatable :: changed
+      integer :: k
+
+      changed = text
+      k = index(text, word)
+      if (k > 0) changed = text(:k - 1)//label//with(word, label, text(k + len(word):))
+   end function with
+
+end module unit_labels

@@ -1,0 +1,26 @@
+"""docs/performance.md from runs: what runs cost, how that grows, and where the time goes.
+
+A theme is a file test_<theme>.py here, with TITLE, TEXT and a function tables(folder), as in
+tests/accuracy/report.py. `python tests/bench/report.py` with THERCON set runs all themes and writes
+the document; `python tests/bench/report.py tail` renews that section alone.
+"""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), *(str(HERE.parent / n) for n in ("documents", "decks", "accuracy"))]
+
+from document import Document, Table  # noqa: E402, F401
+
+PREFACE = """# Performance
+
+What runs cost, how that grows with the mesh, and where the time goes. `./setup.sh bench
+performance` writes this document from runs; with the names of sections (`skyline`, `tail`,
+`levels`, `paper`) it renews these alone. Times are CPU seconds of one thread; those of another
+machine, or of the same one on another day, differ. Operations and instructions do not.
+"""
+DOCUMENT = Document("performance.md", HERE, ("skyline", "tail", "levels", "paper"), PREFACE)
+
+if __name__ == "__main__":
+    DOCUMENT.write(sys.argv[1:])

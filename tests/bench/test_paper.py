@@ -1,0 +1,63 @@
+"""The theme of the published case: instructions of each stage."""
+
+import os
+import shutil
+
+import report  # isort: skip, it makes the modules below known
+import pytest
+from deck_runs import CYLINDER, copy_deck
+from document import Table
+from instructions import SOURCES, profile
+
+TITLE = "The published case"
+TEXT = """
+`input/cylinder/cylinder.inp` as it is delivered: 45 increments, all fields, tables and estimates of
+errors. Instructions are those of callgrind on the program as users have it, and the same from run
+to run. Estimates of errors include the increments that they solve themselves.
+"""
+OUTPUT = {path.stem for path in (SOURCES / "output").glob("*.f90")}
+ESTIMATES = {path.stem for path in (SOURCES / "accuracy").glob("*.f90")}
+# Calls from one place to another that begin a stage: modules, or `module:procedure`.
+STAGES = {
+    "reading the deck": ({"deck_preparation"}, {"deck_reader", "deck_builder"}),
+    "assembling": ({"step_reduction"}, {"reduced_bodies:assemble"}),
+    "reducing": ({"step_reduction"}, {"reduced_bodies:reduce"}),
+    "iterating": ({"increments"}, {"increment_solution:solve_points"}),
+    "recovering": ({"increments"}, {"increment_solution:recover_fields", "increment_records"}),
+    "estimating errors": ({"deck_run"}, ESTIMATES),
+    "writing": ({"deck_run"}, OUTPUT),
+}
+
+
+def is_in(place, names):
+    """Return whether a place is in one of these modules and procedures."""
+    return place[0] in names or ":".join(place) in names
+
+
+def stage_instructions(deck, folder):
+    """Return the instructions of each stage, of the rest and of all."""
+    found = profile("run", "--quiet", deck, "--out", folder, path=folder / "profile")
+    costs = {stage: sum(cost for (source, target), cost in found.calls.items()
+                        if is_in(source, sources) and is_in(target, targets))
+             for stage, (sources, targets) in STAGES.items()}
+    costs["starting, preparing and ending"] = found.total - sum(costs.values())
+    return {**costs, "all": found.total}
+
+
+def tables(folder):
+    """Return the table of stages."""
+    costs = stage_instructions(CYLINDER, folder)
+    return [Table("Instructions by stage", ["stage", "million instructions", "part"],
+                  [[stage, f"{cost / 1e6:.1f}", f"{100 * cost / costs['all']:.1f} %"]
+                   for stage, cost in costs.items()])]
+
+
+@pytest.mark.skipif(
+    os.environ.get("THERCON_BUILD_TYPE", "Release") != "Release" or not shutil.which("valgrind"),
+    reason="instructions are those of a release build under valgrind")
+def test_every_stage_of_the_published_case_has_instructions(tmp_path):
+    """A stage without instructions has lost the calls that begin it. Two increments have all."""
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", changes={"\n20., 900.": "\n450., 900."})
+    deck.write_text(deck.read_text().split("*VERIFY")[0])
+    costs = stage_instructions(deck, tmp_path)
+    assert all(cost > 0 for cost in costs.values()), costs

@@ -1,0 +1,100 @@
+"""Mortar points in the situations that node pairs are tested in, and decks that must be refused."""
+
+import h5py
+import numpy as np
+import pytest
+from deck_runs import run, solve
+from physics import material, mesh
+from test_mortar_patch import EXACT, PRESSURE, contact, deck_of, even, joint
+
+FLAT = ["LOW.BOTTOM, 2", "LOW.LEFT, 1", "UP.LEFT, 1"]
+
+
+def blocks(kind="CPE8", **other):
+    return joint(kind, even(0.0, 2.0, 5), even(0.0, 2.0, 4), **other)
+
+
+@pytest.mark.parametrize("kind", ["CPE4", "CPE8"])
+def test_friction_on_an_axis_of_symmetry_has_no_shear_there(tmp_path, kind):
+    """The upper block spreads more than the lower one, and friction holds it back everywhere else."""
+    cards = blocks(kind, poisson=0.4, friction=0.1)
+    at = max(k for k, card in enumerate(cards) if card == "*ELASTIC")
+    cards[at + 1] = "1e5, 0."
+    found = contact(solve(deck_of(tmp_path / "axis.inp", cards, FLAT, "*DSLOAD",
+                                  f"UP.TOP, P, {PRESSURE}")))
+    assert found["shear"][0] == 0.0
+    np.testing.assert_allclose(found["shear"][1:], np.sign(found["shear"][-1]) * 0.1
+                               * found["pressure"][1:], rtol=1e-9)
+    assert found["weight"] @ found["pressure"] == pytest.approx(2 * PRESSURE, rel=EXACT)
+
+
+def test_clearance_replaces_the_gap_of_the_mesh(tmp_path):
+    """Blocks of nu = 0 are pressed by a displacement: it closes the clearance, the rest strains."""
+    cards = [*blocks(poisson=0.0), "*CLEARANCE, MASTER=LOW.TOP, SLAVE=UP.BOTTOM, VALUE=0.004"]
+    found = contact(solve(deck_of(tmp_path / "clear.inp", cards,
+                                  [*FLAT, "UP.TOP, 2, 2, -0.01"], increment="0.2, 1.")))
+    np.testing.assert_allclose(found["pressure"], 1000.0 * 0.006 / 2.0, rtol=EXACT)
+
+
+def test_contact_and_friction_alone_hold_a_block(tmp_path):
+    """Without any support of its own it is pressed and pushed aside."""
+    cards = blocks(friction=0.3, poisson=0.0)
+    result = solve(deck_of(tmp_path / "held.inp", cards, ["LOW.BOTTOM, 1, 2"], "*DSLOAD",
+                           f"UP.TOP, P, {PRESSURE}", "UP.LEFT, P, 0.5"))
+    with h5py.File(result) as file:
+        face = file["contact/C"]
+        assert face["normal_force"][-1] == pytest.approx(2 * PRESSURE, rel=EXACT)
+        assert abs(face["shear_force"][-1]) == pytest.approx(0.5, rel=EXACT)
+        assert file["history/force_imbalance"][-1] < 1e-10
+
+
+def test_a_block_that_nothing_holds_is_named(tmp_path):
+    deck = deck_of(tmp_path / "loose.inp", blocks(), ["LOW.BOTTOM, 1, 2"], "*DSLOAD",
+                   f"UP.LEFT, P, {PRESSURE}")
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    assert process.returncode != 0
+    assert "UP" in process.stderr
+
+
+@pytest.mark.parametrize("kind", ["CPE4", "CPE8"])
+def test_a_block_in_an_inner_corner_shares_a_node_between_two_interfaces(tmp_path, kind):
+    """Pressed on floor and wall at once, both faces of one body and of sides that do not match."""
+    cards = [*mesh("UP", even(0.0, 1.0, 5), even(0.0, 1.0, 5), kind, 1),
+             *mesh("FLOOR", even(0.0, 1.0, 4), [-1.0, -0.5, 0.0], kind, 2001),
+             *mesh("WALL", [-1.0, -0.5, 0.0], even(0.0, 1.0, 3), kind, 4001)]
+    for body in ("UP", "FLOOR", "WALL"):
+        cards += material(body, (1000.0, 0.0))
+    cards += ["*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.3",
+              "*CONTACT PAIR, INTERACTION=I, NAME=ONE, PAIRING=SURFACES", "UP.BOTTOM, FLOOR.TOP",
+              "*CONTACT PAIR, INTERACTION=I, NAME=TWO, PAIRING=SURFACES", "UP.LEFT, WALL.RIGHT"]
+    result = solve(deck_of(tmp_path / "corner.inp", cards, ["FLOOR.BOTTOM, 1, 2", "WALL.LEFT, 1, 2"],
+                           "*DSLOAD", f"UP.TOP, P, {PRESSURE}", "UP.RIGHT, P, 3."))
+    with h5py.File(result) as file:
+        assert file["history/force_imbalance"][-1] < 1e-10
+        one, two = (file[f"contact/{name}"] for name in ("ONE", "TWO"))
+        down = one["normal_force"][-1] + abs(two["shear_force"][-1])
+        aside = two["normal_force"][-1] + abs(one["shear_force"][-1])
+    assert down == pytest.approx(PRESSURE, rel=1e-9)
+    assert aside == pytest.approx(3.0, rel=1e-9)
+
+
+def refused(path, cards):
+    process = run("check", deck_of(path, cards, ["LOW.BOTTOM, 1, 2", "UP.TOP, 1, 2"]))
+    assert process.returncode == 1
+    return process.stderr
+
+
+@pytest.mark.parametrize("kind", ["CPE4", "CPE8"])
+def test_faces_that_no_mortar_point_fits_are_refused(tmp_path, kind):
+    def with_pair(data):
+        cards = blocks(kind)
+        cards[-1] = data
+        return cards
+
+    path = tmp_path / "refused.inp"
+    assert "UP.BOTTOM" in refused(path, with_pair("UP.BOTTOM, UP.BOTTOM"))
+    assert "opposite" in refused(path, with_pair("UP.TOP, LOW.TOP"))
+    corner = with_pair("ROUND, LOW.TOP")
+    at = next(k for k, card in enumerate(corner) if card.startswith("*SURFACE INTERACTION"))
+    corner[at:at] = ["*SURFACE, NAME=ROUND", "1, S1", "1, S4"]
+    assert "corner" in refused(path, corner)

@@ -1,0 +1,124 @@
+"""A requested accuracy: *ACCURACY and --accuracy. True errors are those to the converged values that
+docs/accuracy.md tells, from uniform meshes far finer than any here."""
+
+import h5py
+import numpy as np
+import pytest
+from changes import note_changes
+from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT, copy_deck, run, solve
+
+CONVERGED = {
+    CYLINDER: {"normal_force": 2486.934405, "heat_rate": 30.8026104, "peak_pressure": 428.7589177,
+               "edge_contact": 7.462575956},
+    COUPLED: {"normal_force": 522.1182237, "heat_rate": 26.14442636, "peak_pressure": 192.5397369,
+              "edge_contact": 3.538237661},
+}
+PRESS_FIT = INPUT / "examples" / "press_fit.inp"
+
+
+def rounds_of(result, face="FACE"):
+    """Return the rounds of a result file: cost, and the rows of each quantity."""
+    with h5py.File(result) as file:
+        group = file["accuracy"]
+        costs = {name: group[name][:] for name in ("cpu_seconds", "unknowns", "elements", "increments")}
+        bounds = {name: rows[:] for name, rows in group[f"bounds/{face}"].items()}
+        return costs, bounds, int(group.attrs["reached"])
+
+
+@pytest.mark.parametrize(("deck", "percent", "rounds"), [(CYLINDER, 1, 2), (COUPLED, 3, 1)])
+def test_true_errors_are_inside_the_target_and_the_bound(tmp_path, deck, percent, rounds):
+    """Rounds are as many as are told; the mesh is refined only where the deck's own does not do."""
+    process = run("run", deck, "--out", tmp_path, "--accuracy", f"{percent}%")
+    assert process.returncode == 0, process.stderr
+    assert f"requested accuracy reached after {rounds} round" in process.stdout
+    costs, bounds, reached = rounds_of(tmp_path / f"{deck.stem}.vtkhdf")
+    assert reached == 1 and len(costs["unknowns"]) == rounds
+    assert np.all(np.diff(costs["unknowns"]) > 0) and np.all(costs["cpu_seconds"] > 0)
+    with h5py.File(tmp_path / f"{deck.stem}.vtkhdf") as file:
+        found = {name: file[f"contact/FACE/{name}"][-1] for name in CONVERGED[deck] if "peak" not in name}
+        found["peak_pressure"] = file["contact/FACE/pressure"][-1].max()
+        elements = len(file["VTKHDF/CellData/element_id"])
+    assert elements == costs["elements"][-1]
+    for name, exact in CONVERGED[deck].items():
+        step, value, bound, allowed = bounds[name][-1]
+        assert step == 1 and value == pytest.approx(found[name], rel=1e-12), name
+        assert allowed == pytest.approx(percent / 100 * abs(found[name]), rel=0.1), name
+        assert abs(value - exact) <= bound <= allowed, name
+    listing = (tmp_path / f"{deck.stem}.lst").read_text()
+    assert "REQUESTED ACCURACY" in listing and "not met" not in listing
+
+
+@pytest.mark.changes("ACCURACY", "ACCURACY, ROUNDS")
+def test_targets_that_are_missed_are_told_with_status_4(tmp_path):
+    """One round does not reach what two do; a target in the unit of the quantity is taken as such."""
+    cards = "*ACCURACY, ROUNDS=1", "edge_contact, 0.06, ABS, FACE", "normal_force, 0.01"
+    deck = copy_deck(CYLINDER, tmp_path / "one.inp", cards)
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 4
+    assert "the requested accuracy is not reached: FACE edge of contact" in process.stderr
+    assert "(of the mesh)" in process.stderr and "FACE normal force" not in process.stderr
+    costs, bounds, reached = rounds_of(tmp_path / "one.vtkhdf")
+    assert reached == 0 and costs["elements"].tolist() == [92]
+    assert set(bounds) == {"edge_contact", "normal_force"}
+    assert bounds["edge_contact"][0, 3] == 0.06 < bounds["edge_contact"][0, 2]
+
+    others = "*ACCURACY, ROUNDS=2", *cards[1:2]
+    note_changes(cards, others)
+    deck = copy_deck(CYLINDER, tmp_path / "two.inp", others)
+    _, bounds, reached = rounds_of(solve(deck))
+    assert reached == 1 and bounds["edge_contact"][1, 2] <= 0.06
+    # Only the edge is missed: the elements away from it stay as they are.
+    with h5py.File(tmp_path / "two.vtkhdf") as file:
+        assert file["accuracy/elements"][1] < 3 * 92
+
+
+def test_increments_are_shortened_where_they_are_the_larger_part(tmp_path):
+    """Friction with increments of 180: halving them reaches what no mesh does."""
+    cards = "*ACCURACY, ROUNDS=2", "peak_pressure, 0.01"
+    changes = {"\n20., 900.\n": "\n180., 900.\n"}
+    text = CYLINDER.read_text().split("*VERIFY")[0]
+    source = tmp_path / "long.txt"
+    source.write_text(text)
+    deck = copy_deck(source, tmp_path / "long.inp", cards, changes)
+    run("run", deck, "--out", tmp_path, "--quiet")
+    costs, bounds, _ = rounds_of(tmp_path / "long.vtkhdf")
+    assert costs["increments"][0] == 5
+    with h5py.File(tmp_path / "long.vtkhdf") as file:
+        assert len(file["history/time"]) == costs["increments"][-1]
+
+
+def test_what_a_deck_does_not_have_is_skipped(tmp_path):
+    process = run("run", PRESS_FIT, "--out", tmp_path, "--accuracy", "3%")
+    assert process.returncode == 0, process.stderr
+    told = {line.strip() for line in process.stdout.splitlines() if "skipped" in line}
+    assert len(told) == 2
+    assert any("heat rate" in line for line in told) and any("edge of contact" in line for line in told)
+
+
+def test_nothing_is_written_when_nothing_is_requested(tmp_path):
+    process = run("run", PRESS_FIT, "--out", tmp_path)
+    assert process.returncode == 0 and "requested" not in process.stdout
+    with h5py.File(tmp_path / "press_fit.vtkhdf") as file:
+        assert "accuracy" not in file
+
+
+@pytest.mark.parametrize("arguments", [
+    ("run", HERTZ, "--accuracy", "1"), ("run", HERTZ, "--accuracy", "0%"),
+    ("run", HERTZ, "--accuracy", "100%"), ("run", HERTZ, "--accuracy", "%"),
+    ("run", HERTZ, "--accuracy"), ("check", HERTZ, "--accuracy", "1%"),
+    ("trade", HERTZ, "--accuracy", "1%")])
+def test_options_that_say_nothing_are_refused(tmp_path, arguments):
+    process = run(*arguments, folder=tmp_path)
+    assert process.returncode == 1 and "--accuracy" in process.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_deck_without_contact_has_nothing_to_request(tmp_path):
+    deck = tmp_path / "bar.inp"
+    deck.write_text(
+        "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n*ELEMENT, TYPE=CPE4, ELSET=ALL\n1, 1, 2, 3, 4\n"
+        "*MATERIAL, NAME=STEEL\n*ELASTIC\n2.E5, 0.3\n*SOLID SECTION, ELSET=ALL, MATERIAL=STEEL\n"
+        "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\n1, 1, 2\n2, 2, 2\n*CLOAD\n3, 2, 1.\n*END STEP\n")
+    assert run("run", deck, "--out", tmp_path).returncode == 0
+    process = run("run", deck, "--out", tmp_path, "--accuracy", "1%")
+    assert process.returncode == 1 and "no *CONTACT PAIR" in process.stderr

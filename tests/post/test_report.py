@@ -1,0 +1,282 @@
+"""post/report: one page that asks for nothing; its pictures follow the slider in a browser."""
+
+import re
+import shutil
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+POST = Path(__file__).resolve().parents[2] / "post"
+sys.path.insert(0, str(POST))
+
+from browser import Browser  # noqa: E402
+from program import run, write_deck  # noqa: E402
+from synthetic import write_result  # noqa: E402
+
+from thercon_post import stresses  # noqa: E402
+from thercon_post.report.cli import main  # noqa: E402
+from thercon_post.report.data import kept_steps  # noqa: E402
+from thercon_post.report.listing import read_listing  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def cylinder(tmp_path_factory):
+    """Return the folder of the published cylinder, solved, with one check that fails."""
+    folder = tmp_path_factory.mktemp("cylinder")
+    failing = ["*VERIFY, KIND=ANALYTIC, SOURCE=\"a & b\"", "normal_force, FACE, LAST, 1., 1.E-3"]
+    status, said = run(write_deck(folder / "cylinder.inp", end_cards=failing))
+    assert status == 4, said
+    assert main([str(folder / "cylinder.vtkhdf"), "--out", str(folder)]) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Return a headless browser."""
+    with Browser() as opened:
+        yield opened
+
+
+@pytest.fixture
+def synthetic(tmp_path):
+    """Return a function that writes a synthetic result and its page, and gives the page's path."""
+
+    def call(change=lambda file: None, **choices):
+        path = tmp_path / "case.vtkhdf"
+        write_result(path, **choices)
+        with h5py.File(path, "r+") as file:
+            change(file)
+        assert main([str(path), "--out", str(tmp_path)]) == 0
+        return tmp_path / "case.html"
+
+    return call
+
+
+class Tags(HTMLParser):
+    """What a page says of its form."""
+
+    EMPTY = {"meta", "link", "input", "br"}
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.ids, self.found, self.attributes = [], [], set(), []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.found.add(tag)
+        self.attributes += attrs
+        self.ids += [value for key, value in attrs if key == "id"]
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def test_the_page_is_one_well_formed_file_that_asks_for_nothing(cylinder):
+    page = cylinder / "cylinder.html"
+    text = page.read_text()
+    assert len(text) < 5e6
+    tags = Tags(text)
+    assert not tags.open and len(tags.ids) == len(set(tags.ids))
+    assert {"title", "main", "nav", "h1", "caption"} <= tags.found
+    assert ("lang", "en") in tags.attributes
+    asked = [value for key, value in tags.attributes if key in ("src", "href", "data", "srcset")]
+    assert all(value.startswith(("#", "data:")) for value in asked)
+    assert not re.search(r"url\((?!#)|@import|fetch\(|XMLHttpRequest", text)
+
+
+def test_the_tables_hold_summary_checks_and_deck(cylinder):
+    text = (cylinder / "cylinder.html").read_text()
+    with h5py.File(cylinder / "cylinder.vtkhdf") as file:
+        value, *parts = file["errors/FACE/normal_force"][-1]
+    row = re.search(r'<th scope="row">normal force</th>(.*?)</tr>', text).group(1)
+    cells = re.findall(r"<td[^>]*>(.*?)</td>", row)
+    assert cells[0] == f"{value:.6g}"
+    bound = abs(parts[0] + parts[1]) + parts[2]
+    assert cells[1].startswith(f"± {bound:.2g} (") and cells[2] == "MPa cm²"
+    assert text.count('class="pass"') == 37 and text.count('class="fail"') == 1
+    assert text.index('class="fail"') < text.index('class="pass"')
+    assert "ANALYTIC: a &amp; b" in text and "37 passed, 1 failed" in text
+    assert "No warnings." in text and "*GAP LAW" in text
+
+
+def test_the_slider_moves_every_picture_and_the_console_stays_empty(cylinder, browser):
+    browser.open(cylinder / "cylinder.html")
+    with h5py.File(cylinder / "cylinder.vtkhdf") as file:
+        force, load = file["contact/FACE/normal_force"][()], file["history/load"][()]
+        mises = file["VTKHDF/PointData/von_mises"][()].reshape(len(load), -1)
+        temperature = file["VTKHDF/PointData/temperature"][()].reshape(len(load), -1)
+    look = """const of = id => document.getElementById(id);
+        const c = document.querySelector('#panel canvas');
+        const pixels = c.toDataURL();
+        return {now: of('now').textContent, totals: of('totals').textContent,
+            range: of('range').textContent, pixels, drawn: pixels.length > 5000,
+            bar: of('bars').textContent, note: of('field-note').textContent,
+            tractions: of('tractions').innerHTML, flux: of('flux').innerHTML,
+            zones: of('zones').querySelector('.upright').getAttribute('d'),
+            history: of('history-0').textContent}"""
+    seen = [browser.run(look)]
+    for keys in (("left",), ("home", "right", "right")):
+        browser.press("#load", *keys)
+        seen.append(browser.run(look))
+    for place, found in zip((-1, -2, 2), seen):
+        assert f"temperature of TOP {load[place]:g} °C" in found["now"]
+        assert f"normal force {force[place]:.5g} MPa cm²" in found["totals"].replace("−", "-")
+        assert f"largest {mises[place].max():.5g} at node" in found["range"] and found["drawn"]
+        assert f"{force[place]:.5g}" in found["history"]
+    for key in ("now", "totals", "range", "pixels", "tractions", "flux", "zones", "history"):
+        assert len({str(found[key]) for found in seen}) == 3, key
+
+    choose = """const box = document.getElementById(arguments[0]); box.value = arguments[1];
+        if (arguments[0] === 'fixed') box.checked = true;
+        box.dispatchEvent(new Event('input', {bubbles: true}))"""
+    browser.run(choose, "quantity", "0")
+    hot = browser.run(look)
+    assert f"largest {temperature[2].max():.5g} at node" in hot["range"]
+    assert hot["pixels"] != seen[-1]["pixels"]
+    browser.run(choose, "fixed", "on")
+    assert "800" in browser.run(look)["bar"] and "800" not in hot["bar"]
+    browser.run(choose, "scale", "0")  # now only the values can change the picture
+    still = browser.run(look)["pixels"]
+    browser.press("#load", "end")
+    assert browser.run(look)["pixels"] != still
+    browser.run(choose, "scale", "50")
+    assert "50 times too large" in browser.run(look)["note"]
+    assert "seem to overlap" in browser.run(look)["note"]
+    browser.run(choose, "region", "near")
+    assert browser.run(look)["pixels"] != still
+    assert browser.messages() == []
+
+
+def test_every_picture_is_named_and_every_control_is_reached_and_labelled(cylinder, browser):
+    browser.open(cylinder / "cylinder.html")
+    bare = browser.run("""return [...document.querySelectorAll('svg')].filter(
+        each => !each.getAttribute('aria-label')).length + [...document.querySelectorAll(
+        'input, select')].filter(each => !each.labels.length || each.tabIndex < 0).length""")
+    assert bare == 0
+    reached = set()
+    for _ in range(20):
+        browser.type("tab")
+        reached.add(browser.run("return document.activeElement.id || document.activeElement.href"))
+    assert {"load", "interface", "quantity", "region", "scale", "fixed"} <= reached
+    browser.printed(cylinder / "cylinder.pdf")
+    assert (cylinder / "cylinder.pdf").read_bytes()[:4] == b"%PDF"
+    assert browser.run("return document.querySelector('details').open"), "the deck is printed"
+    assert browser.messages() == []
+
+
+@pytest.mark.parametrize("choices", [
+    {"heat": False, "friction": None, "units": ""},
+    {"contacts": ("LEFT", "RIGHT<&>")},
+    {"contacts": (), "loads": (300.0,)},
+    {"loads": (1.0, 5.0, 3.0), "fields_every": 2},
+])
+def test_pages_of_other_decks_are_drawn(synthetic, browser, choices):
+    browser.open(synthetic(**choices))
+    browser.press("#load", "home")
+    found = browser.run("return [document.getElementById('range').textContent,"
+                        "document.querySelectorAll('#zones circle, #zones path').length]")
+    assert "largest" in found[0] and (found[1] > 0) == (choices.get("contacts") != ())
+    assert browser.messages() == []
+
+
+def test_bodies_whose_ranges_differ_tenfold_have_scales_of_their_own(synthetic, browser):
+    def cool(file):
+        data = file["VTKHDF/PointData/temperature"]
+        points = len(file["VTKHDF/Points"])
+        upper = np.tile(np.arange(points) < points // 2, 15)
+        data[...] = np.where(upper, data[...], 20.0 + 0.01 * data[...])
+
+    browser.open(synthetic(cool))
+    browser.run("document.getElementById('quantity').value = '0';"
+                "document.getElementById('quantity').dispatchEvent(new Event('input'))")
+    assert browser.run("return document.querySelectorAll('#bars svg').length") == 2
+    note = browser.run("return document.getElementById('field-note').textContent")
+    assert "each has its own" in note
+
+
+def test_a_listing_of_another_deck_is_not_taken(cylinder, tmp_path):
+    for name in ("cylinder.vtkhdf", "cylinder.lst"):
+        shutil.copy(cylinder / name, tmp_path)
+    with h5py.File(tmp_path / "cylinder.vtkhdf", "r+") as file:
+        file["deck"][1] = b"Another heading"
+    assert main([str(tmp_path / "cylinder.vtkhdf"), "--out", str(tmp_path)]) == 0
+    text = (tmp_path / "cylinder.html").read_text()
+    assert "beside the result is missing, incomplete or of another deck" in text
+    assert "37 passed, 1 failed" in text
+    assert "No warnings" not in text
+
+
+def test_warnings_and_reasons_of_failure_are_taken_from_the_listing(tmp_path):
+    listing = tmp_path / "case.lst"
+    listing.write_text("""SUMMARY
+-------
+   solved, 3 increments
+
+VERIFICATION
+  card  kind       quantity                 where                  time       expected
+   531  ANALYTIC   pressure                 MAX                    LAST  0.0000000E+00\
+              -         -  1.00E-15 REL FAIL
+        source: theory
+        failed: no such time
+
+WARNINGS
+--------
+   - the first, which goes on
+     below
+   - the second
+
+DECK
+----
+       1  *HEADING
+""")
+    found = read_listing(listing, ["*HEADING"])
+    assert found.outcome == "solved, 3 increments"
+    (check,) = found.checks
+    assert (check.verdict, check.source, check.failed) == ("FAIL", "theory", "no such time")
+    assert found.warnings == ["the first, which goes on below", "the second"]
+    assert read_listing(tmp_path / "none.lst", ["*HEADING"]) is None
+
+
+def test_what_is_no_result_is_refused(tmp_path, capsys):
+    assert main([str(tmp_path / "none.vtkhdf")]) == 1
+    assert capsys.readouterr().err.endswith("none.vtkhdf: no such file\n")
+    assert main([]) == 1
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_fields_of_many_increments_are_thinned_to_the_last():
+    assert kept_steps(5, 10) == [0, 1, 2, 3, 4]
+    thinned = kept_steps(1000, 7000)
+    assert len(thinned) == 100 and thinned[-1] == 999 and thinned[0] == 0
+    assert kept_steps(9, 10**9) == [8]
+
+
+def test_principal_radial_and_hoop_stress():
+    stress = np.array([[3.0, -1.0, 0.5, 2.0], [10.0, -4.0, 7.0, 0.0]])
+    # Mohr's circle: centre 1, radius sqrt(4 + 4).
+    expected = [[1.0 + 8.0**0.5, 0.5, 1.0 - 8.0**0.5], [10.0, 7.0, -4.0]]
+    np.testing.assert_allclose(stresses.principal(stress), expected, rtol=1e-14)
+    points = np.array([[1.0, 1.0], [0.0, 2.0]])
+    # At 45 degrees (xx + yy)/2 + xy; on the y axis yy.
+    np.testing.assert_allclose(stresses.radial(stress, points, False), [3.0, -4.0], rtol=1e-14)
+    np.testing.assert_allclose(stresses.hoop(stress, points, False), [-1.0, 10.0], atol=1e-14)
+    np.testing.assert_array_equal(stresses.radial(stress, points, True), stress[:, 0])
+    np.testing.assert_array_equal(stresses.hoop(stress, points, True), stress[:, 2])
+
+
+@pytest.mark.parametrize(("cards", "expected"), [
+    (["*ELEMENT, TYPE=CAX8, ELSET=A"], True),
+    (["*Element, elset=A, type=cax4r"], True),
+    (["*ELEMENT, TYPE=CPE8"], False),
+    (["*OPTIONS, PLANE=AXISYMMETRIC", "*ELEMENT, TYPE=CPS8"], True),
+    (["*OPTIONS, PLANE=STRAIN", "*ELEMENT, TYPE=CAX8"], False),
+    (["** *ELEMENT, TYPE=CAX8"], False),
+])
+def test_the_cards_tell_an_axisymmetric_model(cards, expected):
+    assert stresses.is_axisymmetric(cards) == expected

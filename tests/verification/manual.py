@@ -1,0 +1,261 @@
+"""docs/verification.md from decks that *VERIFY cards judge: the verification manual.
+
+A theme is a file test_<theme>.py here, with TITLE, TEXT and cases(), which returns its cases in
+order. `python tests/verification/manual.py` with THERCON set runs all meshes of all cases, or of
+the themes named, and writes the document (`./setup.sh verify`). The test of a theme runs the first
+meshes only and compares the rows with the document, whose figures may differ in their digits.
+"""
+
+import re
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import ceil, floor, log2, log10
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), *(str(HERE.parent / n) for n in ("documents", "decks", "reference",
+                                                            "accuracy"))]
+
+from blocks import write  # noqa: E402  its folder is made known first
+from deck_runs import run  # noqa: E402
+from document import Document, Picture, Table, verdict  # noqa: E402
+
+PREFACE = """# Verification manual
+
+Problems whose answers are known, and what the program answers. `./setup.sh verify` writes this page
+from runs of the program. Every deck carries the reference values and tolerances of its tables as
+`*VERIFY` cards, so the verdicts are the program's own; the tests `verification_*` run the coarsest
+meshes of each case.
+
+How to read the tables:
+
+- `error` is the deviation of the value from the reference, relative to the reference; where the
+  reference is 0, and for edges of zones, it is absolute.
+- `order` is log2 of the ratio of the errors of this mesh and of the one before, which is half as
+  fine. It is left out where errors are rounding, for edges of zones, whose errors change sign as
+  an edge moves between two nodes, and for forces that the loads give on any mesh.
+- `allowed` is the tolerance on the `*VERIFY` card. It does not come from the program's own results:
+  each case gives its reason.
+"""
+RESULTANTS = ("normal_force", "shear_force", "heat_in", "heat_out")
+ROUNDING = 1e-9  # errors below it have no order
+THEMES = ("elements", "nafems", "contact", "friction", "heat", "bodies")
+DOCUMENT = Document("verification.md", HERE, THEMES, PREFACE)
+HEAD = ["mesh", "quantity", "value", "reference", "error", "order", "allowed", "verdict"]
+
+
+@dataclass
+class Check:
+    """A row of *VERIFY, and the name of its quantity in the table."""
+
+    name: str
+    quantity: str
+    where: str
+    value: float
+    tolerance: float
+    how: str = "REL"
+    when: str = "LAST"
+
+    @property
+    def ordered(self):
+        """Return whether its errors fall with a power of the mesh: those of edges change sign as
+        an edge moves between two nodes, and resultants are those of the loads on any mesh."""
+        return not self.quantity.startswith("edge") and self.quantity not in RESULTANTS
+
+    def card(self):
+        """Return the data card."""
+        return (f"{self.quantity}, {self.where}, {self.when}, {float(self.value)!r}, "
+                f"{float(self.tolerance)!r}, {self.how}")
+
+
+@dataclass
+class Verdict:
+    """What the listing says of a check."""
+
+    value: float
+    error: float
+    passed: bool
+
+
+@dataclass
+class Solved:
+    """A deck that was run: its checks and what came of them, and its result file."""
+
+    mesh: object
+    checks: list
+    verdicts: list
+    result: Path
+
+
+@dataclass
+class Case:
+    """A problem, where its answer comes from, its tolerance and why, and its decks.
+
+    `make(mesh)` returns the cards of a deck and its checks; `order` is the least order that the
+    finest mesh may show, by the name of the quantity.
+    """
+
+    title: str
+    problem: str
+    source: str
+    tolerance: str
+    meshes: list
+    make: Callable
+    label: Callable = str
+    kind: str = "ANALYTIC"
+    cite: str = "docs/verification.md"
+    order: dict = field(default_factory=dict)
+    short: int = 1
+    remarks: str = ""
+    named: str = "mesh"  # what a row is of; without refinement rows have no order
+
+    def solve(self, folder, mesh):
+        """Run the deck of a mesh in a folder."""
+        cards, checks = self.make(mesh)
+        return solve(folder, self.file(mesh), cards, checks, mesh, self.kind, self.cite)
+
+    def file(self, mesh):
+        """Return the name of the deck of a mesh."""
+        return re.sub(r"[^a-z0-9]+", "_", f"{self.title}_{self.label(mesh)}".lower()).strip("_")
+
+    def table(self, runs):
+        """Return the table of these runs: the rows of a quantity follow each other."""
+        table = Table(self.title, [self.named, *HEAD[1:]], text=self.text())
+        if self.named != "mesh":
+            for solved in runs:
+                for check, found in zip(solved.checks, solved.verdicts, strict=True):
+                    table.rows.append(self.row(solved, check, found, None))
+            return table
+        for k, first in enumerate(runs[0].checks):
+            errors = [solved.verdicts[k].error for solved in runs]
+            orders = [None] + [order_of(*pair) if first.ordered else None
+                               for pair in pairwise(errors)]
+            for solved, order in zip(runs, orders, strict=True):
+                table.rows.append(self.row(solved, solved.checks[k], solved.verdicts[k], order))
+        return table
+
+    def row(self, solved, check, found, order):
+        """Return the row of a check."""
+        least = self.order.get(check.name) if solved.mesh == self.meshes[-1] else None
+        holds = found.passed and (least is None or order is None or order > least)
+        return [self.label(solved.mesh), check.name, f"{found.value:.6g}", f"{check.value:.6g}",
+                f"{found.error:.2g}", "" if order is None else f"{order:.1f}",
+                f"{check.tolerance:.2g}" + (" abs." if check.how == "ABS" else ""),
+                verdict(holds)]
+
+    def text(self):
+        """Return what comes before the table."""
+        parts = [f"*Problem.* {self.problem}", f"*Source.* {self.source}",
+                 f"*Tolerance.* {self.tolerance}", self.remarks]
+        return "\n\n".join(" ".join(part.split()) for part in parts if part)
+
+    def tables(self, folder, meshes):
+        """Return the tables of some of the meshes, and the runs for the picture."""
+        runs = [self.solve(folder, mesh) for mesh in meshes]
+        return [self.table(runs)], runs
+
+
+def order_of(coarse, fine):
+    """Return log2 of the ratio of two errors, None where it says nothing."""
+    if min(coarse, fine) < ROUNDING:
+        return None
+    return log2(coarse / fine)
+
+
+def solve(folder, name, cards, checks, mesh=None, kind="ANALYTIC", cite="docs/verification.md"):
+    """Run a deck with its checks; return what the listing says of them.
+
+    The exit status must be that of the verdicts: 0 where all passed, 4 where one failed.
+    """
+    deck = write(folder / f"{name}.inp", ["*OPTIONS, WIDTH=300, ERRORS=NO"], cards,
+                 [f'*VERIFY, KIND={kind}, SOURCE="{cite}"'], [check.card() for check in checks])
+    process = run("run", "--quiet", deck, "--out", folder)
+    assert process.returncode in (0, 4), f"{name}: {process.returncode}\n{process.stderr}"
+    verdicts = read_verdicts(deck.with_suffix(".lst"))[-len(checks):]
+    assert len(verdicts) == len(checks), f"{name}: {len(verdicts)} verdicts of {len(checks)}"
+    assert (process.returncode == 0) == all(v.passed for v in verdicts), name
+    return Solved(mesh, checks, verdicts, deck.with_suffix(".vtkhdf"))
+
+
+def read_verdicts(listing):
+    """Return what a listing says of each *VERIFY card, in the order of the deck."""
+    number = r"(-?\d\.\d+E[+-]\d+|-?\d+\.?\d*|-)"
+    row = re.compile(rf"{number} +{number} +{number} +{number} (REL|ABS) (PASS|FAIL)$")
+    found = []
+    for line in listing.read_text().splitlines():
+        if match := row.search(line):
+            expected, value, deviation, _, _, outcome = match.groups()
+            assert value != "-", line
+            found.append(Verdict(float(value), float(deviation), outcome == "PASS"))
+    return found
+
+
+def parts_of(theme, folder, short=False):
+    """Run the cases of a theme; return the parts of its section, for the short form without its
+    picture."""
+    parts, runs = [], {}
+    for case in theme.cases():
+        tables, solved = case.tables(folder, case.meshes[:case.short] if short else case.meshes)
+        parts += tables
+        runs[case.title] = solved
+    if not short:
+        parts.append(Picture(f"verification/{theme.PICTURE}.png", theme.CAPTION,
+                             lambda path: draw(theme, runs, path)))
+    return parts
+
+
+def draw(theme, runs, path):
+    """Draw the picture of a theme."""
+    path.parent.mkdir(exist_ok=True)
+    theme.draw(runs, path)
+
+
+def check_short(theme, folder):
+    """Assert that the short form of a theme passes, with the rows that the document has."""
+    DOCUMENT.check_rows([p for p in parts_of(theme, folder, short=True) if isinstance(p, Table)])
+
+
+def write_document(names):
+    """Run the themes named, or all, and write the document."""
+    for theme in DOCUMENT.present().values():
+        theme.tables = lambda folder, theme=theme: parts_of(theme, folder)
+    DOCUMENT.write(names)
+    text = DOCUMENT.path.read_text()
+    if "FAIL" in text:
+        failed = [line for line in text.splitlines() if "FAIL" in line]
+        sys.exit("these rows fail:\n" + "\n".join(failed))
+
+
+def log_sizes(axes, sizes, label):
+    """Make the axis of the meshes logarithmic, with the sizes themselves at its ticks."""
+    axes.set_xscale("log")
+    axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
+    axes.minorticks_off()
+    axes.set_xlabel(label)
+
+
+def errors_panel(axes, runs, title, label="fineness of the mesh"):
+    """Draw the errors of all quantities of a case over its meshes, each twice as fine."""
+    sizes = [2**k for k in range(len(runs))]
+    for k, check in enumerate(runs[0].checks):
+        axes.semilogy(sizes, [solved.verdicts[k].error for solved in runs], marker="o",
+                      label=check.name)
+    axes.set_title(title)
+    axes.set_ylabel("error")
+    if len(runs[0].checks) == 1:
+        axes.set_ylabel(f"error of {runs[0].checks[0].name}")
+    else:
+        axes.legend(loc="lower left")
+    low, high = (log10(limit) for limit in axes.get_ylim())
+    # Whole decades, so that two at least have a label; one more below where a legend needs it.
+    axes.set_ylim(10 ** (floor(low) - (len(runs[0].checks) > 1)), 10 ** ceil(high))
+    log_sizes(axes, sizes, label)
+
+
+if __name__ == "__main__":
+    # Themes import this file by its name, not as __main__.
+    import manual
+
+    manual.write_document(sys.argv[1:])

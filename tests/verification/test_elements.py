@@ -1,0 +1,184 @@
+"""Elements: fields that are known everywhere, and thick cylinders."""
+
+from dataclasses import dataclass
+
+import h5py
+import manufactured
+import numpy as np
+from manual import Case, Check, check_short, log_sizes, order_of, solve, verdict
+from pictures import save, subplots
+from document import Table
+from physics import material, mesh
+
+import lame
+
+TITLE = "Elements"
+TEXT = ""
+PICTURE = "elements"
+CAPTION = "Errors of manufactured solutions and of thick cylinders over the mesh"
+KINDS = [family + nodes for nodes in ("8", "8R", "6", "4", "3") for family in ("CPE", "CPS", "CAX")]
+FINEST = {2: 16, 1: 32}  # elements a side, by that order
+ORDER = {"8": 2, "8R": 2, "6": 2, "4": 1, "3": 1}  # of the polynomials
+
+
+@dataclass
+class Manufactured(Case):
+    """The manufactured solution with every element."""
+
+    def tables(self, folder, meshes):
+        """Return the table of all elements, and the errors for the picture."""
+        heads = ["T", "grad T", "u", "grad u"]
+        columns = [column for head in heads for column in (head, "order")]
+        table = Table(self.title, ["element", "mesh"] + columns
+                      + ["nodes judged", "largest share of allowed", "verdict"], text=self.text())
+        found = {}
+        for kind in KINDS:
+            before = None
+            degree = ORDER[kind[3:]]
+            # Linear elements reach their order on finer meshes.
+            for n in [*meshes, 2 * meshes[-1]] if degree == 1 and len(meshes) > 1 else meshes:
+                cards, checks = self.make((kind, n))
+                solved = solve(folder, f"{kind}_{n}".lower(), cards, checks)
+                errors = manufactured.norms(kind, n, nodal_values(solved.result))
+                share = max(v.error / c.tolerance
+                            for v, c in zip(solved.verdicts, checks, strict=True))
+                holds = all(v.passed for v in solved.verdicts)
+                orders = [None] * 4 if before is None else [
+                    order_of(*pair) for pair in zip(before, errors, strict=True)]
+                if n == FINEST[degree]:
+                    holds &= all(o > least - 0.15 for o, least in
+                                 zip(orders, (degree + 1, degree) * 2, strict=True))
+                table.rows.append([kind, f"{n} x {n}"] + [
+                    cell for error, order in zip(errors, orders, strict=True)
+                    for cell in (f"{error:.2e}", "" if order is None else f"{order:.2f}")]
+                    + [len(checks) // 3, f"{share:.2f}", verdict(holds)])
+                before = errors
+                found.setdefault(kind, []).append((n, errors))
+        return [table], found
+
+
+def nodal_values(path):
+    """Return T, u_x, u_y of the only increment by the number of the node."""
+    with h5py.File(path) as file:
+        points = file["VTKHDF/PointData"]
+        numbers, heat = points["node_id"][:], points["temperature"][:]
+        moved = points["displacement"][:]
+    return {int(n): np.array([t, *u[:2]]) for n, t, u in zip(numbers, heat, moved, strict=True)}
+
+
+RADII = 1.0, 2.0
+
+
+def tube(kind, n, poisson, tolerance):
+    """Return a tube under internal pressure, n elements through its wall, and its checks."""
+    inner, outer = RADII
+    xs = list(np.linspace(inner, outer, n + 1))
+    cards = [*mesh("TUBE", xs, [0.0, 0.3], kind), *material("TUBE", (1000.0, poisson)),
+             "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "TUBE.BOTTOM, 2", "TUBE.TOP, 2",
+             "*DSLOAD", "TUBE.LEFT, P, 1.", "*END STEP"]
+    radial, hoop = lame.cylinder(inner, inner, outer, 1.0)
+    moved = float(lame.displacement(inner, radial, hoop, 1000.0, poisson, "strain"))
+    return cards, [Check("u_r at the bore", "U1", "TUBE.LEFT", moved, tolerance)], float(hoop)
+
+
+def cylinder(n):
+    """Return the tube of CAX8 and its checks."""
+    cards, checks, hoop = tube("CAX8", n, 0.3, 2e-3 * (2 / n) ** 3)
+    return cards, [*checks, Check("hoop stress at the bore", "S33", "TUBE.LEFT", hoop,
+                                  0.1 * (2 / n) ** 2)]
+
+
+@dataclass
+class Incompressible(Case):
+    """Thick cylinders of every element and Poisson's ratio."""
+
+    def tables(self, folder, meshes):
+        """Return the table of the errors of the bore: one row a ratio."""
+        kinds = ["CAX8", "CAX8R", "CAX4", "CAX6", "CAX3"]
+        table = Table(self.title, ["nu", *kinds, "verdict"], text=self.text())
+        found = []
+        for poisson in meshes:
+            errors, holds = [], True
+            for kind in kinds:
+                locks = kind in ("CAX8", "CAX3") and poisson > 0.49
+                tolerance = 1.0 if locks else 0.15 if kind == "CAX3" else 0.005
+                cards, checks, _ = tube(kind, 6, poisson, tolerance)
+                solved = solve(folder, f"nu{poisson}_{kind}".replace(".", "_").lower(), cards,
+                               checks)
+                errors.append(solved.verdicts[0].error)
+                holds &= solved.verdicts[0].passed
+            table.rows.append([f"{poisson:g}", *(f"{e:.1e}" for e in errors), verdict(holds)])
+            found.append((poisson, errors))
+        return [table], found
+
+
+def cases():
+    """Return the cases of the theme."""
+    return [
+        Manufactured(
+            "Manufactured solutions",
+            """Temperatures and displacements of entire functions are prescribed on the outline of a
+            unit square (axisymmetric: radii 1 to 2), and all nodes inside are judged. Plane: T = Re
+            e^(1.5 z), and Kolosov and Muskhelishvili's displacements of phi = e^(1.5 z)/100, psi =
+            (e^(1.5 z) + z^4)/100. Axisymmetric: T = z^3 - 3/2 z r^2, and Papkovich's displacements
+            of B = T and b = z^4 - 3 z^2 r^2 + 3/8 r^4. Both satisfy the equations without sources
+            and body forces. The inner corners of a mesh of 4 x 4 are moved by up to a quarter of a
+            cell; each finer mesh divides every cell of it in four. E = 1000, nu = 0.3.""",
+            """The fields themselves. N. I. Muskhelishvili, Some Basic Problems of the Mathematical
+            Theory of Elasticity, 1953; S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 1970.
+            Orders: O. C. Zienkiewicz, The Finite Element Method, 1977.""",
+            """A node may be off by twice what the exact field differs, at most, from the field that
+            its own nodal values make in the elements: a Galerkin solution is as good as the best
+            field of the elements but for a constant. This figure comes from the exact field alone.
+            Errors in the mean square, relative to the field, have to fall with the powers p + 1 for
+            values and p for gradients, p = 2 for quadratic and 1 for linear elements, less 0.15, on
+            the finest mesh.""",
+            [4, 8, 16], lambda at: manufactured.deck(*at), short=1),
+        Case(
+            "Thick cylinder",
+            """A tube of radii 1 and 2 in plane strain under an internal pressure of 1, E = 1000, nu
+            = 0.3, CAX8, n elements through the wall.""",
+            "G. Lamé; Timoshenko and Goodier, section 28.",
+            """Of the displacement 0.2 % with two elements, falling with h^3, the order of
+            displacements (nodes do better); of the stress, which is extrapolated from inside the
+            element to the bore, 10 % with two elements, falling with h^2.""",
+            [2, 4, 8, 16], cylinder, lambda n: f"n = {n}", order={"u_r at the bore": 3.5,
+                                                                  "hoop stress at the bore": 1.7},
+            short=2),
+        Incompressible(
+            "Thick cylinder, nearly incompressible",
+            """The same tube with six elements through the wall, for Poisson's ratios up to 1/2. The
+            table has the error of the radial displacement of the bore.""",
+            "As above.",
+            """Elements that do not lock: 0.5 % at every ratio, of CAX3 15 % up to 0.49. CAX8 and
+            CAX3 lock: no error is promised above 0.49, and the program warns.""",
+            [0.3, 0.49, 0.499, 0.49999], None),
+    ]
+
+
+def draw(runs, path):
+    """Draw the errors of u with every element, and those of the tube."""
+    figure, (left, right) = subplots(1, 2, 2.9)
+    found = runs["Manufactured solutions"]
+    for nodes, marker in (("8", "o"), ("8R", "s"), ("6", "^"), ("4", "D"), ("3", "v")):
+        rows = found["CPE" + nodes]
+        left.loglog([n for n, _ in rows], [e[2] for _, e in rows], marker=marker,
+                    label="CPE" + nodes)
+    left.set_title("Manufactured solution")
+    log_sizes(left, [4, 8, 16, 32], "elements a side")
+    left.set_ylabel("error of u in the mean square")
+    left.legend()
+    for k, name in enumerate(("u_r at the bore", "hoop stress at the bore")):
+        right.loglog([s.mesh for s in runs["Thick cylinder"]],
+                     [s.verdicts[k].error for s in runs["Thick cylinder"]], marker="o", label=name)
+    right.set_title("Thick cylinder, CAX8")
+    log_sizes(right, [2, 4, 8, 16], "elements through the wall")
+    right.set_ylabel("error")
+    right.legend()
+    save(figure, path)
+
+
+def test_elements(tmp_path):
+    import test_elements
+
+    check_short(test_elements, tmp_path)
