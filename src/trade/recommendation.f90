@@ -114,15 +114,13 @@ contains
          to_text(100.0_dp*rounded(closest))//' %'
    end subroutine remark
 
-   !> A number with two digits.
+   !> A number with two decimal digits: the same double for the same digits, as text is read.
    elemental real(dp) function rounded(number)
       real(dp), intent(in) :: number   !! any number
-      real(dp) :: unit
+      character(16) :: digits
 
-      rounded = number
-      if (number <= 0.0_dp) return
-      unit = 10.0_dp**(floor(log10(number)) - 1)
-      rounded = anint(number/unit)*unit
+      write (digits, '(es16.1e3)') number
+      read (digits, *) rounded
    end function rounded
 
 end module recommendation
