@@ -77,12 +77,12 @@ contains
          if (len(others) == 0) cycle
          associate (own => points%equations(equation))
             if (supported) then
-               call set_error(error, status_deck, own%title//' is over-determined: all that it '// &
-                  'relates is prescribed by '//others//'; free one of its degrees of freedom, '// &
-                  'or leave it out', own%card)
+               call set_error(error, status_deck, own%title//' is over-determined: all its '// &
+                  'degrees of freedom are prescribed by '//others//'; free one '// &
+                  'of them, or leave it out', own%card)
             else
-               call set_error(error, status_deck, own%title//' is circular or repeated: what '// &
-                  'it says follows from '//others//'; leave one out', own%card)
+               call set_error(error, status_deck, own%title//' is circular or repeated: it '// &
+                  'follows from '//others//'; leave one out', own%card)
             end if
          end associate
          return

@@ -79,7 +79,7 @@ contains
          call set_error(error, status_deck, tie%faces%title()//': *BOUNDARY prescribes '//what// &
             ' at nodes '//to_text(model%mesh%node_number(nodes(1)))//' and '// &
             to_text(model%mesh%node_number(nodes(2)))//' that differ by '// &
-            to_text(abs(difference))//', while the tie makes them equal; prescribe equal ones, '// &
+            to_text(abs(difference))//', but the tie makes them equal; prescribe equal values, '// &
             'or free one of the two', tie%faces%card)
       end associate
    end subroutine blame

@@ -179,13 +179,13 @@ contains
       integer :: surface
 
       if (abs(ahead) <= same_position*extent_of(mesh%coordinates)) then
-         error%message = error%message//'; name the faces that look at each other'
+         error%message = error%message//'; name the faces opposite each other'
          return
       end if
       surface = merge(definition%master, definition%slave, ahead > 0.0_dp)
       error%card = mesh%surfaces(surface)%card
       error%message = error%message//': surface '//mesh%surfaces(surface)%name// &
-         ' looks away from the other one; name the faces that look at it'
+         ' looks away from the other one; name the faces opposite it'
    end subroutine blame_side
 
    !> Where surfaces do not fit, the fault may be a face round the corner: puts the blame on the

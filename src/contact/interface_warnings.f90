@@ -47,7 +47,7 @@ contains
       integer, intent(in) :: k
       character(:), allocatable :: words
 
-      words = nodes_of(mesh, points, k)//' lie '//to_text(offset)//' beside each other, '// &
+      words = nodes_of(mesh, points, k)//' are offset by '//to_text(offset)//', '// &
          percent(part)//' of the node spacing'
    end function offset_words
 
@@ -104,8 +104,7 @@ contains
       warning = 'contact pair '//points%name//': the faces overlap by '// &
          to_text(-points%initial_gap(k))//' at '//nodes_of(mesh, points, k)// &
          ', where the element edge is '//to_text(points%edge(k))//'; they are pressed apart in '// &
-         'the first increment: see whether the bodies are where they should be, or say by '// &
-         '*CLEARANCE what is meant'
+         'the first increment: check the positions of the bodies, or give the overlap by *CLEARANCE'
    end function overlap_warning
 
    pure function nodes_of(mesh, points, k) result(words)

@@ -163,7 +163,7 @@ contains
       warning = tie%faces%title()//': slave node '// &
          to_text(mesh%node_number(points%slave_node(k)))//' is tied over a gap of '// &
          to_text(abs(points%initial_gap(k)))//', more than the element edge of '// &
-         to_text(points%edge(k))//'; POSITION TOLERANCE= says how far faces may be apart'
+         to_text(points%edge(k))//'; POSITION TOLERANCE= limits the distance of tied faces'
    end function distance_warning
 
 end module tie_points

@@ -35,8 +35,8 @@ contains
       source = c_null_char
       limit = c_limit(source, int(source_length, c_int))
       if (needed <= limit) return
-      call set_error(error, status_internal, 'memory ran out before the run: it needs about '// &
-         megabytes(needed)//' MB, and may have '//megabytes(limit)//' MB ('// &
+      call set_error(error, status_internal, 'not enough memory: the run needs about '// &
+         megabytes(needed)//' MB and may use '//megabytes(limit)//' MB ('// &
          source(:index(source, c_null_char) - 1)//')')
       error%lacks_memory = .true.
    end subroutine check_memory

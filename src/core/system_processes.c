@@ -246,7 +246,7 @@ static void *checked(void *address, double bytes)
    char words[80];
 
    if (address != NULL || bytes <= 0.0) return address;
-   snprintf(words, sizeof words, "memory ran out: %.0f MB more could not be had", bytes / 1e6);
+   snprintf(words, sizeof words, "memory ran out: %.0f MB more are not available", bytes / 1e6);
    filed.lacks_memory = 1;
    end_run(status_internal, words, "");
 }

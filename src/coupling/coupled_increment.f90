@@ -142,8 +142,8 @@ contains
             'this is one of several')
       else if (found(3) .and. ((found(1) .and. differ(from_open, from_previous)) .or. &
          (found(2) .and. differ(from_closed, from_previous)))) then
-         call record%warn('the start from PREVIOUS leads elsewhere than that from the ends; '// &
-            'this is one of several solutions')
+         call record%warn('PREVIOUS leads to a different solution than OPEN and CLOSED; this '// &
+            'is one of several')
       else if (found(1) .and. found(2)) then
          call append(record%notes, 'the starts from OPEN and from CLOSED lead to one solution')
       end if
@@ -191,8 +191,8 @@ contains
          if (gain%largest < -1.0_dp .and. is_plain) call record%warn('the coupling gain is ', &
             gain%largest, ', below -1: plain iteration (4.1) would diverge')
          if (abs(gain%largest_real - 1.0_dp) <= near_turning_point) call record%warn( &
-            'the largest real gain is ', gain%largest_real, ', near 1: a turning point, '// &
-            'where solutions meet and small changes of the load change much', &
+            'the largest real gain is ', gain%largest_real, ', near 1: a turning point, where '// &
+            'solutions meet and small changes of the load have large effects', &
             severity=-abs(gain%largest_real - 1.0_dp))
          if (gain%is_one_of_several) call record%warn('det(I - U'') is negative: '// &
             'the branch is unstable, and there are at least two other solutions')

@@ -85,7 +85,7 @@ contains
          where (base > 0.0_dp .and. wanted > 0.0_dp) omega = base*exp(part*step)
       end do
       call set_error(error, status_no_convergence, 'conductances and temperatures of the faces '// &
-         'do not converge to each other; last residual '//to_text(residual))
+         'do not converge together; last residual '//to_text(residual))
    end subroutine settle_conductance
 
    !> log(wanted/omega); 1 where only one of both carries no heat.

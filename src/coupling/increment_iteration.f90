@@ -54,8 +54,8 @@ contains
       if (.not. allocated(error)) return
       if (error%status /= status_no_convergence) return
       deallocate (error)
-      call append(workspace%record%notes, 'the edge of contact comes to no place within its '// &
-         'side; heat crosses the whole faces of the contact points there')
+      call append(workspace%record%notes, 'the position of the edge of contact in its element '// &
+         'side does not converge; in this increment the side is not divided for the heat')
       whole = data
       whole%cuts_hats = .false.
       next = start
@@ -94,8 +94,8 @@ contains
       else if (any(workspace%graph%width > 0.0_dp)) then
          deallocate (error)
          call append(workspace%record%notes, &
-            'a contact point whose conductance jumps comes to no state by the '// &
-            'method of the deck; the increment is handed to NEWTON')
+            'the method of the deck finds no state for a contact point whose conductance '// &
+            'jumps; NEWTON solves this increment')
          next = start
          call use_method(bodies, by_newton(controls), data, workspace, next, error)
          if (allocated(error)) call name_runaway(bodies, data, next%jump, workspace%record, &
@@ -323,7 +323,7 @@ contains
       if (allocated(error) .or. n == 0) return
       if (passes(n)%residual <= wanted) return
       call set_error(error, status_no_convergence, 'the conductance does not converge in '// &
-         counted(n, 'iteration')//'; last residual '//to_text(passes(n)%residual)//', wanted '// &
+         counted(n, 'iteration')//'; last residual '//to_text(passes(n)%residual)//', required '// &
          to_text(wanted))
    end subroutine close_passes
 

@@ -252,7 +252,7 @@ contains
          call set_error(error, status_no_convergence, 'contact pair '// &
             bodies%interfaces(i)%name//' radiates below absolute zero, '// &
             to_text(bodies%points%law(k)%by_temperature%absolute_zero)// &
-            '; see ABSOLUTE ZERO= of *PHYSICAL CONSTANTS and the temperatures of the deck')
+            '; check ABSOLUTE ZERO= of *PHYSICAL CONSTANTS and the temperatures of the deck')
       end associate
    end subroutine check_absolute_zero
 

@@ -31,7 +31,7 @@ module mumps_solver
 
    !> Message for a matrix that is not positive definite.
    character(*), parameter :: unheld = &
-      'singular matrix: some body is not held by its supports and contacts, or far too softly'
+      'singular matrix: a body is not held by its supports and contacts, or far too weakly'
 
    !> MUMPS's factors behind the common interface.
    type, extends(linear_solver_type) :: mumps_solver_type

@@ -51,7 +51,7 @@ contains
          int(tail, long)*(tail + 1)/2)
       call move_alloc(self%skyline%schur, self%schur)
       if (bad_column > 0) call set_error(error, status_deck, &
-         'singular matrix: some body is not held by its supports and contacts, or far too softly')
+         'singular matrix: a body is not held by its supports and contacts, or far too weakly')
    end subroutine factor
 
    !> As condense_interface of linear_solver says.

@@ -29,7 +29,7 @@ contains
          call append(lines, target_words(accuracy, d, interfaces))
       end do
       if (size(accuracy%rounds) > 1 .and. accuracy%has_checks) call append(lines, &
-         '   the *VERIFY checks were judged in round 1, on the deck as it is written')
+         '   the *VERIFY checks were judged in round 1, on the deck as written')
       call append(lines, '   round   CPU seconds    unknowns    elements  increments  '// &
          'largest bound/target')
       do i = 1, size(accuracy%rounds)

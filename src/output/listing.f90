@@ -86,7 +86,7 @@ contains
       call self%text%take(lines)
       self%summary_start = len(lines)
       allocate (running(0))
-      call append(running, 'not finished: the run is still going on, or was killed')
+      call append(running, 'not finished: the run is still in progress, or was killed')
       lines = lines//summary_block(running, size(interfaces))
       call append_to_file(self%descriptor, self%path, lines, error)
       if (allocated(error)) return

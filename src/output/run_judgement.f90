@@ -120,8 +120,8 @@ contains
          call append(lines, 'increment '//to_text(self%increment(i))//': the '// &
             trim(merge('strain  ', 'rotation', i == of_strain))//' of element '// &
             to_text(model%mesh%element_number(self%element(i)))//' is '// &
-            amount(i, self%largest(i))//'; strains and displacements are taken as small, which '// &
-            'fails above '//amount(i, limit))
+            amount(i, self%largest(i))//'; the theory of small strains and displacements is '// &
+            'not valid above '//amount(i, limit))
       end do
       do i = 1, size(interfaces)
          associate (points => interfaces(i))
@@ -131,7 +131,7 @@ contains
                   to_text(model%mesh%node_number(points%slave_node(merge(1, &
                   size(points%slave_node), last == 1))))//' slides past the end of the master '// &
                   'surface by more than a twentieth of its side; contact is solved as if it '// &
-                  'stayed opposite: let the master reach further, or exchange slave and master')
+                  'stayed opposite: extend the master, or exchange slave and master')
             end do
          end associate
       end do
@@ -147,7 +147,7 @@ contains
          end do
       end if
       if (any(solves_heat(model%steps%analysis)) .and. .not. self%warms) call append(lines, &
-         'no heat is loaded: all temperatures keep their initial values in all increments')
+         'no heat load acts: all temperatures keep their initial values in all increments')
    end function warnings
 
    !> A strain in percent, a rotation in percent of a radian.

@@ -272,8 +272,8 @@ contains
       integer, intent(in) :: increments            !! in the result file
       character(:), allocatable :: words           !! one sentence
 
-      words = 'No increment was accepted: this run has no result file and no .sta; those of '// &
-         'an earlier run, if there are any, were left.'
+      words = 'No increment was accepted: this run has no result file and no .sta; those of an '// &
+         'earlier run, if there are any, were kept.'
       if (increments > 0) words = 'The results hold the increments up to number '// &
          to_text(increments)//'.'
    end function kept_words

@@ -32,7 +32,8 @@ module deck_preparation
    public :: prepare_deck
 
    !> Why a file is skipped.
-   character(*), parameter, public :: not_a_deck = 'it has no *STEP, as files that decks include'
+   character(*), parameter, public :: not_a_deck = 'it has no *STEP; it is taken as a file '// &
+      'that decks include'
 
 contains
 

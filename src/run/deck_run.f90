@@ -376,7 +376,7 @@ contains
       call outcome%fail(error)
       call self%output%progress%clear()
       if (error%status == status_no_convergence) then
-         call print_error(self%path, error%message//' (the listing has the passes)')
+         call print_error(self%path, error%message//' (the listing shows the iteration)')
       else
          call print_error(self%path, error%message)
       end if

@@ -169,7 +169,7 @@ contains
 
       words = 'step '//to_text(self%step)//', increment size '//to_text(failed)
       if (model%steps(self%step)%direct) then
-         words = words//', which DIRECT keeps from being cut back'
+         words = words//', which DIRECT does not allow to be cut back'
       else
          words = words//', the smallest one'
          if (self%cut_backs > 0) words = words//' (cut-backs: '//to_text(self%cut_backs)//')'

@@ -108,8 +108,8 @@ contains
       if (.not. allocated(record%iterations)) return
       if (record%residual_floor <= step%fixed_point%tolerance) return
       call record%warn('the contact conductance is accurate to ', record%residual_floor, &
-         ' only, not to TOL='//to_text(step%fixed_point%tolerance)//': it takes its gaps from '// &
-         'displacements that are far larger, whose last places change it')
+         ' only, not TOL='//to_text(step%fixed_point%tolerance)//': gaps are differences of '// &
+         'far larger displacements, whose rounding changes it')
    end subroutine warn_of_floor
 
    !> Contact state of one interface.

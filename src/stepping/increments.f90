@@ -216,7 +216,7 @@ contains
       if (self%sizes%smallest_pivot >= min(doubtful, 0.1_dp*self%pivot_told)) return
       self%pivot_told = self%sizes%smallest_pivot
       call record%warn('the smallest pivot of the bodies is '//to_text(self%pivot_told)// &
-         ' of its diagonal entry, so that results may be right to '// &
+         ' of its diagonal entry, so results may be accurate to '// &
          to_text(10*epsilon(1.0_dp)/self%pivot_told)// &
          ' only: are bodies held by others that are far softer?')
    end subroutine warn_of_pivot
@@ -230,7 +230,7 @@ contains
       associate (step => model%steps(control%step))
          if (control%increments_of_step < step%max_increments) return
          call set_error(error, status_no_convergence, 'step '//to_text(control%step)// &
-            ' is not over after INC='//counted(step%max_increments, 'increment')//', at '// &
+            ' is not finished after INC='//counted(step%max_increments, 'increment')//', at '// &
             to_text(control%step_time)//' of its period '//to_text(step%period))
       end associate
    end subroutine check_count

@@ -56,7 +56,7 @@ contains
 
       status = status_deck
       if (is_stream(path)) then
-         call print_error(path, 'trade reads the deck more than once, which only a file allows')
+         call print_error(path, 'trade reads the deck more than once: give a file, not a pipe')
          return
       end if
       call prepare_deck(path, command, cards, model, simulation, error, &
@@ -94,7 +94,7 @@ contains
       end if
       i = findloc(trade%rows(:trade%count)%is_default, .true., dim=1)
       status = trade%rows(i)%status
-      if (status /= 0) call print_error(path, 'the deck as it is written fails: '// &
+      if (status /= 0) call print_error(path, 'the deck as written fails: '// &
          trade%rows(i)%reason)
    end subroutine trade_deck
 
@@ -107,7 +107,7 @@ contains
       if (.not. allocated(error)) return
       if (error%status /= status_interrupted .or. trade%count == 0) return
       call move_alloc(error, ended_early)
-      ended_early%message = ended_early%message//': the table holds only the '// &
+      ended_early%message = ended_early%message//': the table contains only the '// &
          counted(trade%count, 'row')//' measured before'
       trade%ended_early = ended_early%message
    end subroutine forgive_signal

@@ -37,8 +37,8 @@ contains
       do q = 1, quantity_count
          write (unit, '(a9)', advance='no') percent(trade%uncertainty(q))
       end do
-      write (unit, '(/, /, a)') '* no row is both cheaper and better (worst error); = the deck'// &
-         ' as it is written'
+      write (unit, '(/, /, a)') '* no row is both cheaper and better (worst error); = the deck '// &
+         'as written'
       if (any(trade%rows(:trade%count)%contact_level > 0)) write (unit, '(a)') &
          'x 1:4: sides are those of the deck''s mesh, at both contact faces divided by 4 '// &
          '(*REFINE, LEVELS=2, SURFACE=)'

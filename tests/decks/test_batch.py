@@ -221,7 +221,7 @@ def test_memory_that_runs_out_takes_no_other_deck_along(tmp_path, single):
     assert_as_single(tmp_path, single)
     row = table(tmp_path)["large"]
     assert (row["status"], row["outcome"]) == ("3", "out of memory"), messages
-    assert f"{large}: error: memory ran out" in messages
+    assert f"{large}: error: not enough memory" in messages
 
 
 def test_too_little_memory_for_any_deck_is_said(tmp_path):

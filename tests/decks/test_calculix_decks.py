@@ -332,7 +332,7 @@ def test_what_is_passed_over_is_said(tmp_path):
     process = run("run", "--quiet", deck, "--out", tmp_path)
     assert process.returncode == 0
     for node, missing in ((1, "x"), (1, "y"), (2, "y"), (4, "x")):
-        assert f"warning: node {node} has no {missing}: 0 is taken" in process.stderr
+        assert f"warning: node {node} has no {missing}: 0 is used" in process.stderr
     notes = deck.with_suffix(".lst").read_text()
     for card in ("*EXPANSION: ZERO", "*RESTART", "*OUTPUT", "*EL FILE: SECTION FORCES",
                  "*CONTACT FILE: OUTPUT", "*STATIC: SOLVER"):
@@ -393,8 +393,8 @@ def test_more_increments_than_inc_grow(tmp_path):
     process = run("run", "--quiet", deck, "--out", tmp_path)
     assert process.returncode == 0
     assert "INC=" not in process.stderr
-    assert "*STATIC: INC=10 does not hold for increments of 1E-2; they grow, each to 1.5 of the one " \
-        "before, up to 0.5" in " ".join(deck.with_suffix(".lst").read_text().split())
+    assert "*STATIC: INC=10 is not enough for increments of 1E-2; they grow, each to 1.5 times the " \
+        "one before, up to 0.5" in " ".join(deck.with_suffix(".lst").read_text().split())
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
         times = file["history/time"][()]
     np.testing.assert_allclose(times, [*(0.02 * (1.5**n - 1.0) for n in range(1, 10)), 1.0])

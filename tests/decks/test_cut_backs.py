@@ -214,7 +214,7 @@ def test_direct_increments_are_not_cut_back(deck):
     path.write_text(path.read_text().replace("STEADY STATE", "STEADY STATE, DIRECT"))
     process = run("run", "--quiet", path, "--out", path.parent)
     assert process.returncode == 2
-    assert "increment size 1, which DIRECT keeps from being cut back" in process.stderr
+    assert "increment size 1, which DIRECT does not allow to be cut back" in process.stderr
     assert not path.with_suffix(".vtkhdf").exists()
     assert {row[7] for row in rows_of(path, ".cvg")} == {"0"}
 
@@ -227,7 +227,7 @@ def test_inc_counts_increments_and_not_attempts(deck):
     path = deck(step=f"*STEP, INC={count - 1}")
     process = run("run", "--quiet", path, "--out", path.parent)
     assert process.returncode == 2
-    assert f"step 1 is not over after INC={count - 1} increments, at " in process.stderr
+    assert f"step 1 is not finished after INC={count - 1} increments, at " in process.stderr
     assert len(history(path.with_suffix(".vtkhdf"), "time")) == count - 1
 
 

@@ -236,7 +236,7 @@ def test_the_error_of_a_locally_refined_mesh_is_estimated(tmp_path):
     ("LEVELS=1, SURFACE=UPPER.BOTOM", "surface UPPER.BOTOM"),
     ("LEVELS=1, ELSET=NONE", "element set NONE"),
     ("LEVELS=1, SURFACE=CORNER, ELSET=TIP", "SURFACE= or ELSET=, not both"),
-    ("LEVELS=1, DISTANCE=0.1", "give SURFACE= or ELSET= with it"),
+    ("LEVELS=1, DISTANCE=0.1", "give SURFACE= or ELSET= too"),
     ("LEVELS=12, SURFACE=CORNER", "LEVELS= must lie between 0 and 11"),
     ("LEVELS=-1, ELSET=TIP", "LEVELS= must lie between 0 and 11"),
     ("SURFACE=CORNER", "*REFINE needs LEVELS="),

@@ -57,8 +57,8 @@ def test_what_no_machine_has_is_refused_before_it_is_refined(tmp_path, command):
     if process.returncode == 0:
         pytest.skip("this machine has the memory")
     assert process.returncode == 3
-    message = re.search(r": error: memory ran out before the run: it needs about (\d+) MB, and may "
-                        r"have (\d+) MB \(.+\)\n", process.stderr)
+    message = re.search(r": error: not enough memory: the run needs about (\d+) MB and may "
+                        r"use (\d+) MB \(.+\)\n", process.stderr)
     assert process.stderr.count("\n") == 1
     assert int(message[1]) > int(message[2])
     assert not list(tmp_path.glob("large.[!i]*"))
@@ -76,7 +76,7 @@ def test_a_limit_of_the_process_ends_the_run_with_one_line(tmp_path, megabytes):
         assert process.stderr == ""
         return
     assert process.returncode == 3, process.stderr
-    assert re.fullmatch(r"\S+: error: memory ran out.* \d+ MB.*\n", process.stderr)
+    assert re.fullmatch(r"\S+: error: (memory ran out|not enough memory): .*\d+ MB.*\n", process.stderr)
 
 
 def groups():
@@ -111,4 +111,4 @@ def test_a_limit_of_the_control_group_counts(tmp_path):
     finally:
         os.rmdir(folder)
     assert process.returncode == 3, process.stderr
-    assert f"may have 100 MB ({found[1]})" in process.stderr
+    assert f"may use 100 MB ({found[1]})" in process.stderr

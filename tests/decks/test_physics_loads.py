@@ -341,14 +341,14 @@ def test_course_of_a_film(tmp_path, options, sinks, films):
     judge(tmp_path, deck, filmed(300.0, 4.0, (0.25, 0.5, 1.0), sinks, films))
     notes = (tmp_path / "deck.lst").read_text()
     assert ("the coefficient ramps over the step" in notes) == (films == (0.25, 0.5, 1))
-    assert ("the sink temperature acts whole at once" in notes) == (sinks == (1, 1, 1))
+    assert ("the sink temperature acts fully at once" in notes) == (sinks == (1, 1, 1))
 
 
 def test_film_of_a_step_that_jumps(tmp_path):
     deck = bar(*heat("*BOUNDARY", "BODY.LEFT, 11, 11, 20.", "*FILM", "2, F2, 300., 4.",
                      times="0.25, 1.", first="*STEP, AMPLITUDE=STEP"))
     judge(tmp_path, deck, filmed(300.0, 4.0, (0.25, 0.5, 1.0), films=(1, 1, 1)))
-    assert "the coefficient acts whole at once" in (tmp_path / "deck.lst").read_text()
+    assert "the coefficient acts fully at once" in (tmp_path / "deck.lst").read_text()
 
 
 @pytest.mark.changes("FILM")

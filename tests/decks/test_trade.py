@@ -279,7 +279,7 @@ def test_a_deck_that_fails_as_written_has_a_table_and_its_status(tmp_path):
     rows, process = trade(deck, tmp_path, "--limit", "0.01", status=2)
     (default,) = (row for row in rows if row["default"] == "1")
     assert default["status"] == "2"
-    assert "the deck as it is written fails" in process.stderr
+    assert "the deck as written fails" in process.stderr
     (newton,) = (row for row in rows if row["varied"] == "NEWTON")
     assert newton["status"] == "0"
 
@@ -367,7 +367,7 @@ def test_a_trade_that_a_signal_ends_keeps_the_rows_that_were_measured(tmp_path):
         rows = list(csv.DictReader(file))
     assert len(rows) >= 3 and rows[-1]["row"] == "reference"
     assert all(row["status"] == "0" and float(row["cpu_seconds"]) > 0 for row in rows[:-1])
-    words = f"ended by SIGINT: the table holds only the {len(rows) - 1} rows measured before"
+    words = f"ended by SIGINT: the table contains only the {len(rows) - 1} rows measured before"
     assert f"{deck}: error: {words}\n" in said
     assert words in table
     assert [file.name for file in tmp_path.iterdir() if file.suffix == ".tmp"] == []

@@ -10,7 +10,7 @@ from test_held import FACES, FLOOR, MESH, SOLIDS, interaction, read, step
 
 GAS_A, GAS_B = 0.24e-5, 0.3e-5
 GAS = ["*GAP LAW, TYPE=GAS", f"{GAS_A}, {GAS_B}"]
-FLOATS = "the least motion is taken where nothing drives or holds one"
+FLOATS = "the smallest motion is taken where nothing drives or holds a body"
 HOT = 300.0
 
 

@@ -237,7 +237,7 @@ def shapes(folder):
                                   (1000.0, 1000.0), spoilt(1 / near), 0.3, [0.0, near, 1.0]))
     for near in (1e-8, 1e-12):
         case = Outcome(folder, "near", *near_nodes(near), status=1)
-        table.rows.append(refused(f"nodes {near:.0e} apart beside sides of 1", case, "all but coincide"))
+        table.rows.append(refused(f"nodes {near:.0e} apart beside sides of 1", case, "nearly coincide"))
     case = Outcome(folder, "near", *near_nodes(0.0), status=1)
     table.rows.append(refused("nodes in one place, so that elements have no area", case, "Jacobian"))
     for gap in (1e3, 1e6, 1e12):

@@ -202,10 +202,10 @@ contains
          end if
       end do
       if (scan(contacts(n)%name, '/@') > 0) call report%error(parameter_place(card, 'NAME'), &
-         'the name of a contact pair holds no / and no @')
+         'the name of a contact pair must not contain / or @')
       if (contacts(n)%name == '.' .or. contacts(n)%name == '..') call report%error( &
-         parameter_place(card, 'NAME'), 'the name of a contact pair is not . or ..: it names a '// &
-         'group of the result file')
+         parameter_place(card, 'NAME'), 'a contact pair must not be named . or ..: its name is '// &
+         'a group of the result file')
    end subroutine check_name
 
 end module deck_builder_contact

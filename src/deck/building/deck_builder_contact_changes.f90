@@ -35,7 +35,7 @@ contains
       select case (cards%keywords(k)%name)
       case ('CHANGE FRICTION')
          if (is_keyword(cards, k + 1, 'FRICTION')) return
-         call report%error(cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION behind it')
+         call report%error(cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION after it')
       case ('FRICTION')
          if (is_keyword(cards, k - 1, 'CHANGE FRICTION')) then
             call change_friction(cards, k, model, context, report, changes)
@@ -140,7 +140,7 @@ contains
       if (operation == 'NEW') changes%ends_interferences = .true.
       given%shrinks = has_parameter(card, 'SHRINK')
       if (given%shrinks .and. step > 1) call report%error(parameter_place(card, 'SHRINK'), &
-         'SHRINK is for the first step: it takes the initial overlaps')
+         'SHRINK is allowed in the first step only: it removes the initial overlaps')
       if (given%shrinks .and. has_parameter(card, 'AMPLITUDE')) then
          call context%note('*CONTACT INTERFERENCE, SHRINK: AMPLITUDE= is ignored')
       else

@@ -33,8 +33,8 @@ contains
             model%couplings(n)%rotation = size(model%mesh%node_number) - size(model%couplings) + n
             call build_coupling(cards%keywords(k), context, model, report, model%couplings(n))
             if (is_kinematic(cards, k + 1)) cycle
-            call report%error(cards%keywords(k)%place, '*KINEMATIC is missing: it stands '// &
-               'directly behind *COUPLING and says which degrees of freedom follow')
+            call report%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
+               'directly follow *COUPLING and name the degrees of freedom')
          else if (cards%keywords(k)%name == 'KINEMATIC') then
             if (k > 1) then
                if (cards%keywords(k - 1)%name == 'COUPLING') then
@@ -43,7 +43,7 @@ contains
                end if
             end if
             call report%error(cards%keywords(k)%place, &
-               '*KINEMATIC stands directly behind *COUPLING')
+               '*KINEMATIC must directly follow *COUPLING')
          end if
       end do
    end subroutine build_couplings
@@ -163,7 +163,7 @@ contains
             coupling%is_warm = .true.
          case default
             call report%error(field_place(data, merge(1, 2, dof == first)), &
-               'degree of freedom '//to_text(dof)//'; faces follow along 1 and 2, and by 11')
+               'degree of freedom '//to_text(dof)//'; faces follow in 1, 2 and 11')
             return
          end select
       end do

@@ -82,7 +82,7 @@ contains
       if (.not. terms%valid) then
          data = card%last_data + 1
       else if (size(terms%dof) /= n) then
-         call report%error(terms%place, 'the equation is to have '//to_text(n)//' terms; '// &
+         call report%error(terms%place, 'the equation should have '//to_text(n)//' terms; '// &
             to_text(size(terms%dof))//' are given')
          terms%valid = .false.
       end if
@@ -109,7 +109,7 @@ contains
          if (.not. terms%valid) return
          if (all(dof /= [1, 2, dof_temperature])) then
             call report%error(field_place(card, position + 1), 'degree of freedom '// &
-               to_text(dof)//'; an equation is between 1 and 2, or of 11')
+               to_text(dof)//'; an equation relates 1 and 2, or 11')
             terms%valid = .false.
          end if
          terms%item = [terms%item, item]
@@ -133,8 +133,9 @@ contains
          if (terms%set(i) > 0) lengths(i) = size(model%mesh%node_sets(terms%set(i))%members)
          if (lengths(i) == 1 .or. maxval(lengths(:i - 1)) <= 1) cycle
          if (lengths(i) == maxval(lengths(:i - 1))) cycle
-         call report%error(terms%at(i), 'the node sets of an equation have as many nodes, or '// &
-            'one: '//to_text(maxval(lengths(:i - 1)))//' and '//to_text(lengths(i)))
+         call report%error(terms%at(i), 'the node sets of an equation must have the same '// &
+            'number of nodes, or one node: '//to_text(maxval(lengths(:i - 1)))//' and '// &
+            to_text(lengths(i)))
          terms%valid = .false.
       end do
       i = findloc((terms%dof == dof_temperature) .neqv. (terms%dof(1) == dof_temperature), &

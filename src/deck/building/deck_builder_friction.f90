@@ -56,7 +56,7 @@ contains
          call report%error(field_place(data, 1), 'the coefficient of friction must not be negative')
       else if (coefficient > rough_coefficient) then
          call report%error(field_place(data, 1), 'the coefficient of friction must not exceed '// &
-            to_text(rough_coefficient)//'; faces that never slip while closed have ROUGH')
+            to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
       end if
       if (size(data%fields) > 1) then
          call context%note('*FRICTION: the stick slope is ignored')

@@ -29,7 +29,7 @@ contains
 
       errors = report%error_count()
       if (has_parameter(card, 'PRESSURE')) call report%error(parameter_place(card, 'CLEARANCE'), &
-         'PRESSURE and CLEARANCE on one card: its second column is one of them')
+         'PRESSURE and CLEARANCE exclude each other: both name the second column')
       if (law%open_kind /= law_none) then
          call report%error(card%place, 'a second open law in one surface interaction')
       end if
@@ -70,8 +70,8 @@ contains
             call need_field(data, 2, 'gap', report, gap, valid)
             if (temperature(i) <= temperature(1)) first = gap
             if (abs(gap - first) > 0.0_dp) call report%error(field_place(data, 2), &
-               'the table ends at another gap than at the first temperature; no heat crosses '// &
-               'beyond it, so that all temperatures must end at the same')
+               'the table ends at a different gap than at the first temperature; no heat '// &
+               'crosses beyond the end, which must be the same at all temperatures')
          end associate
       end do
    end subroutine check_last_gaps
@@ -123,7 +123,7 @@ contains
       if (table%closed_kind == law_none) return
       if (law%closed_kind /= law_none) then
          call context%note('*GAP CONDUCTANCE of '//name// &
-            ' is left to CalculiX: the closed *GAP LAW holds')
+            ' is ignored: the closed *GAP LAW takes precedence')
          return
       end if
       law%closed_kind = table%closed_kind

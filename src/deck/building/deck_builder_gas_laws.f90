@@ -94,8 +94,8 @@ contains
       else if (valid(2) .and. b + added <= 0.0_dp) then
          call report%error(field_place(data, 2), 'B must be positive')
       else if (all(valid) .and. a > largest_magnitude*(b + added)) then
-         call report%error(field_place(data, 1), 'the conductance A/B of a gap of 0 '// &
-            'exceeds '//to_text(largest_magnitude))
+         call report%error(field_place(data, 1), 'the conductance A/B at gap 0 exceeds '// &
+            to_text(largest_magnitude))
       end if
    end subroutine check_values
 

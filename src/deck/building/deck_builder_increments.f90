@@ -48,7 +48,7 @@ contains
          step%first_increment = step%largest_increment
          step%smallest_increment = min(step%smallest_increment, step%first_increment)
          call report%warning(field_place(data, 4), 'the first increment is longer than the '// &
-            'largest, and is taken as long as that')
+            'largest, and is shortened to it')
       else if (step%smallest_increment < least_increment*step%period) then
          step%smallest_increment = least_increment*step%period
          call context%note('smallest increment raised to '//to_text(step%smallest_increment)// &

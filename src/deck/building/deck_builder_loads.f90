@@ -87,7 +87,7 @@ contains
       context%load_step(card%known) = step
       if (operation /= 'NEW' .or. step == 0) return
       if (.not. first) then
-         call report%warning(parameter_place(card, 'OP'), 'OP=NEW is ignored: it counts on '// &
+         call report%warning(parameter_place(card, 'OP'), 'OP=NEW is ignored: it must be on '// &
             'the first *'//card%name//' of a step')
          return
       end if
@@ -156,8 +156,8 @@ contains
 
       if (all(amplitude%values >= 0.0_dp)) return
       call report%error(parameter_place(card, 'FILM AMPLITUDE'), 'amplitude '//amplitude%name// &
-         ' becomes negative ('//to_text(minval(amplitude%values))//'), which a film '// &
-         'coefficient cannot be; give factors from 0 on')
+         ' becomes negative ('//to_text(minval(amplitude%values))//'), but a film coefficient '// &
+         'must not; give factors of at least 0')
    end subroutine check_film
 
    !> Notes what coefficient and sink of a film do where the card gives no amplitude.
@@ -168,7 +168,7 @@ contains
       character(:), allocatable :: coefficient
 
       if (has_parameter(card, 'AMPLITUDE') .and. has_parameter(card, 'FILM AMPLITUDE')) return
-      coefficient = 'the coefficient acts whole at once'
+      coefficient = 'the coefficient acts fully at once'
       if (ramped) coefficient = 'the coefficient ramps over the step'
       if (has_parameter(card, 'AMPLITUDE')) then
          call context%note('*'//card%name//', AMPLITUDE='// &
@@ -177,10 +177,10 @@ contains
       else if (has_parameter(card, 'FILM AMPLITUDE')) then
          call context%note('*'//card%name//', FILM AMPLITUDE='// &
             to_upper(parameter_text(card, 'FILM AMPLITUDE'))// &
-            ': the coefficient follows it, the sink temperature acts whole at once')
+            ': the coefficient follows it, the sink temperature acts fully at once')
       else
          call context%note('*'//card%name//' without amplitudes: '//coefficient// &
-            ', the sink temperature acts whole at once')
+            ', the sink temperature acts fully at once')
       end if
    end subroutine note_film
 

@@ -110,7 +110,7 @@ contains
          call take_field(data, i + 1, names(i:i), report, coordinates(i), valid)
          if (has_field(data, i + 1) .or. is_undefined(data, i + 1) .or. number == 0) cycle
          call report%warning(field_place(data, i + 1), 'node '//to_text(number)// &
-            ' has no '//names(i:i)//': 0 is taken')
+            ' has no '//names(i:i)//': 0 is used')
       end do
       call take_field(data, 4, 'z', report, z, valid)
       if (has_field(data, 4)) then

@@ -103,7 +103,7 @@ contains
       call take_parameter(card, 'ORDER', report, context%order)
       if (any(context%order == [1, 2])) return
       if (report%error_count() == errors) call report%error(context%order_place, &
-         'ORDER= is 1, elements without midside nodes, or 2, elements as they are')
+         'ORDER= must be 1 (elements without midside nodes) or 2 (elements as they are)')
       context%order = 2
    end subroutine build_order
 
@@ -154,7 +154,7 @@ contains
 
       if (has_parameter(card, 'SURFACE') .or. has_parameter(card, 'ELSET')) return
       if (has_parameter(card, 'DISTANCE')) call report%error(parameter_place(card, 'DISTANCE'), &
-         'DISTANCE= is from a surface or a set: give SURFACE= or ELSET= with it')
+         'DISTANCE= is measured from a surface or a set: give SURFACE= or ELSET= too')
       if (context%levels_place%image > 0) then
          call report%error(card%place, 'a second *REFINE of the whole model')
          return

@@ -41,7 +41,7 @@ contains
          return
       end if
       call context%note('ORDER=1: elements without midside nodes; '//to_text(nodes)// &
-         ' nodes drop out')
+         ' nodes are dropped')
       call check_corners(context%order_place, model%mesh, report)
    end subroutine apply_order
 

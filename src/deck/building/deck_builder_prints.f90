@@ -117,7 +117,7 @@ contains
          if (.not. all(context%dropped(members))) return
       end associate
       call report%warning(parameter_place(card, 'NSET'), 'ORDER=1 leaves no node of '// &
-         mesh%node_sets(set)%name//', for none is a corner: nothing is printed')
+         mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
       set = 0
    end subroutine check_dropped
 

@@ -278,8 +278,9 @@ contains
                ' or a first increment of '//to_text(step%period/step%max_increments))
          else
             call context%note('*'//card%name//': INC='//to_text(step%max_increments)// &
-               ' does not hold for increments of '//to_text(step%first_increment)// &
-               '; they grow, each to '//to_text(increment_growth)//' of the one before, up to '// &
+               ' is not enough for increments of '//to_text(step%first_increment)// &
+               '; they grow, each to '//to_text(increment_growth)//' times the one before, '// &
+               'up to '// &
                to_text(step%largest_increment))
          end if
       else if (has_largest .and. .not. step%direct) then

@@ -102,7 +102,7 @@ contains
          check%relative = .false.
       case ('', 'REL')
          if (valid .and. .not. abs(check%value) > 0.0_dp) call report%warning( &
-            field_place(data, 4), 'relative to 0 only 0 itself passes; ABS gives a tolerance')
+            field_place(data, 4), 'relative to 0 only 0 itself passes; give ABS')
       case default
          call report%error(field_place(data, 6), ''''//field_text(data, 6)// &
             ''' is neither REL nor ABS')
@@ -151,7 +151,7 @@ contains
       type(verify_type), intent(inout) :: check
       if (kind == of_history) then
          if (has_field(data, 2)) call report%error(field_place(data, 2), &
-            check%quantity//' has no place: leave this field empty')
+            check%quantity//' has no location: leave this field empty')
          return
       end if
       if ((kind == of_interface .or. kind == of_contact_points) .and. size(model%contacts) == &
@@ -199,7 +199,7 @@ contains
             'no element has a node of '//field_text(data, 2)//': it has no values', 'element')
       else if (all(context%dropped(nodes))) then
          call report%error(field_place(data, 2), 'ORDER=1 leaves no node of '// &
-            field_text(data, 2)//', for none is a corner: it has no values')
+            field_text(data, 2)//', because none is a corner: it has no values')
       end if
    end subroutine check_nodes
 
@@ -223,7 +223,8 @@ contains
          call read_real(trim(adjustl(name(at + 1:))), s, valid)
          if (valid) valid = s >= 0.0_dp
          if (kind /= of_contact_points .or. .not. valid) then
-            call report%error(field_place(data, 2), ''''//name//''' is no place of this quantity')
+            call report%error(field_place(data, 2), &
+               ''''//name//''' is not a location of this quantity')
             return
          end if
          name = trim(name(:at - 1))

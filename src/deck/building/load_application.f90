@@ -127,7 +127,7 @@ contains
                stays(i) = .false.
             else if (loads(i)%amplitude /= loads(i + 1)%amplitude) then
                call report%error(context%loads%items(requests(i + 1))%place, &
-                  'loads of one step on one place have two amplitudes')
+                  'two loads of one step at one location have different amplitudes')
                exit
             end if
          end do

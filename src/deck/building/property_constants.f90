@@ -48,7 +48,8 @@ contains
       do i = 1, size(constants)
          place = card%first_data + (i - 1)/per_card
          if (place > card%last_data) then
-            call report%error(cards%data(card%last_data)%end, 'missing card behind this one: '// &
+            call report%error(cards%data(card%last_data)%end, 'a card is missing after '// &
+               'this one: '// &
                trim(names(i)))
             valid = .false.
             return

@@ -137,7 +137,7 @@ contains
             if (n > 0) call report%warning(request%place, 'node '// &
                to_text(model%mesh%node_number(node))//': another card of this step gives '// &
                'degree of freedom '//to_text(request%component)// &
-               ' another value; the last one holds'//others(n, '; nodes with two: '))
+               ' another value; the last one takes precedence'//others(n, '; nodes with two: '))
          end associate
       end do
    end subroutine check_conflicts

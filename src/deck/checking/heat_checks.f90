@@ -57,8 +57,8 @@ contains
          if (strain <= small_strain) cycle
          call report%warning(cards%keywords(k)%place, 'the expansion of '// &
             model%materials(m)%name//' over the range of the temperatures, '//to_text(range)// &
-            ', is a strain of '//to_text(strain)//', where strains are taken as small; see '// &
-            'the unit of *EXPANSION, 1/temperature')
+            ', is a strain of '//to_text(strain)//', but the theory assumes small strains; '// &
+            'check the unit of *EXPANSION, 1/temperature')
          return
       end do
    end subroutine check_expansion

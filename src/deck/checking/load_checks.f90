@@ -187,8 +187,8 @@ contains
       others = ''
       if (size(elements) > 1) others = '; elements with such a side: '//to_text(size(elements))
       call report%warning(request%place, 'side '//to_text(request%component)//' of element '// &
-         to_text(model%mesh%element_number(elements(1)))//' lies inside a body; the load acts '// &
-         'there all the same'//others)
+         to_text(model%mesh%element_number(elements(1)))//' lies inside a body; the load still '// &
+         'acts there'//others)
    end subroutine check_faces
 
 end module load_checks

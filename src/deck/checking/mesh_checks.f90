@@ -40,7 +40,7 @@ contains
             call report%error(context%element_place(e), 'element '// &
                to_text(mesh%element_number(e))//' and element '// &
                to_text(mesh%element_number(first))// &
-               ': axisymmetric and plane elements do not go together')
+               ': a model cannot have both axisymmetric and plane elements')
             return
          end if
       end do
@@ -130,10 +130,10 @@ contains
          else if (sides(1)%middle == sides(2)%middle) then
             cycle
          else if (min(sides(1)%middle, sides(2)%middle) == 0) then
-            fault = 'has another number of nodes than its neighbour '// &
+            fault = 'has a different number of nodes from its neighbour '// &
                to_text(mesh%element_number(sides(1)%element))//' on the side'
          else
-            fault = 'has another midside node than its neighbour '// &
+            fault = 'has a different midside node from its neighbour '// &
                to_text(mesh%element_number(sides(1)%element))//' on the side'
          end if
          call report%error(context%element_place(sides(i)%element), 'element '// &

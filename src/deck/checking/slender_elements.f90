@@ -41,7 +41,8 @@ contains
       end do
       if (worst > 0) call report%warning(context%element_place(worst), &
          said(mesh, worst, least)//', and pressures there are accurate to '// &
-         to_text(epsilon(1.0_dp)/least**2)//' only (such elements: '//to_text(count_doubtful)//')')
+         to_text(epsilon(1.0_dp)/least**2)//' only (number of such elements: '// &
+         to_text(count_doubtful)//')')
    end subroutine check_slenderness
 
    !> The shortest side that has a length, over the longest; of corners alone.
@@ -69,7 +70,7 @@ contains
       character(:), allocatable :: words
 
       words = 'nodes of element '//to_text(mesh%element_number(e))// &
-         ' all but coincide: its shortest side is '//to_text(ratio)//' of its longest'
+         ' nearly coincide: its shortest side is '//to_text(ratio)//' of its longest'
    end function said
 
 end module slender_elements

@@ -150,7 +150,7 @@ contains
             call report%warning(cards%keywords(card_of(cards, a))%place, 'amplitude '// &
                curve%name//' ends at '//to_text(last)//', long before the end of step '// &
                to_text(s)//' at '//to_text(start + period)//': its last factor, '// &
-               to_text(curve%values(size(curve%values)))//', is held')
+               to_text(curve%values(size(curve%values)))//', is kept')
          end associate
       end do
    end subroutine check_ends

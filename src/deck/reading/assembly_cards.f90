@@ -167,8 +167,8 @@ contains
       type(deck_report_type), intent(inout) :: report
       logical, intent(out) :: enters
       character(*), parameter :: where_to(2) = [character(60) :: &
-         ' is not within another *PART or *ASSEMBLY', &
-         ' stands between *ASSEMBLY and *END ASSEMBLY']
+         ' must not be within another *PART or *ASSEMBLY', &
+         ' must be between *ASSEMBLY and *END ASSEMBLY']
 
       enters = open%level == from
       if (enters) then

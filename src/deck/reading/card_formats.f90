@@ -60,7 +60,7 @@ contains
       if (len(fault) > 0) return
       call skip_blanks(upper, position)
       if (position <= len(string)) then
-         fault = 'text behind the format'
+         fault = 'text after the format'
       else if (.not. any(edits(format%again:n)%kind == edit_whole .or. &
          edits(format%again:n)%kind == edit_real)) then
          fault = 'the format reads nothing'

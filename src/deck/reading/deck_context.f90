@@ -130,7 +130,7 @@ contains
       logical, intent(inout) :: valid                   !! becomes false
 
       call report%error(place, 'element set '//name// &
-         ' holds lines only, which are no elements; a *SURFACE or an *NSET can be made of it')
+         ' contains only lines, which are not elements; make a *SURFACE or an *NSET of it')
       valid = .false.
    end subroutine report_lines
 

@@ -88,7 +88,7 @@ contains
          call move_alloc(open_lines%include, included)
          place = open_lines%include_place
          if (is_open(beside(found, included), open_files)) then
-            call report%error(place, included//' is open already: it would include itself')
+            call report%error(place, included//' is already open: it would include itself')
             cycle
          else if (size(open_files) == deepest_include) then
             call report%error(place, 'more than '//to_text(deepest_include)// &

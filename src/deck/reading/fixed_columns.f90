@@ -120,8 +120,8 @@ contains
          if (line(bad:bad) == achar(9)) then
             fault = 'tabs are not allowed on a card of fixed columns'
          else if (owner(bad) == undescribed) then
-            fault = 'text where the format reads nothing: are the columns shifted? '// &
-               'X in the format passes columns over'
+            fault = 'text where the format reads nothing: are the columns shifted? X in the '// &
+               'format skips columns'
          else if (crosses(line, owner, bad)) then
             fault = 'a number runs across the edge between columns '//to_text(bad - 1)//' and '// &
                to_text(bad)//': are the columns shifted?'

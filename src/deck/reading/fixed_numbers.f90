@@ -31,7 +31,7 @@ contains
          fault = 'there is a blank inside this field: are the columns shifted?'
       else if (last < len(text) .and. (whole .or. .not. ends_safely(number))) then
          bad = last + 1
-         fault = 'the number must end in the last column of its field, for blanks behind it '// &
+         fault = 'the number must end in the last column of its field, because blanks after it '// &
             'may count as zeros: are the columns shifted?'
       end if
    end subroutine number_fault

@@ -112,7 +112,7 @@ module foreign_keywords
       foreign_keyword_type('NO ANALYSIS', refused_always, 'STATIC', &
       'thercon check DECK reads a deck without solving it'), &
       foreign_keyword_type('TIME POINTS', refused_always, '', &
-      'FREQUENCY= says which increments are printed; *VERIFY meets a time')]
+      'FREQUENCY= selects the increments that are printed; increments end at the times of *VERIFY')]
 
    type(foreign_keyword_type), parameter :: all_foreign(64) = &
       [ignored, properties, connections, procedures]

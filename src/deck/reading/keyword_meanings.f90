@@ -22,7 +22,7 @@ module keyword_meanings
    character(*), parameter :: radiation = &
       'heat leaves faces by *FILM and *DFLUX; radiation is not modelled'
    character(*), parameter :: heat = &
-      'heat is loaded by *CFLUX at nodes, *DFLUX on faces and in bodies'
+      'heat is applied by *CFLUX at nodes, *DFLUX on faces and in bodies'
    character(*), parameter :: films = 'convection is *FILM, on element faces or on a *SURFACE'
    character(*), parameter :: forces = &
       'forces are *CLOAD at nodes, *DLOAD on elements, *DSLOAD on surfaces'
@@ -39,7 +39,7 @@ module keyword_meanings
       'the conductance of a contact is *GAP LAW or *GAP CONDUCTANCE'
    character(*), parameter :: contact = &
       'contact is *SURFACE, *SURFACE INTERACTION and *CONTACT PAIR'
-   character(*), parameter :: output = 'fields are written always; tables are *NODE PRINT, '// &
+   character(*), parameter :: output = 'fields are always written; tables are *NODE PRINT, '// &
       '*EL PRINT, *CONTACT PRINT'
    character(*), parameter :: iteration = 'tolerance and iterations are parameters of *FIXED POINT'
    character(*), parameter :: increments = &

@@ -192,8 +192,8 @@ module keywords
       refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; take *TIE'), &
       refusal_type('TIE', 'CYCLIC SYMMETRY', 'only faces that lie opposite each other are tied'), &
       refusal_type('TIE', 'MULTISTAGE', 'only faces that lie opposite each other are tied'), &
-      refusal_type('TIE', 'TIED NSET', 'POSITION TOLERANCE= says which nodes are tied'), &
-      refusal_type('', 'TIME POINTS', 'FREQUENCY= says which increments are printed'), &
+      refusal_type('TIE', 'TIED NSET', 'POSITION TOLERANCE= selects the nodes that are tied'), &
+      refusal_type('', 'TIME POINTS', 'FREQUENCY= selects the increments that are printed'), &
       refusal_type('', 'TIME DELAY', 'shift the times of the *AMPLITUDE'), &
       refusal_type('', 'FILM TIME DELAY', 'shift the times of the *AMPLITUDE'), &
       refusal_type('', 'USER', 'no routine of the user is called; give the values'), &
