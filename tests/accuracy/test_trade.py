@@ -137,7 +137,7 @@ def case_table(name, path):
         table.rows.append([row["row"], marks, described(row), row["varied"],
                            f"{float(row['cpu_seconds']):.2g}", f"{float(row['peak_megabytes']):.0f}",
                            *errors, ", ".join(wishes)])
-    table.rows.append(["", "", "reference uncertain by", "", "", "",
+    table.rows.append(["", "", "uncertainty of the reference", "", "", "",
                        *(percent(rows[-1][f"error_{key}"]) for key in shown), ""])
     return table, remarks(rows)
 
