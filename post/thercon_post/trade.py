@@ -183,9 +183,9 @@ def legend(trade):
         if any(is_beyond(trade, name) for name in trade.panels()):
             handles.append(handle("off the scale", marker="^", color=style.GREY))
     handles.append(handle("deck as written", marker="o", ms=8, mfc="none", color=style.VERMILION))
-    handles.append(handle("none beats it", ls="-", color=style.BLUE))
+    handles.append(handle("Pareto-optimal", ls="-", color=style.BLUE))
     if trade.uncertainty:
-        handles.append(handle("reference uncertain by", ls="--", color=style.GREY))
+        handles.append(handle("uncertainty of the reference", ls="--", color=style.GREY))
     if trade.failed:
         handles.append(handle(f"failed, not drawn: {len(trade.failed)}", alpha=0))
     return handles

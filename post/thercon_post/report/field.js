@@ -210,7 +210,7 @@ function tellRange(quantity, step, row, given) {
    if (quantity.of === 'elements') for (const g of groups) g.member.forEach((m, k) => names.set(m, g.element[k]));
    const where = k => quantity.of === 'points' ? `node ${nodes[k - step * size]}` : `element ${names.get(k - step * size)}`;
    const said = low < 0 ? 'no values at this increment' :
-      `least ${show(values[low])} at ${where(low)}, largest ${show(values[high])} at ${where(high)}`;
+      `smallest ${show(values[low])} at ${where(low)}, largest ${show(values[high])} at ${where(high)}`;
    const late = row === given ? '' : ` (the page keeps no fields of increment ${given + 1})`;
    $('range').innerHTML = `${escaped(withUnit(quantity.label, quantity.unit))}, ${escaped(loadWords(row))}${late}: <b>${said}</b>.`;
 }

@@ -82,7 +82,7 @@ def bounds(result):
                 continue
             rows.append(bound_row(result, contact.name, key, float(values[-1]), is_edge))
             rows[-1][0], rows[-1][3] = words, unit_of(result, kind)
-        head = ["quantity", "value", "error below", "unit", "by the mesh", "by increments",
+        head = ["quantity", "value", "error bound", "unit", "by the mesh", "by increments",
                 "by iteration"]
         caption = f"Interface {escape(contact.name)} at the last increment"
         found.append(table(caption, head, rows, (1, 2, 4, 5, 6)))
