@@ -27,13 +27,12 @@ module anderson
 contains
 
    !> The next omega*.
-   subroutine next(self, pass, omega)
+   subroutine next(self, pass)
       class(anderson_type), intent(inout) :: self   !! memory of the method
-      type(pass_type), intent(in) :: pass           !! the last pass
-      real(dp), intent(out) :: omega(:)             !! (m) next omega*
-      real(dp) :: x(size(omega)), f(size(omega)), step(size(omega))
+      type(pass_type), intent(inout) :: pass        !! the last pass in, next omega* out
+      real(dp), dimension(size(pass%omega)) :: x, f, step
       real(dp), allocatable :: weights(:)
-      logical :: carries(size(omega))
+      logical :: carries(size(pass%omega))
 
       carries = pass%omega > 0.0_dp .and. pass%image > 0.0_dp
       x = 0.0_dp
@@ -49,8 +48,7 @@ contains
          step = step - matmul(self%x_changes, weights) - self%g*matmul(self%f_changes, weights)
       end if
       if (maxval(abs(step)) > longest_step) step = step*longest_step/maxval(abs(step))
-      omega = pass%image
-      where (carries) omega = pass%omega*exp(step)
+      pass%omega = merge(pass%omega*exp(step), pass%image, carries)
    end subroutine next
 
    !> Adds the changes since the last pass, and drops the oldest ones.

@@ -8,7 +8,14 @@ module contact_heat
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
    private
-   public :: temperature_jumps, jump_derivatives
+   public :: jump_derivatives_type, temperature_jumps, jump_derivatives
+
+   !> How the unknowns of the tail follow the conductance of each contact point that carries heat.
+   type :: jump_derivatives_type
+      integer, allocatable :: active(:)        !! (n) the contact points
+      real(dp), allocatable :: of_tail(:, :)   !! (tail, n)
+      real(dp), allocatable :: heat(:)         !! (n) load of the tail per omega
+   end type jump_derivatives_type
 
 contains
 
@@ -99,18 +106,15 @@ contains
       end associate
    end subroutine solve_with_cuts
 
-   !> How the unknowns of the tail follow the conductance of each contact point that carries heat,
-   !> with the factors of the last pass:
+   !> The derivatives by the conductance, with the factors of the last pass:
    !>
    !>    dtheta = -(S_T + diag(d))^-1 diag(weight (a3 theta + b3 theta_i)/a1) domega.
-   subroutine jump_derivatives(bodies, data, workspace, jump, active, of_tail, heat)
+   subroutine jump_derivatives(bodies, data, workspace, jump, by_omega)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
-      integer, allocatable, intent(out) :: active(:)          !! (n) the contact points
-      real(dp), allocatable, intent(out) :: of_tail(:, :)     !! (tail, n)
-      real(dp), allocatable, intent(out) :: heat(:)           !! (n) load of the tail per omega
+      type(jump_derivatives_type), intent(out) :: by_omega
       real(dp) :: of_point(size(jump))
       integer :: k
 
@@ -119,13 +123,14 @@ contains
          of_point = -weight/a(1)*(a(3)*jump + data%scheme%b(3)*data%jump_old)
          if (allocated(workspace%cut%point)) of_point(workspace%cut%point) = &
             of_point(workspace%cut%point)*workspace%cut%own
-         active = pack([(k, k=1, size(jump))], tail_index > 0 .and. abs(of_point) > 0.0_dp)
-         heat = of_point(active)
-         allocate (of_tail(bodies%thermal%map%tail, size(active)), source=0.0_dp)
-         do k = 1, size(active)
-            of_tail(tail_index(active(k)), k) = heat(k)
+         by_omega%active = pack([(k, k=1, size(jump))], tail_index > 0 .and. &
+            abs(of_point) > 0.0_dp)
+         by_omega%heat = of_point(by_omega%active)
+         allocate (by_omega%of_tail(bodies%thermal%map%tail, size(by_omega%active)), source=0.0_dp)
+         do k = 1, size(by_omega%active)
+            by_omega%of_tail(tail_index(by_omega%active(k)), k) = by_omega%heat(k)
          end do
-         call workspace%tail%solve_columns(of_tail)
+         call workspace%tail%solve_columns(by_omega%of_tail)
       end associate
    end subroutine jump_derivatives
 

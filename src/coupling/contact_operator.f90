@@ -7,7 +7,8 @@ module contact_operator
    use contact_states, only: contact_state_type, contact_open, contact_slip
    use errors, only: error_type, status_no_convergence
    use finite_values, only: check_finite
-   use gap_temperatures, only: face_temperatures, settle_conductance
+   use fixed_point, only: pass_type
+   use gap_temperatures, only: settle_conductance, take_temperatures
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use contact_tractions, only: pressures
@@ -21,7 +22,7 @@ contains
 
    !> U: conductance in, workspace%pass%omega, conductance of the resulting contact state out,
    !> workspace%pass%image. Where laws vary with the temperature, their value is that of the
-   !> temperatures of the pass; with the coordinates of the contact points given,
+   !> temperatures of the pass; then, with the coordinates of the contact points given,
    !> workspace%pass%coordinate, omega is what these and the temperatures make it.
    !> Errors: as solve_increment; jumps or conductances overflow.
    subroutine contact_operator_pass(bodies, data, workspace, jump, state, error)
@@ -31,31 +32,23 @@ contains
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(inout) :: state           !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
-      real(dp), allocatable :: coordinate(:), omega(:)
+      logical :: settles
 
-      if (allocated(workspace%pass%coordinate)) then
-         ! The workspace changes in the call: its own values go there as copies.
-         coordinate = workspace%pass%coordinate
-         omega = workspace%pass%omega
-         call settle_conductance(bodies, data, coordinate, workspace, omega, jump, error)
-         workspace%pass%omega = omega
-         if (allocated(error)) return
+      settles = allocated(workspace%pass%coordinate) .and. bodies%points%vary_with_temperature()
+      if (settles) then
+         call settle_conductance(bodies, data, workspace, jump, error)
       else
          call temperature_jumps(bodies, data, workspace%pass%omega, workspace, jump)
+         call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       end if
-      call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       if (allocated(error)) return
       call solve_increment(bodies%contact, data%previous, &
          condensed_load(bodies, data, workspace%on_tail), workspace%contact, workspace%held, &
          state, error)
       if (allocated(error)) return
-      if (bodies%points%vary_with_temperature()) then
-         workspace%pass%law = bodies%points%laws_at(face_temperatures(bodies, data, jump))
-         if (allocated(workspace%graph)) workspace%graph%law = workspace%pass%law
-         workspace%pass%image = law_conductance(bodies, workspace%pass%law, state)
-      else
-         workspace%pass%image = law_conductance(bodies, bodies%points%law, state)
-      end if
+      if (bodies%points%vary_with_temperature() .and. .not. settles) call take_temperatures( &
+         bodies, data, jump, workspace)
+      workspace%pass%image = law_conductance(bodies, workspace%pass%graph%law, state)
       call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
    end subroutine contact_operator_pass
 
@@ -132,20 +125,19 @@ contains
 
    !> What a few units in the last place of the displacements change in omega, relative, and at
    !> least the unit in its own last place: no residual can be smaller.
-   pure function residual_floor(bodies, data, law, state, omega) result(floor_value)
+   pure function residual_floor(bodies, data, pass, state) result(floor_value)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
-      type(conductance_law_type), intent(in) :: law(:)          !! (m) at the temperatures
-      type(contact_state_type), intent(in) :: state
-      real(dp), intent(in) :: omega(:)                          !! (m) its conductance
+      type(pass_type), intent(in) :: pass
+      type(contact_state_type), intent(in) :: state             !! that the pass found
       real(dp) :: floor_value                                   !! relative change of omega
       real(dp) :: change, pressure
       integer :: k
       integer, parameter :: few = 4
 
       floor_value = epsilon(1.0_dp)
-      do k = 1, size(omega)
-         if (omega(k) <= 0.0_dp .or. bodies%points%weight(k) <= 0.0_dp) cycle
+      do k = 1, size(pass%image)
+         if (pass%image(k) <= 0.0_dp .or. bodies%points%weight(k) <= 0.0_dp) cycle
          associate (weight => bodies%points%weight(k))
             change = few*epsilon(1.0_dp)*max(data%displacement_scale, abs(state%gap(k)), &
                abs(bodies%points%initial_gap(k) - state%gap(k)))
@@ -154,8 +146,8 @@ contains
             end if
             pressure = state%force(k)/weight
          end associate
-         floor_value = max(floor_value, change/omega(k)*abs(conductance_derivative( &
-            law(k), state%contact_state(k) /= contact_open, state%gap(k), pressure)))
+         floor_value = max(floor_value, change/pass%image(k)*abs(conductance_derivative( &
+            pass%graph(k)%law, state%contact_state(k) /= contact_open, state%gap(k), pressure)))
       end do
    end function residual_floor
 

@@ -2,12 +2,13 @@
 !> what is said of the solution.
 module coupled_increment
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use contact_heat, only: jump_derivatives, jump_derivatives_type
    use controls, only: method_picard, start_both, start_closed, start_given, start_open, &
       start_previous
    use coupling_gains, only: coupling_gain_type, find_gain
    use errors, only: error_type
    use fixed_point, only: predicted_conductance
-   use gap_temperatures, only: derivative_by_temperature, face_temperatures
+   use gap_temperatures, only: derivative_by_temperature
    use increment_data, only: increment_data_type, increment_workspace_type
    use increment_iteration, only: iterate
    use kinds, only: dp
@@ -43,7 +44,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       data%scales = contact_scales(bodies, data)
-      workspace%graph = make_graph(bodies, data%scales%length)
+      workspace%pass%graph = make_graph(bodies, data%scales%length)
       data%cuts_hats = any(bodies%points%cuts_hats) .and. .not. has_memory(data%scheme)
       next%omega_before = previous%omega
       if (step%start%kind == start_both) then
@@ -164,23 +165,25 @@ contains
       logical, intent(in) :: is_plain                            !! whether the iteration is (4.1)
       type(increment_workspace_type), intent(inout) :: workspace
       real(dp), allocatable :: derivative(:, :), body(:), by_temperature(:, :)
+      type(jump_derivatives_type) :: by_omega
       type(coupling_gain_type) :: gain
       logical :: found
 
       workspace%record%coupling_gain = 0.0_dp
       workspace%record%coupling_gain_max = 0.0_dp
-      associate (graph => workspace%graph, opening => workspace%pass%opening)
+      associate (graph => workspace%pass%graph, opening => workspace%pass%opening)
          if (.not. (any(abs(graph%derivative(graph%coordinate_of_opening(opening))) > 0.0_dp) .or. &
             any(next%resting) .or. bodies%points%vary_with_temperature())) return
       end associate
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
-      call opening_derivative(bodies, data, workspace, next%jump, next%contact, derivative, body)
+      call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
+      call opening_derivative(bodies, workspace, by_omega, next%contact, derivative, body)
       if (.not. allocated(derivative)) return
       if (bodies%points%vary_with_temperature()) by_temperature = &
-         derivative_by_temperature(bodies, data, workspace, workspace%graph%coordinate_of_opening( &
-         workspace%pass%opening), face_temperatures(bodies, data, next%jump))
-      call find_gain(workspace%graph, workspace%pass%opening, derivative, next%resting, gain, &
+         derivative_by_temperature(bodies, workspace, &
+         workspace%pass%graph%coordinate_of_opening(workspace%pass%opening), by_omega)
+      call find_gain(workspace%pass%graph, workspace%pass%opening, derivative, next%resting, gain, &
          found, by_temperature)
       if (.not. found) return
       workspace%record%coupling_gain = gain%largest

@@ -2,29 +2,32 @@
 !> two, (4.1) and (4.2). The loop and its tolerances are the caller's; an accelerator only chooses
 !> the next omega*.
 module fixed_point
-   use conductance_laws, only: conductance_law_type
+   use conductance_graph, only: conductance_graph_type
    use kinds, only: dp
    implicit none
    private
    public :: accelerator_type, pass_type, picard_type, zaitsev_type
    public :: point_residual, predicted_conductance
 
-   !> One pass of U.
+   !> One pass of U; then where the next one starts.
    type :: pass_type
       integer :: iteration = 0                !! pass, from 1
+      logical :: found = .true.               !! whether its contact zones were found
       real(dp), allocatable :: omega(:)       !! (m) omega*
       real(dp), allocatable :: image(:)       !! (m) U(omega*)
       real(dp), allocatable :: opening(:)     !! (m) openings that it found [length]
-      !> (m) laws at the temperatures that it found, and coordinates that with these temperatures
-      !> give omega* [length]; only where laws vary with the temperature, and the second only where
-      !> the accelerator goes by them
-      type(conductance_law_type), allocatable :: law(:)
+      !> (m) graphs of the conductance, their laws at the temperatures that it found
+      type(conductance_graph_type), allocatable :: graph(:)
+      !> (m) coordinates on the graphs that give omega* [length]; only where the accelerator goes by
+      !> them
       real(dp), allocatable :: coordinate(:)
       !> (m, m) derivative of the openings by omega*, where the accelerator asked and there is one
       real(dp), allocatable :: derivative(:, :)
       !> (m) conductance that the bodies put in series with each contact point; set with the
       !> derivative
       real(dp), allocatable :: body(:)
+   contains
+      procedure :: coordinates
    end type pass_type
 
    !> What turns omega* and its image U(omega*) into the next omega*.
@@ -32,17 +35,18 @@ module fixed_point
       real(dp), allocatable :: g(:)   !! (m) part of the way that each contact point goes
       integer :: kept = 0 !! contact points whose g was kept in the last pass, eq. (4.2) giving none
       logical :: follows_path = .false.   !! on a continuous path of conductances (homotopy)
+      logical :: retreats = .false. !! whether next goes on from a pass whose zones were not found
    contains
       procedure(next_interface), deferred :: next
+      procedure :: asks_derivative
    end type accelerator_type
 
    abstract interface
       !> The next omega*.
-      subroutine next_interface(self, pass, omega)
-         import :: accelerator_type, pass_type, dp
+      subroutine next_interface(self, pass)
+         import :: accelerator_type, pass_type
          class(accelerator_type), intent(inout) :: self  !! memory of the iteration
-         type(pass_type), intent(in) :: pass             !! the last pass
-         real(dp), intent(out) :: omega(:)               !! (m) next omega*
+         type(pass_type), intent(inout) :: pass          !! the last pass in, next omega* out
       end subroutine next_interface
    end interface
 
@@ -63,28 +67,47 @@ module fixed_point
 
 contains
 
-   !> omega* becomes its image.
-   subroutine next_picard(self, pass, omega)
-      class(picard_type), intent(inout) :: self
-      type(pass_type), intent(in) :: pass
-      real(dp), intent(out) :: omega(:)
+   !> Coordinates of omega* on the graphs: those that the accelerator chose, or by the conductances.
+   pure function coordinates(self) result(coordinate)
+      class(pass_type), intent(in) :: self
+      real(dp) :: coordinate(size(self%omega))       !! (m) z [length]
 
-      omega = pass%image
+      if (allocated(self%coordinate)) then
+         coordinate = self%coordinate
+      else
+         coordinate = self%graph%coordinate_of_omega(self%omega, self%opening)
+      end if
+   end function coordinates
+
+   !> Whether next wants the derivative of this pass: where it follows a path.
+   pure function asks_derivative(self, pass) result(asks)
+      class(accelerator_type), intent(in) :: self
+      type(pass_type), intent(in) :: pass      !! the last pass
+      logical :: asks                          !! pass%derivative is to be set
+
+      asks = self%follows_path .and. pass%found
+   end function asks_derivative
+
+   !> omega* becomes its image.
+   subroutine next_picard(self, pass)
+      class(picard_type), intent(inout) :: self
+      type(pass_type), intent(inout) :: pass
+
+      pass%omega = pass%image
       self%kept = 0
    end subroutine next_picard
 
    !> g_i = 1/(1 - tan a_i) clipped to (0, 1]. Where tan a_i >= 1 or is 0/0 the paper is silent: the
    !> contact point's last g stays.
-   subroutine next_zaitsev(self, pass, omega)
+   subroutine next_zaitsev(self, pass)
       class(zaitsev_type), intent(inout) :: self
-      type(pass_type), intent(in) :: pass
-      real(dp), intent(out) :: omega(:)
+      type(pass_type), intent(inout) :: pass
       real(dp) :: star_change, tangent
       integer :: k
 
       self%kept = 0
       if (pass%iteration > max(self%constant_iterations, 1)) then
-         do k = 1, size(omega)
+         do k = 1, size(pass%omega)
             star_change = pass%omega(k) - self%last_omega(k)
             tangent = 1.0_dp
             if (abs(star_change) > 2*epsilon(1.0_dp)*abs(pass%omega(k))) then
@@ -99,7 +122,7 @@ contains
       end if
       self%last_omega = pass%omega
       self%last_image = pass%image
-      omega = pass%omega*(1.0_dp - self%g) + pass%image*self%g
+      pass%omega = pass%omega*(1.0_dp - self%g) + pass%image*self%g
    end subroutine next_zaitsev
 
    !> |U(omega) - omega|/omega of a contact point; 1 where only one of both carries no heat.

@@ -9,18 +9,18 @@
 module gap_temperatures
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance
-   use contact_heat, only: jump_derivatives, temperature_jumps
+   use contact_heat, only: jump_derivatives, jump_derivatives_type, temperature_jumps
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
-   use temperature_laws, only: face_temperatures_type, temperature_derivatives
+   use temperature_laws, only: temperature_derivatives
    use text, only: to_text
    implicit none
    private
-   public :: face_temperatures, settle_conductance, derivative_by_temperature, at_own_temperatures
+   public :: take_temperatures, settle_conductance, derivative_by_temperature, at_own_temperatures
 
    integer, parameter :: most_steps = 100            !! solutions of (3.4)
    real(dp), parameter :: longest_step = 2.0_dp      !! of any log omega
@@ -30,59 +30,60 @@ module gap_temperatures
 
 contains
 
-   !> Temperatures of the faces with given jumps.
-   pure function face_temperatures(bodies, data, jump) result(faces)
+   !> Temperatures of the faces with given jumps, and the laws at these.
+   pure subroutine take_temperatures(bodies, data, jump, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
-      real(dp), intent(in) :: jump(:)                        !! (m) T_xi - T_eta [temperature]
-      type(face_temperatures_type) :: faces(size(jump))      !! (m)
+      real(dp), intent(in) :: jump(:)                            !! (m) T_xi - T_eta [temperature]
+      type(increment_workspace_type), intent(inout) :: workspace !! receives faces and laws
       integer :: k
 
-      faces%mean = data%welded_mean
-      faces%jump = jump
-      do k = 1, size(jump)
-         if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
-            bodies%jump_mean(:, bodies%jump_index(k))*jump(k)
-      end do
-   end function face_temperatures
+      if (.not. allocated(workspace%faces)) allocate (workspace%faces(size(jump)))
+      associate (faces => workspace%faces)
+         faces%mean = data%welded_mean
+         faces%jump = jump
+         do k = 1, size(jump)
+            if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
+               bodies%jump_mean(:, bodies%jump_index(k))*jump(k)
+         end do
+         workspace%pass%graph%law = bodies%points%laws_at(faces)
+      end associate
+   end subroutine take_temperatures
 
-   !> Conductances and jumps with given coordinates: the solution of (3.4) whose conductances follow
-   !> the temperatures. The factors are left of these conductances.
+   !> Conductances and jumps with the coordinates of a pass: the solution of (3.4) whose
+   !> conductances follow the temperatures. The factors are left of these conductances.
    !> Errors: no convergence, jumps that overflow.
-   subroutine settle_conductance(bodies, data, coordinate, workspace, omega, jump, error)
+   subroutine settle_conductance(bodies, data, workspace, jump, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
-      real(dp), intent(in) :: coordinate(:)                      !! (m) z [length]
-      type(increment_workspace_type), intent(inout) :: workspace !! heat and graphs in, factors out
-      real(dp), intent(inout) :: omega(:)                        !! (m) guess in, solution out
+      !> heat, coordinates and a guess of omega in; omega, temperatures, laws and factors out
+      type(increment_workspace_type), intent(inout) :: workspace
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(error_type), allocatable, intent(out) :: error
-      real(dp), dimension(size(omega)) :: base, step, wanted
-      type(face_temperatures_type) :: faces(size(omega))
+      real(dp), dimension(size(jump)) :: base, step, wanted
       real(dp) :: last, part, residual
       integer :: i
 
       part = 1.0_dp
       last = huge(last)
       do i = 1, most_steps
-         call temperature_jumps(bodies, data, omega, workspace, jump)
+         call temperature_jumps(bodies, data, workspace%pass%omega, workspace, jump)
          call check_finite(jump, 'temperature jumps', status_no_convergence, error)
          if (allocated(error)) return
-         faces = face_temperatures(bodies, data, jump)
-         workspace%graph%law = bodies%points%laws_at(faces)
-         wanted = workspace%graph%omega(coordinate)
-         residual = maxval([0.0_dp, abs(log_ratio(wanted, omega))])
+         call take_temperatures(bodies, data, jump, workspace)
+         wanted = workspace%pass%graph%omega(workspace%pass%coordinate)
+         residual = maxval([0.0_dp, abs(log_ratio(wanted, workspace%pass%omega))])
          if (residual <= rounding .or. (residual <= converged .and. residual >= 0.5_dp*last)) return
          if (residual < last .or. part < shortest) then
-            step = newton_step(bodies, data, workspace, coordinate, faces, wanted, omega)
-            base = omega
+            step = newton_step(bodies, data, workspace, jump, wanted)
+            base = workspace%pass%omega
             last = residual
             part = 1.0_dp
          else
             part = 0.5_dp*part
          end if
-         omega = wanted
-         where (base > 0.0_dp .and. wanted > 0.0_dp) omega = base*exp(part*step)
+         workspace%pass%omega = merge(base*exp(part*step), wanted, base > 0.0_dp .and. &
+            wanted > 0.0_dp)
       end do
       call set_error(error, status_no_convergence, 'conductances and temperatures of the faces '// &
          'do not converge together; last residual '//to_text(residual))
@@ -101,53 +102,54 @@ contains
    end function log_ratio
 
    !> Newton's step of log omega; towards the values wanted where there is none.
-   function newton_step(bodies, data, workspace, coordinate, faces, wanted, omega) result(step)
+   function newton_step(bodies, data, workspace, jump, wanted) result(step)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace
-      real(dp), intent(in) :: coordinate(:), wanted(:), omega(:)
-      type(face_temperatures_type), intent(in) :: faces(:)
-      real(dp) :: step(size(omega))
-      real(dp) :: matrix(size(omega), size(omega)), rest(size(omega), 1)
+      real(dp), intent(in) :: jump(:), wanted(:)
+      real(dp) :: step(size(wanted))
+      real(dp) :: matrix(size(wanted), size(wanted)), rest(size(wanted), 1)
+      type(jump_derivatives_type) :: by_omega
       type(lu_type) :: lu
       logical :: singular
       integer :: k
 
-      rest(:, 1) = log_ratio(wanted, omega)
-      matrix = -derivative_by_temperature(bodies, data, workspace, coordinate, faces)
-      do k = 1, size(omega)
-         matrix(:, k) = matrix(:, k)*omega(k)/max(wanted, tiny(1.0_dp))
-      end do
-      do k = 1, size(omega)
-         if (wanted(k) <= 0.0_dp .or. omega(k) <= 0.0_dp) matrix(k, :) = 0.0_dp
-         matrix(k, k) = matrix(k, k) + 1.0_dp
-      end do
+      call jump_derivatives(bodies, data, workspace, jump, by_omega)
+      associate (omega => workspace%pass%omega)
+         rest(:, 1) = log_ratio(wanted, omega)
+         matrix = -derivative_by_temperature(bodies, workspace, workspace%pass%coordinate, by_omega)
+         do k = 1, size(omega)
+            matrix(:, k) = matrix(:, k)*omega(k)/max(wanted, tiny(1.0_dp))
+         end do
+         do k = 1, size(omega)
+            if (wanted(k) <= 0.0_dp .or. omega(k) <= 0.0_dp) matrix(k, :) = 0.0_dp
+            matrix(k, k) = matrix(k, k) + 1.0_dp
+         end do
+      end associate
       call lu%factor(matrix, singular)
       if (.not. singular) call lu%solve(rest)
       step = min(max(rest(:, 1), -longest_step), longest_step)
    end function newton_step
 
    !> dW/domega of the solution that the factors belong to.
-   function derivative_by_temperature(bodies, data, workspace, coordinate, faces) result(derivative)
+   function derivative_by_temperature(bodies, workspace, coordinate, by_omega) result(derivative)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(in) :: workspace  !! factors and graphs
+      type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
-      type(face_temperatures_type), intent(in) :: faces(:)     !! (m)
-      real(dp) :: derivative(size(faces), size(faces))         !! (m, m)
-      real(dp), allocatable :: heat(:), of_tail(:, :), of_mean(:, :)
+      type(jump_derivatives_type), intent(in) :: by_omega
+      real(dp) :: derivative(size(coordinate), size(coordinate))   !! (m, m)
+      real(dp), allocatable :: of_mean(:, :)
       real(dp) :: by_faces(2)
-      integer, allocatable :: active(:)
       integer :: k
 
       derivative = 0.0_dp
-      call jump_derivatives(bodies, data, workspace, faces%jump, active, of_tail, heat)
-      of_mean = matmul(bodies%jump_mean, of_tail)
-      do k = 1, size(faces)
-         by_faces = graph_derivatives(workspace%graph(k), coordinate(k))
-         derivative(k, active) = by_faces(1)*of_mean(k, :)
-         if (bodies%jump_index(k) > 0) derivative(k, active) = derivative(k, active) + &
-            by_faces(2)*of_tail(bodies%jump_index(k), :)
+      of_mean = matmul(bodies%jump_mean, by_omega%of_tail)
+      do k = 1, size(coordinate)
+         by_faces = graph_derivatives(workspace%pass%graph(k), coordinate(k))
+         derivative(k, by_omega%active) = by_faces(1)*of_mean(k, :)
+         if (bodies%jump_index(k) > 0) derivative(k, by_omega%active) = &
+            derivative(k, by_omega%active) + &
+            by_faces(2)*by_omega%of_tail(bodies%jump_index(k), :)
       end do
    contains
       !> Derivatives of omega by mean and jump at a coordinate.
@@ -156,16 +158,16 @@ contains
          real(dp), intent(in) :: at
          real(dp) :: by(2), weights(2), ends(2)
 
-         associate (law => bodies%points%law(k))
+         associate (law => bodies%points%law(k), faces => workspace%faces(k))
             if (graph%rests(at)) then
                ends = [conductance(graph%law, .true., 0.0_dp, 0.0_dp), &
                   conductance(graph%law, .false., 0.0_dp, 0.0_dp)]
                weights = [-at, graph%width + at]/graph%width* &
                   ((graph%omega(at) + graph%body)/(ends + graph%body))**2
-               by = weights(1)*temperature_derivatives(law, faces(k), .true., 0.0_dp, 0.0_dp) + &
-                  weights(2)*temperature_derivatives(law, faces(k), .false., 0.0_dp, 0.0_dp)
+               by = weights(1)*temperature_derivatives(law, faces, .true., 0.0_dp, 0.0_dp) + &
+                  weights(2)*temperature_derivatives(law, faces, .false., 0.0_dp, 0.0_dp)
             else
-               by = temperature_derivatives(law, faces(k), at < 0.0_dp, max(at, 0.0_dp), &
+               by = temperature_derivatives(law, faces, at < 0.0_dp, max(at, 0.0_dp), &
                   -graph%modulus*(at + graph%width))
             end if
          end associate

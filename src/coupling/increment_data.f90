@@ -1,6 +1,5 @@
 !> What an increment is solved from, and what its trial solutions work with.
 module increment_data
-   use conductance_graph, only: conductance_graph_type
    use contact_states, only: contact_state_type
    use contact_workspace, only: contact_workspace_type
    use controls, only: thermal_scheme_type
@@ -10,6 +9,7 @@ module increment_data
    use kinds, only: dp
    use solution_report, only: solution_report_type
    use tail_factors, only: tail_factors_type
+   use temperature_laws, only: face_temperatures_type
    implicit none
    private
    public :: contact_scales_type, increment_data_type, increment_workspace_type
@@ -45,11 +45,10 @@ module increment_data
       real(dp), allocatable :: on_tail(:)            !! (thermal tail) their last solution
       type(cut_hats_type) :: cut                     !! hats that an edge cuts, for the last omega*
       type(contact_workspace_type) :: contact        !! laws and factors of the contact
-      !> (m) graphs of the conductance, at the temperatures of the last pass; where heat and
-      !> mechanics are coupled
-      type(conductance_graph_type), allocatable :: graph(:)
       type(contact_workspace_type) :: held           !! with all closed contact points holding
       type(pass_type) :: pass                        !! the last pass
+      !> (m) temperatures of the faces that it found, where laws vary with them
+      type(face_temperatures_type), allocatable :: faces(:)
       type(solution_report_type) :: record           !! what is told of the way to the solution
    end type increment_workspace_type
 

@@ -1,17 +1,17 @@
 !> The fixed-point iteration omega = U(omega) of an increment, section 4, from one start or another.
 module increment_iteration
    use accelerators, only: make_accelerator
+   use contact_heat, only: jump_derivatives, jump_derivatives_type
    use contact_operator, only: contact_operator_pass, residual_floor
    use contact_states, only: closing_law_type, contact_state_type, contact_open
    use controls, only: fixed_point_type, method_newton
    use cut_hats, only: cut_hats_type, find_cut_hats
    use errors, only: error_type, set_error, status_no_convergence
-   use fixed_point, only: accelerator_type, pass_type, point_residual
-   use gap_temperatures, only: at_own_temperatures, derivative_by_temperature, face_temperatures
+   use fixed_point, only: accelerator_type, point_residual
+   use gap_temperatures, only: at_own_temperatures, derivative_by_temperature
    use increment_data, only: increment_data_type, increment_workspace_type
    use interruption, only: check_overdue
    use kinds, only: dp
-   use newton, only: newton_type
    use opening_derivatives, only: opening_derivative, openings
    use reduced_bodies, only: reduced_bodies_type
    use resting_points, only: find_residual, settle
@@ -91,7 +91,7 @@ contains
       if (.not. allocated(error)) return
       if (controls%method == method_newton) then
          call name_runaway(bodies, data, next%jump, workspace%record, error)
-      else if (any(workspace%graph%width > 0.0_dp)) then
+      else if (any(workspace%pass%graph%width > 0.0_dp)) then
          deallocate (error)
          call append(workspace%record%notes, &
             'the method of the deck finds no state for a contact point whose conductance '// &
@@ -179,16 +179,16 @@ contains
       class(accelerator_type), allocatable :: accelerator
       type(iteration_record_type) :: passes((1 + path_share)*controls%max_iterations)
       type(contact_state_type) :: good
-      integer :: turns(size(workspace%graph)), away, before, i
-      real(dp) :: edge_opening(size(workspace%graph)), wanted
+      integer :: turns(size(next%omega)), away, before, i
+      real(dp) :: edge_opening(size(next%omega)), wanted
 
       before = size(workspace%record%iterations)
       turns = 0
       away = 0
       wanted = controls%tolerance
-      edge_opening = openings(bodies, workspace%graph, data%previous)
+      edge_opening = openings(bodies, workspace%pass%graph, data%previous)
       call begin_passes(next%omega, workspace)
-      call make_accelerator(controls, workspace%graph, accelerator)
+      call make_accelerator(controls, size(next%omega), accelerator)
       associate (pass => workspace%pass, record => workspace%record)
          do i = 1, size(passes)
             if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
@@ -198,17 +198,19 @@ contains
             if (allocated(error)) exit
             good = next%contact
             pass%iteration = i
-            call take_coordinates(bodies, accelerator, pass)
-            if (data%cuts_hats) call find_cut_hats(bodies, workspace%graph%modulus, &
+            if (data%cuts_hats) call find_cut_hats(bodies, pass%graph%modulus, &
                edge_opening, pass%omega, workspace%cut)
             call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
             passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
                residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
                g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
                pairs_changed=count(next%contact%contact_state /= good%contact_state))
-            if (allocated(error)) then
-               call retreat(accelerator, good, pass%omega, next%contact, error)
-               if (allocated(error)) exit
+            pass%found = .not. allocated(error)
+            if (.not. pass%found) then
+               if (accelerator%retreats) call accelerator%next(pass)
+               if (.not. accelerator%retreats) exit
+               deallocate (error)
+               next%contact = good
                cycle
             end if
             call measure_pass(bodies, data, workspace, next, passes(i)%residual)
@@ -220,7 +222,7 @@ contains
             where ((next%contact%contact_state == contact_open) .neqv. &
                (good%contact_state == contact_open)) turns = turns + 1
             if (controls%method /= method_newton .and. any(turns > most_turns .and. &
-               workspace%graph%width > 0.0_dp)) exit
+               pass%graph%width > 0.0_dp)) exit
             call take_step(bodies, data, next, accelerator, workspace)
          end do
          call close_passes(record, passes, i, wanted, error)
@@ -249,29 +251,13 @@ contains
       type(solution_state_type), intent(inout) :: next
       real(dp), intent(out) :: residual
 
-      workspace%pass%opening = openings(bodies, workspace%graph, next%contact)
-      call find_residual(workspace%graph, data%scales, bodies%points%weight, workspace%pass, &
-         residual, next%resting)
+      workspace%pass%opening = openings(bodies, workspace%pass%graph, next%contact)
+      call find_residual(data%scales, bodies%points%weight, workspace%pass, residual, next%resting)
       if (data%cuts_hats) residual = max(residual, cut_residual(bodies, workspace))
       next%omega = workspace%pass%omega
       next%cut = workspace%cut
-      workspace%record%residual_floor = residual_floor(bodies, data, workspace%graph%law, &
-         next%contact, workspace%pass%image)
+      workspace%record%residual_floor = residual_floor(bodies, data, workspace%pass, next%contact)
    end subroutine measure_pass
-
-   !> The coordinates that Newton's method tries, where conductances follow them and the
-   !> temperatures.
-   subroutine take_coordinates(bodies, accelerator, pass)
-      type(reduced_bodies_type), intent(in) :: bodies
-      class(accelerator_type), intent(in) :: accelerator
-      type(pass_type), intent(inout) :: pass
-
-      if (.not. bodies%points%vary_with_temperature()) return
-      select type (accelerator)
-      type is (newton_type)
-         if (allocated(accelerator%trial)) pass%coordinate = accelerator%trial
-      end select
-   end subroutine take_coordinates
 
    !> How far the conductances of cut hats are from those for the openings that a pass found.
    pure real(dp) function cut_residual(bodies, workspace) result(residual)
@@ -280,33 +266,13 @@ contains
       type(cut_hats_type) :: found
 
       associate (pass => workspace%pass, cut => workspace%cut)
-         call find_cut_hats(bodies, workspace%graph%modulus, pass%opening, pass%image, found)
+         call find_cut_hats(bodies, pass%graph%modulus, pass%opening, pass%image, found)
          residual = 1.0_dp
          if (size(found%point) /= size(cut%point)) return
          if (any(found%point /= cut%point)) return
          residual = maxval([0.0_dp, point_residual(cut%conductance, found%conductance)])
       end associate
    end function cut_residual
-
-   !> The next omega* from the contact state before a pass whose contact zones were not found, which
-   !> only Newton's method has.
-   subroutine retreat(accelerator, before, omega, contact, error)
-      class(accelerator_type), intent(inout) :: accelerator
-      type(contact_state_type), intent(in) :: before
-      real(dp), intent(inout) :: omega(:)
-      type(contact_state_type), intent(inout) :: contact
-      type(error_type), allocatable, intent(inout) :: error   !! goes where there is one
-      logical :: possible
-
-      possible = .false.
-      select type (accelerator)
-      type is (newton_type)
-         call accelerator%retreat(omega, possible)
-      end select
-      if (.not. possible) return
-      deallocate (error)
-      contact = before
-   end subroutine retreat
 
    !> Keeps the passes, and says so where the last one is not good enough.
    subroutine close_passes(record, passes, last, wanted, error)
@@ -335,21 +301,21 @@ contains
       class(accelerator_type), intent(inout) :: accelerator
       type(increment_workspace_type), intent(inout) :: workspace
 
+      type(jump_derivatives_type) :: by_omega
+
       associate (pass => workspace%pass)
          if (allocated(pass%derivative)) deallocate (pass%derivative)
-         select type (accelerator)
-         type is (newton_type)
-            if (bodies%points%vary_with_temperature()) accelerator%graph%law = pass%law
-            if (accelerator%asks_derivative(pass)) call opening_derivative(bodies, data, &
-               workspace, next%jump, next%contact, pass%derivative, pass%body)
+         if (accelerator%asks_derivative(pass)) then
+            call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
+            call opening_derivative(bodies, workspace, by_omega, next%contact, pass%derivative, &
+               pass%body)
             if (bodies%points%vary_with_temperature() .and. allocated(pass%derivative)) then
-               call at_own_temperatures(derivative_by_temperature(bodies, data, workspace, &
-                  accelerator%coordinates_of(pass), face_temperatures(bodies, data, next%jump)), &
-                  pass%derivative)
+               call at_own_temperatures(derivative_by_temperature(bodies, workspace, &
+                  pass%coordinates(), by_omega), pass%derivative)
             end if
-         end select
-         call accelerator%next(pass, next%omega)
-         pass%omega = next%omega
+         end if
+         call accelerator%next(pass)
+         next%omega = pass%omega
       end associate
    end subroutine take_step
 

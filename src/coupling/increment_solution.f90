@@ -3,7 +3,6 @@
 module increment_solution
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
-   use conductance_graph, only: conductance_graph_type
    use contact_heat, only: temperature_jumps
    use contact_operator, only: contact_operator_pass, kept_contact, law_conductance, &
       law_pressure, unstrained_forces
@@ -15,8 +14,9 @@ module increment_solution
    use field_problem, only: field_load_type
    use films, only: film_history
    use finite_values, only: check_finite
+   use fixed_point, only: pass_type
    use friction_memory, only: remember_slip
-   use gap_temperatures, only: face_temperatures, settle_conductance
+   use gap_temperatures, only: settle_conductance
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -72,7 +72,7 @@ contains
          call warn_of_imbalance(bodies, loads, data, previous, next, workspace%record)
          if (size(next%omega) > 0 .and. .not. bodies%is_coupled) then
             call conduct(bodies, begun, data, workspace, next, error)
-            if (.not. allocated(error)) call check_absolute_zero(bodies, data, next, error)
+            if (.not. allocated(error)) call check_absolute_zero(bodies, workspace, error)
             if (allocated(error)) return
          end if
       end if
@@ -94,8 +94,8 @@ contains
       end if
       if (.not. allocated(error)) call settle_idle_points(bodies, workspace%contact%idle, next)
       next%has_mechanics = .true.
-      if (bodies%is_coupled .and. .not. allocated(error)) call check_absolute_zero(bodies, data, &
-         next, error)
+      if (bodies%is_coupled .and. .not. allocated(error)) call check_absolute_zero(bodies, &
+         workspace, error)
    end subroutine solve_points
 
    !> The state at the start of an increment under the laws of its step: contact points that the
@@ -198,7 +198,6 @@ contains
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: coordinate(size(next%omega))
 
       next%omega = law_conductance(bodies, bodies%points%laws_of(previous%temperature, &
          previous%jump), kept_contact(previous%contact, previous%has_mechanics))
@@ -206,9 +205,10 @@ contains
       data%omega_old = next%omega
       workspace%cut = previous%cut
       if (bodies%points%vary_with_temperature()) then
-         call begin_graphs(bodies, previous, next%omega, workspace%graph, coordinate)
-         call settle_conductance(bodies, data, coordinate, workspace, next%omega, next%jump, error)
+         call begin_graphs(bodies, previous, next%omega, workspace%pass)
+         call settle_conductance(bodies, data, workspace, next%jump, error)
          if (allocated(error)) return
+         next%omega = workspace%pass%omega
       else
          call temperature_jumps(bodies, data, next%omega, workspace, next%jump)
       end if
@@ -217,36 +217,35 @@ contains
       next%temperature = bodies%thermal%recover(workspace%heat, workspace%on_tail)
    end subroutine conduct
 
-   !> Graphs of the conductance, and coordinates of a contact state that stays.
-   subroutine begin_graphs(bodies, previous, omega, graph, coordinate)
+   !> A pass with given conductances, the graphs of the laws, and the coordinates of a contact state
+   !> that stays.
+   subroutine begin_graphs(bodies, previous, omega, pass)
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: previous
-      real(dp), intent(in) :: omega(:)                      !! (m) of points at rest
-      type(conductance_graph_type), allocatable, intent(out) :: graph(:)
-      real(dp), intent(out) :: coordinate(:)                !! (m) [length]
+      real(dp), intent(in) :: omega(:)
+      type(pass_type), intent(out) :: pass
       type(contact_state_type) :: contact
 
       contact = kept_contact(previous%contact, previous%has_mechanics)
-      allocate (graph(size(coordinate)))
-      graph%law = bodies%points%laws_of(previous%temperature, previous%jump)
-      where (law_jumps(bodies%points%law)) graph%width = 1.0_dp
-      coordinate = -graph%width - law_pressure(bodies, contact)
-      where (contact%contact_state == contact_open) coordinate = max(contact%gap, 0.0_dp)
-      where (previous%resting) coordinate = graph%coordinate_of_omega(omega, 0.0_dp)
+      pass%omega = omega
+      allocate (pass%graph(size(omega)))
+      pass%graph%law = bodies%points%laws_of(previous%temperature, previous%jump)
+      where (law_jumps(bodies%points%law)) pass%graph%width = 1.0_dp
+      pass%coordinate = -pass%graph%width - law_pressure(bodies, contact)
+      where (contact%contact_state == contact_open) pass%coordinate = max(contact%gap, 0.0_dp)
+      where (previous%resting) pass%coordinate = pass%graph%coordinate_of_omega(omega, 0.0_dp)
    end subroutine begin_graphs
 
    !> Radiation has no meaning below absolute zero.
    !> Error: a face that radiates is below it.
-   subroutine check_absolute_zero(bodies, data, next, error)
+   subroutine check_absolute_zero(bodies, workspace, error)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(increment_data_type), intent(in) :: data
-      type(solution_state_type), intent(in) :: next
+      type(increment_workspace_type), intent(in) :: workspace
       type(error_type), allocatable, intent(out) :: error
       integer :: k
 
-      if (.not. bodies%points%vary_with_temperature()) return
-      k = findloc(is_below_zero(bodies%points%law, face_temperatures(bodies, data, next%jump)), &
-         .true., dim=1)
+      if (.not. allocated(workspace%faces)) return
+      k = findloc(is_below_zero(bodies%points%law, workspace%faces), .true., dim=1)
       if (k == 0) return
       associate (i => count(bodies%points%interface_start <= k))
          call set_error(error, status_no_convergence, 'contact pair '// &
@@ -267,6 +266,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       workspace%pass%omega = previous%omega
+      allocate (workspace%pass%graph(size(previous%omega)))
+      workspace%pass%graph%law = bodies%points%law
       call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
       if (allocated(error)) return
       next%omega = workspace%pass%image

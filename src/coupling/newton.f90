@@ -39,7 +39,6 @@ module newton
 
    !> Memory of the method.
    type, extends(accelerator_type) :: newton_type
-      type(conductance_graph_type), allocatable :: graph(:)    !! (m) laws of the contact points
       integer :: most_steps = huge(1)   !! passes after which steps have failed
       type(homotopy_type), allocatable, private :: path   !! once they have failed
       real(dp), allocatable, private :: coordinate(:)  !! (m) z of the last pass taken [length]
@@ -49,15 +48,12 @@ module newton
       !> (m) conductance of the bodies about a contact point
       real(dp), allocatable, private :: body(:)
       real(dp), allocatable, private :: step(:)        !! (m) dz of the present step [length]
-      real(dp), allocatable :: trial(:)                !! (m) z of the pass that runs [length]
       real(dp), allocatable, private :: filter(:, :)   !! (2, passes taken) their measures
       real(dp), private :: part = 1.0_dp               !! part of the present step that is tried
       real(dp), private :: time_step = huge(1.0_dp)    !! tau; huge for Newton's method
    contains
       procedure :: asks_derivative
-      procedure :: coordinates_of
       procedure :: next
-      procedure :: retreat
    end type newton_type
 
 contains
@@ -71,21 +67,8 @@ contains
       asks = allocated(self%path)
       if (asks) return
       asks = takes(self, pass)
-      if (asks) asks = any(abs(self%graph%derivative(coordinates_of(self, pass))) > 0.0_dp)
+      if (asks) asks = any(abs(pass%graph%derivative(pass%coordinates())) > 0.0_dp)
    end function asks_derivative
-
-   !> Coordinates of a pass; those of the first one by its conductances.
-   pure function coordinates_of(self, pass) result(coordinate)
-      class(newton_type), intent(in) :: self         !! memory of the method
-      type(pass_type), intent(in) :: pass            !! the last pass
-      real(dp) :: coordinate(size(pass%omega))       !! (m) z [length]
-
-      if (allocated(self%trial)) then
-         coordinate = self%trial
-      else
-         coordinate = self%graph%coordinate_of_omega(pass%omega, pass%opening)
-      end if
-   end function coordinates_of
 
    !> Whether a pass is taken.
    pure function takes(self, pass)
@@ -112,71 +95,72 @@ contains
       type(pass_type), intent(in) :: pass
       real(dp) :: measures(2)
 
-      measures(1) = norm2(residual(self, pass))
+      measures(1) = norm2(residual(pass))
       measures(2) = norm2(self%body*(pass%image - pass%omega)/((pass%image + self%body)* &
          (pass%omega + self%body)))
    end function measures
 
    !> r of a pass.
-   pure function residual(self, pass) result(r)
-      class(newton_type), intent(in) :: self
+   pure function residual(pass) result(r)
       type(pass_type), intent(in) :: pass
       real(dp) :: r(size(pass%omega))   !! (m) [length]
 
-      r = self%graph%opening(coordinates_of(self, pass)) - pass%opening
+      r = pass%graph%opening(pass%coordinates()) - pass%opening
    end function residual
 
-   !> A new step from a pass that is taken, else a shorter one.
-   subroutine next(self, pass, omega)
+   !> A new step from a pass that is taken; else, and where the contact zones were not found, a
+   !> shorter one.
+   subroutine next(self, pass)
       class(newton_type), intent(inout) :: self   !! memory of the method
-      type(pass_type), intent(in) :: pass         !! the last pass
-      real(dp), intent(out) :: omega(:)           !! (m) next omega*
+      type(pass_type), intent(inout) :: pass      !! the last pass in, next omega* out
       real(dp) :: fall
 
-      if (allocated(self%path)) then
-         call self%path%next(self%graph, self%body, pass%opening, pass%derivative, self%trial)
-         omega = self%graph%omega(self%trial)
+      if (.not. pass%found) then
+         call retreat(self, pass)
+         return
+      else if (allocated(self%path)) then
+         call self%path%next(pass%graph, self%body, pass%opening, pass%derivative, pass%coordinate)
+         pass%omega = pass%graph%omega(pass%coordinate)
          return
       end if
       if (takes(self, pass)) then
          if (self%time_step < endless) then
-            fall = norm2(self%rest)/max(norm2(residual(self, pass)), tiny(1.0_dp))
+            fall = norm2(self%rest)/max(norm2(residual(pass)), tiny(1.0_dp))
             self%time_step = self%time_step*min(max(growth*fall, growth_limits(1)), &
                growth_limits(2))
          end if
          if (self%time_step >= endless) self%time_step = huge(1.0_dp)
          call take(self, pass)
-         call make_step(self)
+         call make_step(self, pass%graph)
       else
          self%part = self%part*shortening(self, pass)
          if (self%part < shortest) then
             self%time_step = first_time_step
-            call make_step(self)
+            call make_step(self, pass%graph)
          end if
       end if
-      call try(self, omega)
+      call try(self, pass)
       if (pass%iteration < self%most_steps) return
       allocate (self%path)
       self%follows_path = .true.
-      call self%path%begin(self%graph, pass%opening, self%trial)
-      omega = self%graph%omega(self%trial)
+      call self%path%begin(pass%graph, pass%opening, pass%coordinate)
+      pass%omega = pass%graph%omega(pass%coordinate)
    end subroutine next
 
-   !> A shorter step where the contact zones were not found.
-   subroutine retreat(self, omega, possible)
-      class(newton_type), intent(inout) :: self   !! memory of the method
-      real(dp), intent(inout) :: omega(:)         !! (m) omega* that failed in, next omega* out
-      logical, intent(out) :: possible            !! whether there is one
+   !> A shorter step, if there is one.
+   subroutine retreat(self, pass)
+      class(newton_type), intent(inout) :: self
+      type(pass_type), intent(inout) :: pass
 
       if (allocated(self%path)) then
-         call self%path%retreat(self%graph, self%body, self%trial, possible)
-         if (possible) omega = self%graph%omega(self%trial)
+         call self%path%retreat(pass%graph, self%body, pass%coordinate, self%retreats)
+         if (self%retreats) pass%omega = pass%graph%omega(pass%coordinate)
          return
       end if
-      possible = allocated(self%step) .and. self%part > last_retreat
-      if (.not. possible) return
+      self%retreats = allocated(self%step) .and. self%part > last_retreat
+      if (.not. self%retreats) return
       self%part = retreating*self%part
-      call try(self, omega)
+      call try(self, pass)
    end subroutine retreat
 
    !> Takes a pass.
@@ -186,8 +170,8 @@ contains
       real(dp) :: derivative(size(pass%omega))
       integer :: k
 
-      self%rest = residual(self, pass)
-      self%coordinate = coordinates_of(self, pass)
+      self%rest = residual(pass)
+      self%coordinate = pass%coordinates()
       if (.not. allocated(self%filter)) then
          allocate (self%body(size(derivative)), source=1.0_dp)
          allocate (self%filter(2, 0))
@@ -199,28 +183,30 @@ contains
       self%filter = reshape([self%filter, measures(self, pass)], [2, size(self%filter, 2) + 1])
       if (allocated(self%jacobian)) deallocate (self%jacobian)
       if (.not. allocated(pass%derivative)) return
-      derivative = self%graph%derivative(self%coordinate)
+      derivative = pass%graph%derivative(self%coordinate)
       self%own = [(pass%derivative(k, k), k=1, size(derivative))]
       allocate (self%jacobian, mold=pass%derivative)
       do k = 1, size(derivative)
          self%jacobian(:, k) = -pass%derivative(:, k)*derivative(k)
-         self%jacobian(k, k) = self%jacobian(k, k) + self%graph(k)%advance(self%coordinate(k))
+         self%jacobian(k, k) = self%jacobian(k, k) + pass%graph(k)%advance(self%coordinate(k))
       end do
    end subroutine take
 
    !> The next omega*. Without a derivative every contact point goes to the opening that was found.
-   subroutine try(self, omega)
+   subroutine try(self, pass)
       class(newton_type), intent(inout) :: self
-      real(dp), intent(out) :: omega(:)
+      type(pass_type), intent(inout) :: pass
 
-      if (allocated(self%jacobian)) then
-         self%trial = self%graph%moved(self%coordinate, self%part*self%step, self%body, self%own)
-      else
-         self%trial = self%graph%coordinate_of_opening(self%graph%opening(self%coordinate) + &
-            self%step)
-      end if
-      omega = self%graph%omega(self%trial)
-      self%g = spread(self%part, 1, size(omega))
+      associate (graph => pass%graph)
+         if (allocated(self%jacobian)) then
+            pass%coordinate = graph%moved(self%coordinate, self%part*self%step, self%body, self%own)
+         else
+            pass%coordinate = graph%coordinate_of_opening(graph%opening(self%coordinate) + &
+               self%step)
+         end if
+         pass%omega = graph%omega(pass%coordinate)
+      end associate
+      self%g = spread(self%part, 1, size(pass%omega))
    end subroutine try
 
    !> Part of the step that is tried next: where the parabola through |r|^2 is lowest.
@@ -230,14 +216,15 @@ contains
       real(dp) :: part
       real(dp) :: ratio
 
-      ratio = (norm2(self%rest)/norm2(residual(self, pass)))**2
+      ratio = (norm2(self%rest)/norm2(residual(pass)))**2
       part = self%part*ratio/(1.0_dp + (2.0_dp*self%part - 1.0_dp)*ratio)
       part = min(max(part, 0.1_dp), 0.5_dp)
    end function shortening
 
    !> dz from the pass that was taken last; the image where the derivative is not known.
-   subroutine make_step(self)
+   subroutine make_step(self, graph)
       class(newton_type), intent(inout) :: self
+      type(conductance_graph_type), intent(in) :: graph(:)
       real(dp) :: matrix(size(self%rest), size(self%rest)), step(size(self%rest), 1)
       real(dp) :: inertia(size(self%rest))
       type(lu_type) :: lu
@@ -247,7 +234,7 @@ contains
       self%part = 1.0_dp
       self%step = -self%rest
       if (.not. allocated(self%jacobian)) return
-      inertia = inertias(self)
+      inertia = inertias(self, graph)
       if (self%time_step < endless) self%time_step = min(self%time_step, &
          stable_time_step(self, inertia))
       matrix = self%jacobian
@@ -255,14 +242,14 @@ contains
       do k = 1, size(step)
          if (self%time_step < endless) matrix(k, k) = matrix(k, k) + &
             inertia(k)/self%time_step
-         if (.not. self%graph(k)%rests(self%coordinate(k))) cycle
+         if (.not. graph(k)%rests(self%coordinate(k))) cycle
          ! No conductance at which the contact point may rest brings its opening to 0: it does not
          ! rest.
-         if (sum(abs(self%jacobian(k, :)))*self%graph(k)%width > abs(self%rest(k))) cycle
+         if (sum(abs(self%jacobian(k, :)))*graph(k)%width > abs(self%rest(k))) cycle
          matrix(k, :) = 0.0_dp
          matrix(k, k) = 1.0_dp
          self%own(k) = 0.0_dp
-         step(k, 1) = self%graph(k)%coordinate_of_opening(-self%rest(k)) - self%coordinate(k)
+         step(k, 1) = graph(k)%coordinate_of_opening(-self%rest(k)) - self%coordinate(k)
       end do
       call lu%factor(matrix, singular)
       if (singular) return
@@ -272,14 +259,15 @@ contains
 
    !> The diagonal of M: 1, and for a contact point at rest what makes the time in which it goes
    !> through its rest that of the others, however long the rest is.
-   pure function inertias(self) result(inertia)
+   pure function inertias(self, graph) result(inertia)
       type(newton_type), intent(in) :: self
+      type(conductance_graph_type), intent(in) :: graph(:)
       real(dp) :: inertia(size(self%rest))
       integer :: k
 
       inertia = 1.0_dp
       do k = 1, size(inertia)
-         if (self%graph(k)%rests(self%coordinate(k)) .and. abs(self%jacobian(k, k)) > 0.0_dp) then
+         if (graph(k)%rests(self%coordinate(k)) .and. abs(self%jacobian(k, k)) > 0.0_dp) then
             inertia(k) = abs(self%jacobian(k, k))
          end if
       end do

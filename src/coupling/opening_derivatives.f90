@@ -6,11 +6,11 @@
 !> and forces by the contact system with the conditions that hold.
 module opening_derivatives
    use conductance_graph, only: conductance_graph_type
-   use contact_heat, only: jump_derivatives
+   use contact_heat, only: jump_derivatives_type
    use contact_operator, only: law_pressure
    use contact_states, only: contact_state_type, contact_open
    use contact_tangent, only: contact_response
-   use increment_data, only: increment_data_type, increment_workspace_type
+   use increment_data, only: increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use temperature_laws, only: law_jumps
@@ -64,46 +64,45 @@ contains
       where (state%contact_state == contact_open) opening = max(state%gap, 0.0_dp)
    end function openings
 
-   !> Derivative of the openings by the conductances, for the state that the last pass found with
-   !> the given jumps; unallocated where it does not exist. Contact points of weight 0 carry no
-   !> heat: their rows stay 0.
-   subroutine opening_derivative(bodies, data, workspace, jump, state, derivative, body)
+   !> Derivative of the openings by the conductances, for the state that the last pass found;
+   !> unallocated where it does not exist. Contact points of weight 0 carry no heat: their rows stay
+   !> 0.
+   subroutine opening_derivative(bodies, workspace, by_omega, state, derivative, body)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
-      real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
+      type(jump_derivatives_type), intent(in) :: by_omega     !! of the last pass
       type(contact_state_type), intent(in) :: state
       real(dp), allocatable, intent(out) :: derivative(:, :)  !! (m, m)
       !> (m) conductance that the bodies put in series with each contact point, 1 where that means
       !> nothing
       real(dp), allocatable, intent(out) :: body(:)
-      real(dp), allocatable :: of_jump(:, :), gap(:, :), force(:, :), heat(:)
-      integer, allocatable :: active(:)
-      integer :: k, n
+      real(dp), allocatable :: gap(:, :), force(:, :)
+      integer :: k, m, n
       logical :: sound
 
-      allocate (derivative(size(jump), size(jump)), source=0.0_dp)
-      allocate (body(size(jump)), source=1.0_dp)
-      call jump_derivatives(bodies, data, workspace, jump, active, of_jump, heat)
-      n = size(active)
+      m = size(state%contact_state)
+      allocate (derivative(m, m), source=0.0_dp)
+      allocate (body(m), source=1.0_dp)
+      n = size(by_omega%active)
       if (n == 0) return
-      associate (weight => bodies%points%weight, tail_index => bodies%jump_index)
+      associate (weight => bodies%points%weight, tail_index => bodies%jump_index, &
+         active => by_omega%active)
          do k = 1, n
             associate (j => active(k))
-               body(j) = (heat(k)/of_jump(tail_index(j), k) - &
+               body(j) = (by_omega%heat(k)/by_omega%of_tail(tail_index(j), k) - &
                   workspace%tail%diagonal(tail_index(j)))/weight(j)
             end associate
          end do
          where (body <= 0.0_dp) body = 1.0_dp
-         allocate (gap(size(jump), n), force(size(jump), n))
+         allocate (gap(m, n), force(m, n))
          call contact_response(bodies%contact, workspace%contact, state, &
-            matmul(bodies%jump_load, of_jump), gap, force, sound)
-         do k = 1, size(jump)
+            matmul(bodies%jump_load, by_omega%of_tail), gap, force, sound)
+         do k = 1, m
             if (weight(k) <= 0.0_dp) cycle
             if (state%contact_state(k) == contact_open) then
                derivative(k, active) = gap(k, :)
             else
-               derivative(k, active) = -force(k, :)/(weight(k)*workspace%graph(k)%modulus)
+               derivative(k, active) = -force(k, :)/(weight(k)*workspace%pass%graph(k)%modulus)
             end if
          end do
       end associate

@@ -1,7 +1,6 @@
 !> Contact points that rest: gamma = p = 0 with a conductance between the values of a law that jumps
 !> there. Without them some increments have no solution, (1.8) asking for a law without a jump.
 module resting_points
-   use conductance_graph, only: conductance_graph_type
    use contact_states, only: contact_state_type, contact_open, contact_slip
    use fixed_point, only: point_residual, pass_type
    use increment_data, only: contact_scales_type, increment_data_type
@@ -45,25 +44,25 @@ contains
    !> Largest residual of a pass over the contact points that carry heat, which those of weight 0 do
    !> not, and the contact points that rest in it: a conductance between the two
    !> values of its law needs no more of a contact point than that neither gap nor pressure is left.
-   pure subroutine find_residual(graph, scales, weight, pass, residual, resting)
-      type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
+   pure subroutine find_residual(scales, weight, pass, residual, resting)
       type(contact_scales_type), intent(in) :: scales       !! largest values of the increment
       real(dp), intent(in) :: weight(:)                     !! (m) tributary areas [length^2]
       type(pass_type), intent(in) :: pass
       real(dp), intent(out) :: residual                     !! relative
       logical, intent(out) :: resting(:)                    !! (m) contact points that rest
-      real(dp) :: by_law(size(graph)), by_rest(size(graph)), pressure(size(graph))
+      real(dp), dimension(size(weight)) :: by_law, by_rest, pressure
       real(dp) :: largest
 
       by_law = 0.0_dp
       where (weight > 0.0_dp) by_law = point_residual(pass%omega, pass%image)
-      resting = graph%may_rest(pass%omega)
+      resting = pass%graph%may_rest(pass%omega)
       if (any(resting)) then
-         pressure = graph%modulus*max(-pass%opening, 0.0_dp)
-         largest = max(maxval(pressure), scales%force/max(maxval(weight), tiny(1.0_dp)))
-         by_rest = max(pass%opening, 0.0_dp)/max(least_gap*scales%length, &
-            largest/graph%modulus) + pressure/max(largest, least_pressure* &
-            graph%modulus*scales%length)
+         associate (modulus => pass%graph%modulus)
+            pressure = modulus*max(-pass%opening, 0.0_dp)
+            largest = max(maxval(pressure), scales%force/max(maxval(weight), tiny(1.0_dp)))
+            by_rest = max(pass%opening, 0.0_dp)/max(least_gap*scales%length, largest/modulus) + &
+               pressure/max(largest, least_pressure*modulus*scales%length)
+         end associate
          resting = resting .and. by_rest < by_law
          where (resting) by_law = by_rest
       end if
