@@ -10,6 +10,7 @@ module doubled_increments
    use increment_solution, only: recover_fields, solve_points
    use increments, only: accept_increment
    use kinds, only: dp
+   use known_loads, only: known_loads_type
    use loads, only: loads_type
    use model, only: model_type
    use records, only: increment_record_type
@@ -28,6 +29,7 @@ module doubled_increments
       logical :: is_led = .false.              !! whether the path of the run matters at all
       logical :: is_lost = .false.             !! whether one of its increments had no solution
       type(solution_state_type) :: state       !! its state
+      type(known_loads_type), allocatable :: known(:)   !! loads that it has solved
       real(dp) :: time = 0.0_dp                !! total time of it [time]
       integer :: waiting = 0                   !! increments of the run since then
       integer :: step = 0                      !! step of the last of these
@@ -97,8 +99,10 @@ contains
          call bodies%set_film(left_films(step%scheme, self%state%film, next%film), model, &
             error)
       end if
+      call move_alloc(self%known, workspace%known)
       if (.not. allocated(error)) call solve_points(bodies, loads, step, before, &
          workspace, next, error)
+      call move_alloc(workspace%known, self%known)
       self%is_lost = allocated(error)
       if (self%is_lost) return
       if (has_memory(step%scheme) .or. .not. solves_mechanics(step%analysis)) then

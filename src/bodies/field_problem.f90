@@ -4,6 +4,7 @@ module field_problem
    use errors, only: error_type, status_deck
    use finite_values, only: check_finite
    use kinds, only: dp
+   use known_loads, only: known_loads_type
    use linear_constraints, only: linear_constraints_type
    use linear_solver, only: linear_solver_type
    use mumps_solver, only: mumps_solver_type
@@ -12,6 +13,9 @@ module field_problem
    implicit none
    private
    public :: field_load_type, field_problem_type
+
+   !> Part of a load, in its largest entry, that is rounding.
+   real(dp), parameter :: rounding = 64*epsilon(1.0_dp)
 
    !> What acts on a field at the end of an increment.
    type :: field_load_type
@@ -27,11 +31,14 @@ module field_problem
       type(sparse_matrix_type) :: added
       type(linear_constraints_type) :: map                    !! u = T v + B g, and the unknowns v
       class(linear_solver_type), allocatable :: solver        !! factors
+      integer :: reduction = 0                                !! which factors, by number
    contains
       procedure :: reduce
+      procedure :: matrix_of_unknowns
       procedure :: load_of
       procedure :: condense_load
       procedure :: recover
+      procedure :: extended
       procedure :: unit_responses
       procedure :: condense_forces
       procedure :: release
@@ -48,6 +55,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call self%release()
+      self%reduction = self%reduction + 1
       if (solver_kind == solver_mumps) then
          allocate (mumps_solver_type :: self%solver)
       else
@@ -56,15 +64,22 @@ contains
       call check_finite(self%matrix%value, 'matrices of the bodies', status_deck, error)
       if (allocated(error)) return
       call self%map%stiffen_links(self%matrix)
-      if (allocated(self%added%value)) then
-         call self%solver%factor(self%map%transform(linear_combination(1.0_dp, self%matrix, &
-            1.0_dp, self%added)), self%map%tail, error)
-      else
-         call self%solver%factor(self%map%transform(self%matrix), self%map%tail, error)
-      end if
+      call self%solver%factor(self%matrix_of_unknowns(), self%map%tail, error)
       if (allocated(error)) return
       call check_finite([self%solver%schur], 'factors of the bodies', status_deck, error)
    end subroutine reduce
+
+   !> The matrix on the unknowns, its lower triangle.
+   pure function matrix_of_unknowns(self) result(lower)
+      class(field_problem_type), intent(in) :: self       !! the problem; its matrix and map are set
+      type(sparse_matrix_type) :: lower                   !! (equations, equations)
+
+      if (allocated(self%added%value)) then
+         lower = self%map%transform(linear_combination(1.0_dp, self%matrix, 1.0_dp, self%added))
+      else
+         lower = self%map%transform(self%matrix)
+      end if
+   end function matrix_of_unknowns
 
    !> The load of an increment.
    pure function load_of(self, forces, given) result(load)
@@ -86,14 +101,35 @@ contains
          self%map%restrict(self%added%multiply(supported))
    end function load_of
 
-   !> Condenses a load on the tail.
-   subroutine condense_load(self, load)
+   !> Condenses a load on the tail. What earlier loads say of it is taken from them: steps that ramp
+   !> their loads solve for a first one only.
+   subroutine condense_load(self, load, known, welded)
       class(field_problem_type), intent(in) :: self       !! the problem, reduced
       type(field_load_type), intent(inout) :: load        !! receives what is condensed
-      real(dp) :: condensed(self%map%tail, 1)
+      type(known_loads_type), intent(inout) :: known      !! earlier loads of the field
+      real(dp), intent(out), optional :: welded(:)        !! (dofs) values where the tail is zero
+      real(dp) :: rest(self%map%equations, 1), condensed(self%map%tail, 1)
+      real(dp), allocatable :: solution(:, :)
 
-      call self%solver%condense(load%rhs, condensed)
-      load%condensed = condensed(:, 1)
+      if (known%reduction /= self%reduction) then
+         known = known_loads_type()
+         known%reduction = self%reduction
+      end if
+      allocate (load%condensed(self%map%tail), source=0.0_dp)
+      allocate (solution(merge(self%map%equations, 0, present(welded)), 2), source=0.0_dp)
+      rest = load%rhs
+      call known%take_off(rest(:, 1), load%condensed, solution(:, 1))
+      if (maxval(abs(rest)) > rounding*maxval(abs(load%rhs))) then
+         if (present(welded)) then
+            call self%solver%condense(rest, condensed, solution(:, 2:2))
+            solution(:, 1) = solution(:, 1) + solution(:, 2)
+         else
+            call self%solver%condense(rest, condensed)
+         end if
+         load%condensed = load%condensed + condensed(:, 1)
+         call known%keep(rest(:, 1), condensed(:, 1), solution(:, 2))
+      end if
+      if (present(welded)) welded = self%map%expand(solution(:, 1), load%given)
    end subroutine condense_load
 
    !> Values of all degrees of freedom under a load.
@@ -108,28 +144,39 @@ contains
       values = self%map%expand(solution(:, 1), load%given)
    end function recover
 
-   !> Values of all degrees of freedom for unit values of some tail unknowns, without load and with
-   !> zero prescribed values.
-   subroutine unit_responses(self, first, values)
-      class(field_problem_type), intent(in) :: self
-      integer, intent(in) :: first                        !! first of the tail unknowns
-      real(dp), intent(out) :: values(:, :)               !! (dofs, number of tail unknowns)
-      real(dp), allocatable :: zero(:, :), unit(:, :), solution(:, :)
+   !> Values of all degrees of freedom that follow the tail, without load and with zero prescribed
+   !> values.
+   function extended(self, on_tail) result(values)
+      class(field_problem_type), intent(in) :: self       !! the problem, reduced
+      real(dp), intent(in) :: on_tail(:, :)               !! (tail, columns)
+      real(dp) :: values(self%matrix%row_count, size(on_tail, 2))   !! (dofs, columns)
       real(dp) :: none(self%matrix%row_count)
+      real(dp), allocatable :: solution(:, :)
       integer :: k
 
-      allocate (zero(self%map%equations, size(values, 2)), source=0.0_dp)
-      allocate (solution, mold=zero)
-      allocate (unit(self%map%tail, size(values, 2)), source=0.0_dp)
-      do k = 1, size(values, 2)
-         unit(first + k - 1, k) = 1.0_dp
-      end do
-      call self%solver%recover(zero, unit, solution)
+      allocate (solution(self%map%equations, size(on_tail, 2)))
+      call self%solver%extend(on_tail, solution)
       none = 0.0_dp
-      do k = 1, size(values, 2)
+      do k = 1, size(on_tail, 2)
          values(:, k) = self%map%expand(solution(:, k), none)
       end do
-   end subroutine unit_responses
+   end function extended
+
+   !> Values of all degrees of freedom for unit values of some tail unknowns, without load and with
+   !> zero prescribed values.
+   function unit_responses(self, first, last) result(values)
+      class(field_problem_type), intent(in) :: self
+      integer, intent(in) :: first, last                  !! tail unknowns
+      real(dp) :: values(self%matrix%row_count, last - first + 1) !! (dofs, of each of them)
+      real(dp) :: unit(self%map%tail, last - first + 1)
+      integer :: k
+
+      unit = 0.0_dp
+      do k = first, last
+         unit(k, k - first + 1) = 1.0_dp
+      end do
+      values = self%extended(unit)
+   end function unit_responses
 
    !> Nodal forces condensed on the tail.
    subroutine condense_forces(self, forces, condensed)

@@ -18,7 +18,7 @@
 module linear_constraints
    use kinds, only: dp
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
-   use sparse_products, only: congruent
+   use sparse_products, only: between_spaces, congruent
    use sum_lists, only: sum_list_type
    implicit none
    private
@@ -49,6 +49,8 @@ module linear_constraints
       procedure :: load
       procedure :: stiffen_links
       procedure :: transform
+      procedure :: between
+      procedure :: nodes_of_unknowns
       procedure :: tail_index
       procedure :: is_linked
       procedure :: is_given
@@ -168,12 +170,45 @@ contains
       type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, dofs) K, symmetric, both triangles
       type(sparse_matrix_type) :: lower               !! (equations, equations) by rows
 
-      associate (by => self%by_unknowns)
-         lower = congruent(matrix, sparse_matrix_type(by%count, self%equations, &
-            by%start(:by%count + 1), by%value, by%coefficient))
-      end associate
+      lower = congruent(matrix, terms(self))
       if (size(self%link_force) > 0) lower = linear_combination(1.0_dp, lower, 1.0_dp, links(self))
    end function transform
+
+   !> T, its columns in any order.
+   pure function terms(self)
+      class(linear_constraints_type), intent(in) :: self
+      type(sparse_matrix_type) :: terms               ! (dofs, equations)
+
+      associate (by => self%by_unknowns)
+         terms = sparse_matrix_type(by%count, self%equations, by%start(:by%count + 1), by%value, &
+            by%coefficient)
+      end associate
+   end function terms
+
+   !> Matrix between the unknowns of this field and those of another, T^T B T'.
+   pure function between(self, matrix, other) result(coupling)
+      class(linear_constraints_type), intent(in) :: self
+      type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, other dofs) B
+      type(linear_constraints_type), intent(in) :: other
+      type(sparse_matrix_type) :: coupling            !! (equations, other equations)
+
+      coupling = between_spaces(terms(self), matrix, terms(other))
+   end function between
+
+   !> The first node that each unknown moves, or whose temperature it changes; the first of all
+   !> where there is none, as for forces of links.
+   pure function nodes_of_unknowns(self) result(node)
+      class(linear_constraints_type), intent(in) :: self
+      integer :: node(self%equations)
+      integer :: dof
+
+      node = 1
+      associate (by => self%by_unknowns)
+         do dof = by%count, 1, -1
+            node(by%value(by%start(dof):by%start(dof + 1) - 1)) = (dof - 1)/self%components + 1
+         end do
+      end associate
+   end function nodes_of_unknowns
 
    !> The links in the lower triangle of the matrix on the unknowns.
    pure function links(self) result(lower)

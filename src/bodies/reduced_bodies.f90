@@ -7,9 +7,11 @@ module reduced_bodies
    use contact_reduction, only: contact_system_of
    use contact_system, only: contact_system_type
    use constraint_joints, only: joints_of
+   use controls, only: solver_mumps
    use element_kinds, only: element_node_count
    use errors, only: error_type, set_error, status_deck
    use field_problem, only: field_problem_type
+   use jump_loads, only: loads_by_elimination, loads_by_solves
    use kinds, only: dp
    use unconstrained_motions, only: balanced_load
    use mesh, only: extent_of
@@ -54,7 +56,6 @@ module reduced_bodies
       procedure :: number
       procedure :: assemble
       procedure :: reduce
-      procedure :: reduce_heat
       procedure :: set_film
       procedure :: conductors
       procedure :: release
@@ -151,19 +152,44 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       self%is_coupled = coupled
+      call reduce_fields(self, model, mechanics, heat, error)
+   end subroutine reduce
+
+   !> Reduces the fields that are asked for, and what couples them.
+   !> Errors: as reduce.
+   subroutine reduce_fields(self, model, mechanics, heat, error)
+      class(reduced_bodies_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: mechanics, heat
+      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: of_jumps
+      logical :: by_elimination, forms
+
+      if (allocated(self%jump_load) .and. (mechanics .or. heat)) deallocate (self%jump_load)
+      forms = self%is_coupled .and. .not. allocated(self%jump_load)
+      by_elimination = forms .and. model%solver == solver_mumps
+      if (by_elimination) then
+         ! Before the factors of the fields, for their memory. These say what makes it fail.
+         if (mechanics) call self%mechanical%release()
+         if (heat) call self%thermal%release()
+         call self%mechanical%map%stiffen_links(self%mechanical%matrix)
+         call self%thermal%map%stiffen_links(self%thermal%matrix)
+         call loads_by_elimination(self%thermal, self%mechanical, self%thermal_load, &
+            self%jump_load, of_jumps)
+      end if
       if (mechanics) then
-         if (allocated(self%jump_load)) deallocate (self%jump_load)
          call self%mechanical%reduce(model%solver, error)
          if (allocated(error)) return
          self%contact = contact_system_of(self%mechanical, self%points, self%rigid)
          self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
       end if
-      if (heat) then
-         call self%reduce_heat(model, error)
-      else if (coupled .and. .not. allocated(self%jump_load)) then
-         call form_jump_load(self)
-      end if
-   end subroutine reduce
+      if (heat) call reduce_heat(self, model, error)
+      if (allocated(error) .or. .not. forms) return
+      if (.not. by_elimination) call loads_by_solves(self%thermal, self%mechanical, &
+         self%thermal_load, self%jump_load)
+      if (allocated(of_jumps)) call move_alloc(of_jumps, error)
+      if (allocated(self%jump_load)) call balance_jump_load(self)
+   end subroutine reduce_fields
 
    !> Reduces the heat problem to the jumps.
    !> Errors: bodies whose temperature nothing determines, a failure of the solver.
@@ -180,10 +206,8 @@ contains
       associate (map => self%thermal%map)
          self%jump_index = map%tail_index(map%introduced)
       end associate
-      if (allocated(self%jump_load)) deallocate (self%jump_load)
       if (allocated(self%jump_mean)) deallocate (self%jump_mean)
       if (self%points%vary_with_temperature()) call form_jump_mean(self)
-      if (self%is_coupled) call form_jump_load(self)
    end subroutine reduce_heat
 
    !> Names the bodies that leave the heat problem singular: no prescribed temperature and no film
@@ -216,7 +240,7 @@ contains
 
       if (same_values(film, self%thermal%added)) return
       self%thermal%added = film
-      call self%reduce_heat(model, error)
+      call reduce_fields(self, model, .false., .true., error)
    end subroutine set_film
 
    !> Whether two matrices have the same entries.
@@ -248,28 +272,18 @@ contains
          model%materials, model%orientations)
    end subroutine assemble
 
-   !> Condensed mechanical load of a unit jump at each contact point.
-   subroutine form_jump_load(self)
+   !> Balances the condensed loads of the jumps, which have no resultant.
+   subroutine balance_jump_load(self)
       class(reduced_bodies_type), intent(inout) :: self
-      real(dp), allocatable :: temperature(:, :)
       real(dp) :: none(size(self%rigid, 2))
-      integer :: first, k, last, tail
+      integer :: k
 
       none = 0.0_dp
-      tail = self%thermal%map%tail
-      allocate (self%jump_load(self%mechanical%map%tail, tail))
-      do first = 1, tail, columns_at_once
-         last = min(first + columns_at_once - 1, tail)
-         allocate (temperature(self%thermal%matrix%row_count, last - first + 1))
-         call self%thermal%unit_responses(first, temperature)
-         call condense_thermal_load(self, temperature, self%jump_load(:, first:last))
-         deallocate (temperature)
-      end do
-      do k = 1, tail
+      do k = 1, size(self%jump_load, 2)
          self%jump_load(:, k) = balanced_load(self%jump_load(:, k), self%contact%rigid, &
             self%contact%motion, none)
       end do
-   end subroutine form_jump_load
+   end subroutine balance_jump_load
 
    !> Mean temperature of the faces at all contact points, of a unit jump at each.
    subroutine form_jump_mean(self)
@@ -281,29 +295,16 @@ contains
       allocate (self%jump_mean(size(self%points%slave), tail))
       do first = 1, tail, columns_at_once
          last = min(first + columns_at_once - 1, tail)
-         allocate (temperature(self%thermal%matrix%row_count, last - first + 1))
-         call self%thermal%unit_responses(first, temperature)
+         temperature = self%thermal%unit_responses(first, last)
          do k = first, last
             self%jump_mean(:, k) = self%points%means(temperature(:, k - first + 1))
          end do
-         deallocate (temperature)
       end do
       ! Forces of links, which are unknowns of the tail too, act on jumps only.
       do k = 1, tail
          if (.not. any(self%jump_index == k)) self%jump_mean(:, k) = 0.0_dp
       end do
    end subroutine form_jump_mean
-
-   !> Condensed mechanical loads of fields of temperature.
-   subroutine condense_thermal_load(self, temperature, condensed)
-      class(reduced_bodies_type), intent(in) :: self
-      real(dp), intent(in) :: temperature(:, :) !! (nodes, columns) over the natural state
-      real(dp), intent(out) :: condensed(:, :)               !! (mechanical tail, columns)
-      real(dp) :: forces(self%thermal_load%row_count, size(temperature, 2))
-
-      call self%thermal_load%multiply_columns(temperature, forces)
-      call self%mechanical%condense_forces(forces, condensed)
-   end subroutine condense_thermal_load
 
    !> Conductance of the bodies about each contact point alone; 0 where both temperatures are
    !> prescribed. A contact point that closes a cycle, whose jump only the others hold, has that of

@@ -7,6 +7,7 @@ module increment_data
    use field_problem, only: field_load_type
    use fixed_point, only: pass_type
    use kinds, only: dp
+   use known_loads, only: known_loads_type
    use solution_report, only: solution_report_type
    use tail_factors, only: tail_factors_type
    use temperature_laws, only: face_temperatures_type
@@ -41,6 +42,8 @@ module increment_data
    type :: increment_workspace_type
       type(field_load_type) :: heat                  !! load of (3.4)
       type(field_load_type) :: force                 !! load of (2.4)
+      !> Loads of earlier increments, of (3.4) and of (2.4).
+      type(known_loads_type), allocatable :: known(:)
       type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
       real(dp), allocatable :: on_tail(:)            !! (thermal tail) their last solution
       type(cut_hats_type) :: cut                     !! hats that an edge cuts, for the last omega*

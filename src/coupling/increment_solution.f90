@@ -34,6 +34,8 @@ module increment_solution
    private
    public :: solve_points, recover_fields
 
+   integer, parameter :: of_heat = 1, of_mechanics = 2   !! places of known loads
+
 contains
 
    !> Jumps, contact state and conductance at the end of an increment, and the temperatures that
@@ -45,13 +47,14 @@ contains
       type(loads_type), intent(in) :: loads                      !! loads at the end
       type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous          !! state at the start
-      type(increment_workspace_type), intent(inout) :: workspace !! a fresh one
+      type(increment_workspace_type), intent(inout) :: workspace !! a fresh one, but for known loads
       !> guess and loads at the end in, solution out
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
       type(increment_data_type) :: data
       type(solution_state_type) :: begun
 
+      if (.not. allocated(workspace%known)) allocate (workspace%known(2))
       begun = as_begun(bodies, previous)
       if (has_memory(step%scheme)) begun%cut = cut_hats_type()
       next%cut = begun%cut
@@ -214,7 +217,7 @@ contains
       end if
       next%omega_before = next%omega
       next%omega_start = data%omega_old
-      next%temperature = bodies%thermal%recover(workspace%heat, workspace%on_tail)
+      call add_jumps(bodies, workspace, next%temperature)
    end subroutine conduct
 
    !> A pass with given conductances, the graphs of the laws, and the coordinates of a contact state
@@ -294,18 +297,17 @@ contains
       type(increment_data_type), intent(inout) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
-      real(dp), allocatable :: forces(:), zero(:)
+      real(dp), allocatable :: forces(:)
 
       associate (given => loads%temperature%value)
          forces = field_history(data%scheme, bodies%thermal%matrix, previous%temperature) + &
             film_history(data%scheme, previous%film, next%film, previous%temperature) + &
             scheme_load(data%scheme, previous%heat_load, next%heat_load)
          workspace%heat = bodies%thermal%load_of(forces, given)
-         call bodies%thermal%condense_load(workspace%heat)
+         call bodies%thermal%condense_load(workspace%heat, workspace%known(of_heat), &
+            next%temperature)
          data%held_jump = bodies%points%jumps(given)
          where (bodies%jump_index > 0) data%held_jump = 0.0_dp
-         allocate (zero(bodies%thermal%map%tail), source=0.0_dp)
-         next%temperature = bodies%thermal%recover(workspace%heat, zero)
          if (bodies%points%vary_with_temperature()) data%welded_mean = &
             bodies%points%means(next%temperature)
       end associate
@@ -324,7 +326,7 @@ contains
       thermal = unstrained_forces(bodies, next%temperature)
       workspace%force = bodies%mechanical%load_of(next%force_load + thermal, &
          loads%displacement%value)
-      call bodies%mechanical%condense_load(workspace%force)
+      call bodies%mechanical%condense_load(workspace%force, workspace%known(of_mechanics))
       workspace%contact = contact_workspace_type(bodies%contact, loads%present_gaps( &
          bodies%points))
       workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
@@ -351,7 +353,7 @@ contains
       next%smallest_gap = min(previous%smallest_gap, next%contact%gap)
       if (.not. solves_mechanics(step%analysis)) return
       if (bodies%is_coupled) then
-         next%temperature = bodies%thermal%recover(workspace%heat, workspace%on_tail)
+         call add_jumps(bodies, workspace, next%temperature)
          workspace%force = bodies%mechanical%load_of(next%force_load + &
             unstrained_forces(bodies, next%temperature), loads%displacement%value)
       end if
@@ -369,5 +371,17 @@ contains
       next%stress_temperature = next%temperature
       call remember_slip(bodies, workspace%contact, previous, next)
    end subroutine recover_fields
+
+   !> Adds what the jumps make of the temperatures of welded contacts.
+   subroutine add_jumps(bodies, workspace, temperature)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_workspace_type), intent(in) :: workspace
+      real(dp), intent(inout) :: temperature(:)                  !! (nodes) [temperature]
+
+      associate (of_jumps => bodies%thermal%extended(reshape(workspace%on_tail, &
+         [size(workspace%on_tail), 1])))
+         temperature = temperature + of_jumps(:, 1)
+      end associate
+   end subroutine add_jumps
 
 end module increment_solution

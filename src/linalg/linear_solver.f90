@@ -9,7 +9,7 @@ module linear_solver
    private
    public :: linear_solver_type
 
-   !> A direct solver. After factor, condense and recover change nothing.
+   !> A direct solver. After factor, condense, recover and extend change nothing.
    type, abstract :: linear_solver_type
       integer :: order = 0               !! unknowns
       integer :: tail = 0                !! tail unknowns, the last ones
@@ -23,6 +23,7 @@ module linear_solver
       procedure(factor_interface), deferred :: factor
       procedure(condense_interface), deferred :: condense
       procedure(recover_interface), deferred :: recover
+      procedure(extend_interface), deferred :: extend
       procedure(release_interface), deferred :: release
    end type linear_solver_type
 
@@ -39,12 +40,14 @@ module linear_solver
          type(error_type), allocatable, intent(out) :: error !! failure
       end subroutine factor_interface
 
-      !> Right-hand sides condensed on the tail: f_tail - K_tail,lead K_lead^-1 f_lead.
-      subroutine condense_interface(self, rhs, condensed)
+      !> Right-hand sides condensed on the tail: f_tail - K_tail,lead K_lead^-1 f_lead. The
+      !> solutions whose tail is zero cost a back substitution more.
+      subroutine condense_interface(self, rhs, condensed, welded)
          import :: linear_solver_type, dp
          class(linear_solver_type), intent(in) :: self
          real(dp), intent(in) :: rhs(:, :)                  !! (order, columns)
          real(dp), intent(out) :: condensed(:, :)           !! (tail, columns)
+         real(dp), intent(out), optional :: welded(:, :)    !! (order, columns)
       end subroutine condense_interface
 
       !> Solutions in full from the solution on the tail: K_lead x_lead = f_lead - K_lead,tail
@@ -56,6 +59,14 @@ module linear_solver
          real(dp), intent(in) :: on_tail(:, :)              !! (tail, columns)
          real(dp), intent(out) :: solution(:, :)            !! (order, columns)
       end subroutine recover_interface
+
+      !> Solutions without right-hand side on the leading rows: a back substitution alone.
+      subroutine extend_interface(self, on_tail, solution)
+         import :: linear_solver_type, dp
+         class(linear_solver_type), intent(in) :: self
+         real(dp), intent(in) :: on_tail(:, :)              !! (tail, columns)
+         real(dp), intent(out) :: solution(:, :)            !! (order, columns)
+      end subroutine extend_interface
 
       !> Frees what the solver holds outside Fortran.
       subroutine release_interface(self)

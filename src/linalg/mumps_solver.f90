@@ -8,12 +8,12 @@ module mumps_solver
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
    use metis, only: nested_dissection
-   use ordering, only: adjacency
-   use sparse_matrix, only: sparse_matrix_type
+   use ordering, only: adjacency, alike_unknowns, ungrouped
+   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use text, only: to_text
    implicit none
    private
-   public :: mumps_solver_type, mumps_version
+   public :: mumps_solver_type, mumps_version, schur_complement
 
    include 'dmumps_struc.h'
 
@@ -26,6 +26,8 @@ module mumps_solver
 
    integer, parameter :: job_start = -1, job_analyse = 1, job_factor = 2
    integer, parameter :: job_solve = 3, job_end = -2
+   integer, parameter :: factors_are_dropped = 1   !! ICNTL(31)
+   integer, parameter :: rhs_is_sparse = 1         !! ICNTL(20)
    integer, parameter :: order_given = 1       !! ICNTL(7) and INFOG(7): the order of PERM_IN
    integer, parameter :: workspace_tries = 5   !! how often ICNTL(14) is raised
 
@@ -41,6 +43,7 @@ module mumps_solver
       procedure :: factor
       procedure :: condense
       procedure :: recover
+      procedure :: extend
       procedure :: release
    end type mumps_solver_type
 
@@ -52,13 +55,64 @@ contains
       type(sparse_matrix_type), intent(in) :: lower
       integer, intent(in) :: tail
       type(error_type), allocatable, intent(out) :: error
-      integer :: attempt, j
+      integer, allocatable :: group(:)
+      integer :: i
 
-      self%order = lower%row_count
-      self%tail = tail
-      call start(self, lower)
-      call hand_over_order(self, lower, error)
+      call start(self, lower%row_count, tail)
+      group = alike_unknowns(lower, self%order - tail)
+      call hand_over_order(self, adjacency(lower, group), group, error)
       if (allocated(error)) return
+      associate (id => self%mumps)
+         allocate (id%irn(size(lower%value)), id%jcn(size(lower%value)), id%a(size(lower%value)))
+         do i = 1, lower%row_count
+            id%irn(lower%row_start(i):lower%row_start(i + 1) - 1) = i
+         end do
+         id%jcn(:) = lower%column
+         id%a(:) = lower%value
+         call analyse_and_factor(self, error)
+         ! What follows works on the factors alone.
+         deallocate (id%irn, id%jcn, id%a)
+      end associate
+      if (allocated(error)) return
+      self%full_flops = int(self%mumps%rinfog(3), long)
+      ! RINFOG(19) is of the matrix as MUMPS has scaled it, rows and columns to about 1.
+      if (self%mumps%rinfog(19) > 0.0_dp) self%smallest_pivot = min(1.0_dp, self%mumps%rinfog(19))
+      self%factor_bytes = factor_entries(self%mumps%infog(9))*storage_size(1.0_dp)/8
+   end subroutine factor
+
+   !> Schur complement of a matrix on its tail, without factors to solve with.
+   !> Errors: the matrix is not positive definite, MUMPS or METIS failed.
+   subroutine schur_complement(entries, graph, group, tail, schur, error)
+      type(triplet_list_type), intent(in), target :: entries !! lower triangle
+      type(sparse_matrix_type), intent(in) :: graph !! groups of leading unknowns that are joined
+      integer, intent(in) :: group(:)                        !! (leading) group of each of them
+      integer, intent(in) :: tail                            !! number of tail unknowns, the last
+      real(dp), allocatable, intent(out) :: schur(:, :)      !! (tail, tail) both triangles
+      type(error_type), allocatable, intent(out) :: error
+      type(mumps_solver_type) :: solver
+
+      call start(solver, size(group) + tail, tail)
+      solver%mumps%icntl(31) = factors_are_dropped
+      call hand_over_order(solver, graph, group, error)
+      if (.not. allocated(error)) then
+         solver%mumps%irn => entries%row
+         solver%mumps%jcn => entries%column
+         solver%mumps%a => entries%value
+         call analyse_and_factor(solver, error)
+         nullify (solver%mumps%irn, solver%mumps%jcn, solver%mumps%a)
+      end if
+      call solver%release()
+      if (.not. allocated(error)) call move_alloc(solver%schur, schur)
+   end subroutine schur_complement
+
+   !> Factors the matrix that is in place and takes its Schur complement over.
+   subroutine analyse_and_factor(self, error)
+      type(mumps_solver_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      integer :: attempt, j, tail
+
+      self%mumps%nnz = size(self%mumps%a, kind=long)
+      tail = self%tail
       if (tail > 0) call ask_for_schur(self)
       self%mumps%job = job_analyse
       call dmumps(self%mumps)
@@ -80,16 +134,13 @@ contains
          call set_error(error, status_deck, unheld)
          return
       end if
-      self%full_flops = int(self%mumps%rinfog(3), long)
-      ! RINFOG(19) is of the matrix as MUMPS has scaled it, rows and columns to about 1.
-      if (self%mumps%rinfog(19) > 0.0_dp) self%smallest_pivot = min(1.0_dp, self%mumps%rinfog(19))
-      self%factor_bytes = factor_entries(self%mumps%infog(9))*storage_size(1.0_dp)/8
       allocate (self%schur(tail, tail))
-      self%schur(:, :) = reshape(self%mumps%schur(:tail*tail), [tail, tail])
       do j = 1, tail
+         self%schur(:, j) = self%mumps%schur(tail*(j - 1) + 1:tail*j)
          self%schur(j, :j) = self%schur(:j, j)
       end do
-   end subroutine factor
+      deallocate (self%mumps%schur)
+   end subroutine analyse_and_factor
 
    !> Version of MUMPS.
    function mumps_version() result(version)
@@ -116,13 +167,14 @@ contains
       if (reported < 0) entries = -1000000_long*reported
    end function factor_entries
 
-   !> A silent instance on one process, with the matrix in place. The matrix is positive definite;
-   !> that it be not, MUMPS only tells when it takes it for a general symmetric one.
-   subroutine start(self, lower)
+   !> A silent instance on one process. The matrix is positive definite; that it be not, MUMPS only
+   !> tells when it takes it for a general symmetric one.
+   subroutine start(self, order, tail)
       type(mumps_solver_type), intent(inout) :: self
-      type(sparse_matrix_type), intent(in) :: lower
-      integer :: i
+      integer, intent(in) :: order, tail
 
+      self%order = order
+      self%tail = tail
       allocate (self%mumps)
       associate (id => self%mumps)
          id%comm = 0
@@ -133,34 +185,30 @@ contains
          id%icntl(1:3) = -1
          id%icntl(4) = 0
          id%icntl(24) = 1
-         id%n = lower%row_count
-         id%nnz = size(lower%value, kind=long)
-         allocate (id%irn(size(lower%value)), id%jcn(size(lower%value)), id%a(size(lower%value)))
-         do i = 1, lower%row_count
-            id%irn(lower%row_start(i):lower%row_start(i + 1) - 1) = i
-         end do
-         id%jcn(:) = lower%column
-         id%a(:) = lower%value
-         allocate (id%schur(self%tail**2))
+         id%n = order
+         allocate (id%schur(tail**2))
       end associate
    end subroutine start
 
-   !> METIS's order for the leading block, the tail behind it.
-   subroutine hand_over_order(self, lower, error)
+   !> METIS's order for the leading block, whose groups stay together, the tail behind it.
+   subroutine hand_over_order(self, graph, group, error)
       type(mumps_solver_type), intent(inout) :: self
-      type(sparse_matrix_type), intent(in) :: lower
+      type(sparse_matrix_type), intent(in) :: graph   !! (groups) which of them are joined
+      integer, intent(in) :: group(:)                 !! (leading)
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, leading
+      integer :: i, position(graph%row_count)
       logical :: failed
 
-      leading = self%order - self%tail
       allocate (self%mumps%perm_in(self%order))
-      call nested_dissection(adjacency(lower, leading), self%mumps%perm_in(:leading), failed)
+      call nested_dissection(graph, position, failed)
       if (failed) then
          call set_error(error, status_internal, 'METIS could not order the unknowns')
          return
       end if
-      self%mumps%perm_in(leading + 1:) = [(i, i=leading + 1, self%order)]
+      associate (leading => size(group))
+         self%mumps%perm_in(:leading) = ungrouped(group, position)
+         self%mumps%perm_in(leading + 1:) = [(i, i=leading + 1, self%order)]
+      end associate
       self%mumps%icntl(7) = order_given
    end subroutine hand_over_order
 
@@ -197,17 +245,21 @@ contains
    end subroutine check
 
    !> As condense_interface of linear_solver says.
-   subroutine condense(self, rhs, condensed)
+   subroutine condense(self, rhs, condensed, welded)
       class(mumps_solver_type), intent(in) :: self
       real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(out) :: condensed(:, :)
+      real(dp), intent(out), optional :: welded(:, :)
+      real(dp) :: zero(self%tail, size(rhs, 2))
+      integer :: k
 
-      if (self%tail == 0) return
-      call load_rhs(self%mumps, self%tail, rhs)
-      self%mumps%icntl(26) = 1
-      self%mumps%job = job_solve
-      call dmumps(self%mumps)
-      condensed = reshape(self%mumps%redrhs, [self%tail, size(rhs, 2)])
+      call eliminate(self, size(rhs, 2), rhs)
+      do k = 1, size(rhs, 2)
+         condensed(:, k) = self%mumps%redrhs(self%tail*(k - 1) + 1:self%tail*k)
+      end do
+      if (.not. present(welded)) return
+      zero = 0.0_dp
+      call substitute(self, zero, welded)
    end subroutine condense
 
    !> As recover_interface of linear_solver says.
@@ -217,35 +269,85 @@ contains
       real(dp), intent(in) :: on_tail(:, :)
       real(dp), intent(out) :: solution(:, :)
 
-      call load_rhs(self%mumps, self%tail, rhs)
-      self%mumps%job = job_solve
-      if (self%tail > 0) then
-         self%mumps%icntl(26) = 1
-         call dmumps(self%mumps)
-         self%mumps%redrhs(:) = reshape(on_tail, [size(on_tail)])
-         self%mumps%icntl(26) = 2
-      end if
-      call dmumps(self%mumps)
-      solution = reshape(self%mumps%rhs, shape(solution))
+      call eliminate(self, size(rhs, 2), rhs)
+      call substitute(self, on_tail, solution)
    end subroutine recover
 
-   !> Hands right-hand sides to MUMPS, with room for the condensed ones.
-   subroutine load_rhs(id, tail, rhs)
+   !> As extend_interface of linear_solver says.
+   subroutine extend(self, on_tail, solution)
+      class(mumps_solver_type), intent(in) :: self
+      real(dp), intent(in) :: on_tail(:, :)
+      real(dp), intent(out) :: solution(:, :)
+
+      call eliminate(self, size(on_tail, 2))
+      call substitute(self, on_tail, solution)
+   end subroutine extend
+
+   !> Eliminates right-hand sides forward, or none. Without a tail the substitution does both.
+   subroutine eliminate(self, columns, rhs)
+      type(mumps_solver_type), intent(in) :: self
+      integer, intent(in) :: columns
+      real(dp), intent(in), optional :: rhs(:, :)
+      integer :: k
+
+      call make_room(self%mumps, self%tail, columns)
+      associate (id => self%mumps)
+         id%job = job_solve
+         if (present(rhs)) then
+            do k = 1, columns
+               id%rhs(id%n*(k - 1) + 1:id%n*k) = rhs(:, k)
+            end do
+         else
+            id%rhs(:) = 0.0_dp
+         end if
+         if (self%tail == 0) return
+         ! MUMPS skips what a sparse right-hand side does not reach: all of the leading rows.
+         id%icntl(20) = merge(0, rhs_is_sparse, present(rhs))
+         id%irhs_ptr(:) = [1, (2, k=1, columns)]
+         id%icntl(26) = 1
+         call dmumps(id)
+         id%icntl(20) = 0
+      end associate
+   end subroutine eliminate
+
+   !> Substitutes back from the tail.
+   subroutine substitute(self, on_tail, solution)
+      type(mumps_solver_type), intent(in) :: self
+      real(dp), intent(in) :: on_tail(:, :)
+      real(dp), intent(out) :: solution(:, :)
+      integer :: k
+
+      associate (id => self%mumps)
+         do k = 1, size(on_tail, 2)
+            id%redrhs(self%tail*(k - 1) + 1:self%tail*k) = on_tail(:, k)
+         end do
+         if (self%tail > 0) id%icntl(26) = 2
+         call dmumps(id)
+         do k = 1, size(solution, 2)
+            solution(:, k) = id%rhs(id%n*(k - 1) + 1:id%n*k)
+         end do
+      end associate
+   end subroutine substitute
+
+   !> Room for right-hand sides, also condensed ones, and for a sparse one with a zero on the tail.
+   subroutine make_room(id, tail, columns)
       type(dmumps_struc), intent(inout) :: id
-      integer, intent(in) :: tail
-      real(dp), intent(in) :: rhs(:, :)
+      integer, intent(in) :: tail, columns
 
       if (associated(id%rhs)) then
-         if (size(id%rhs) /= size(rhs)) deallocate (id%rhs, id%redrhs)
+         if (size(id%rhs) /= id%n*columns) deallocate (id%rhs, id%redrhs, id%irhs_ptr, &
+            id%irhs_sparse, id%rhs_sparse)
       end if
       if (.not. associated(id%rhs)) then
-         allocate (id%rhs(size(rhs)), id%redrhs(tail*size(rhs, 2)))
+         allocate (id%rhs(id%n*columns), id%redrhs(tail*columns), id%irhs_ptr(columns + 1))
+         allocate (id%irhs_sparse(1), source=id%n)
+         allocate (id%rhs_sparse(1), source=0.0_dp)
       end if
-      id%rhs(:) = reshape(rhs, [size(rhs)])
-      id%nrhs = size(rhs, 2)
+      id%nz_rhs = 1
+      id%nrhs = columns
       id%lrhs = id%n
       id%lredrhs = tail
-   end subroutine load_rhs
+   end subroutine make_room
 
    !> MUMPS keeps memory of its own, and finalisers are not to be relied on.
    subroutine release(self)
@@ -255,9 +357,11 @@ contains
       self%mumps%job = job_end
       call dmumps(self%mumps)
       associate (id => self%mumps)
-         if (associated(id%irn)) deallocate (id%irn, id%jcn, id%a, id%perm_in, id%schur)
+         if (associated(id%perm_in)) deallocate (id%perm_in)
+         if (associated(id%schur)) deallocate (id%schur)
          if (associated(id%listvar_schur)) deallocate (id%listvar_schur)
-         if (associated(id%rhs)) deallocate (id%rhs, id%redrhs)
+         if (associated(id%rhs)) deallocate (id%rhs, id%redrhs, id%irhs_ptr, id%irhs_sparse, &
+            id%rhs_sparse)
       end associate
       deallocate (self%mumps)
    end subroutine release

@@ -7,38 +7,99 @@ module ordering
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: adjacency, profile_order, permuted_lower, profile_length
+   public :: adjacency, alike_unknowns, ungrouped, profile_order, permuted_lower, profile_length
 
 contains
 
-   !> Graph of the leading rows of a symmetric matrix: both triangles, without the diagonal.
-   pure function adjacency(lower, leading) result(graph)
+   !> Groups of neighbouring leading unknowns that are joined to the same ones, such as those of a
+   !> node: a fill-reducing order keeps them together, and their graph is a fraction of the whole.
+   !> Their rows hold the same columns, and their columns as many entries.
+   pure function alike_unknowns(lower, leading) result(group)
       type(sparse_matrix_type), intent(in) :: lower !! lower triangle by rows
       integer, intent(in) :: leading                !! number of leading rows
-      type(sparse_matrix_type) :: graph             !! pattern; the values mean nothing
-      type(triplet_list_type) :: list
-      integer :: i, k
+      integer :: group(leading)                     !! group of each of them, ascending
+      integer :: below(leading), i, k, n
 
-      call list%reserve(2*lower%row_start(leading + 1))
+      below = 0
       do i = 1, leading
          do k = lower%row_start(i), lower%row_start(i + 1) - 1
-            if (lower%column(k) == i) cycle
-            call list%add(i, lower%column(k), 1.0_dp)
-            call list%add(lower%column(k), i, 1.0_dp)
+            below(lower%column(k)) = below(lower%column(k)) + 1
          end do
       end do
-      graph = list%compress(leading, leading)
+      do i = 1, leading
+         group(i) = i
+         if (i == 1) cycle
+         group(i) = group(i - 1) + 1
+         if (below(i) /= below(i - 1) - 1) cycle
+         associate (before => lower%row_start(i - 1), first => lower%row_start(i))
+            n = first - before
+            if (lower%row_start(i + 1) - first /= n + 1) cycle
+            if (any(lower%column(first:first + n - 1) /= lower%column(before:first - 1))) cycle
+            group(i) = group(i - 1)
+         end associate
+      end do
+   end function alike_unknowns
+
+   !> Graph of groups of the leading rows of a symmetric matrix: both triangles, without the
+   !> diagonal.
+   pure function adjacency(lower, group) result(graph)
+      type(sparse_matrix_type), intent(in) :: lower !! lower triangle by rows
+      integer, intent(in) :: group(:)               !! (leading) as from alike_unknowns
+      type(sparse_matrix_type) :: graph             !! pattern; the values mean nothing
+      type(triplet_list_type) :: list
+      integer :: i, k, last
+
+      call list%reserve(2*(lower%row_start(size(group) + 1) - 1))
+      do i = 1, size(group)
+         if (i > 1) then
+            if (group(i) == group(i - 1)) cycle
+         end if
+         last = group(i)
+         do k = lower%row_start(i), lower%row_start(i + 1) - 1
+            associate (other => group(lower%column(k)))
+               if (other == group(i) .or. other == last) cycle
+               last = other
+               call list%add(group(i), other, 1.0_dp)
+               call list%add(other, group(i), 1.0_dp)
+            end associate
+         end do
+      end do
+      graph = list%compress(maxval([0, group]), maxval([0, group]))
    end function adjacency
+
+   !> Positions of unknowns from those of their groups.
+   pure function ungrouped(group, position_of_group) result(position)
+      integer, intent(in) :: group(:)               !! (unknowns) ascending
+      integer, intent(in) :: position_of_group(:)   !! (groups)
+      integer :: position(size(group))              !! (unknowns)
+      integer :: before(size(position_of_group) + 1), i
+
+      before = 0
+      do i = 1, size(group)
+         associate (next => before(position_of_group(group(i)) + 1))
+            next = next + 1
+         end associate
+      end do
+      do i = 2, size(before)
+         before(i) = before(i) + before(i - 1)
+      end do
+      do i = 1, size(group)
+         associate (last => before(position_of_group(group(i))))
+            last = last + 1
+            position(i) = last
+         end associate
+      end do
+   end function ungrouped
 
    !> Order that keeps the profile short: reverse Cuthill-McKee, each connected part from a
    !> pseudo-peripheral vertex.
-   pure function profile_order(graph) result(order)
+   pure function profile_order(graph) result(position)
       type(sparse_matrix_type), intent(in) :: graph !! as from adjacency
-      integer :: order(graph%row_count)             !! old index at each new position
-      integer, allocatable :: level(:)
+      integer :: position(graph%row_count)          !! new position of each vertex
+      integer, allocatable :: level(:), order(:)
       integer :: start, placed, first
 
-      allocate (level(graph%row_count), source=0)
+      allocate (level(graph%row_count), order(graph%row_count), source=0)
       placed = 0
       do first = 1, graph%row_count
          if (level(first) /= 0) cycle
@@ -46,7 +107,9 @@ contains
          call breadth_first(graph, start, level, order(placed + 1:))
          placed = count(level /= 0)
       end do
-      order = order(graph%row_count:1:-1)
+      do placed = 1, graph%row_count
+         position(order(placed)) = graph%row_count + 1 - placed
+      end do
    end function profile_order
 
    !> A vertex almost as far from some other as the graph allows.

@@ -3,7 +3,7 @@ module skyline_solver
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
-   use ordering, only: adjacency, permuted_lower, profile_order
+   use ordering, only: adjacency, alike_unknowns, permuted_lower, profile_order, ungrouped
    use skyline, only: skyline_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
@@ -19,6 +19,7 @@ module skyline_solver
       procedure :: factor
       procedure :: condense
       procedure :: recover
+      procedure :: extend
       procedure :: release
    end type skyline_solver_type
 
@@ -30,18 +31,15 @@ contains
       type(sparse_matrix_type), intent(in) :: lower
       integer, intent(in) :: tail
       type(error_type), allocatable, intent(out) :: error
-      integer, allocatable :: order(:)
       integer :: bad_column, i, leading
+      integer, allocatable :: group(:)
 
       leading = lower%row_count - tail
       self%order = lower%row_count
       self%tail = tail
-      allocate (order(leading))
-      order(:) = profile_order(adjacency(lower, leading))
       allocate (self%position(self%order))
-      do i = 1, leading
-         self%position(order(i)) = i
-      end do
+      group = alike_unknowns(lower, leading)
+      self%position(:leading) = ungrouped(group, profile_order(adjacency(lower, group)))
       self%position(leading + 1:) = [(i, i=leading + 1, self%order)]
       call self%skyline%set_matrix(permuted_lower(lower, self%position), tail)
       call self%skyline%factor_leading(bad_column)
@@ -55,16 +53,21 @@ contains
    end subroutine factor
 
    !> As condense_interface of linear_solver says.
-   subroutine condense(self, rhs, condensed)
+   subroutine condense(self, rhs, condensed, welded)
       class(skyline_solver_type), intent(in) :: self
       real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(out) :: condensed(:, :)
+      real(dp), intent(out), optional :: welded(:, :)
       real(dp), allocatable :: x(:, :)
 
       allocate (x, mold=rhs)
       x(self%position, :) = rhs
       call self%skyline%condense(x)
       condensed = x(self%order - self%tail + 1:, :)
+      if (.not. present(welded)) return
+      x(self%order - self%tail + 1:, :) = 0.0_dp
+      call self%skyline%recover(x)
+      welded = x(self%position, :)
    end subroutine condense
 
    !> As recover_interface of linear_solver says.
@@ -77,12 +80,25 @@ contains
 
       allocate (x, mold=rhs)
       x(self%position, :) = rhs
-      ! Unit responses have no load.
-      if (any(abs(x) > 0.0_dp)) call self%skyline%condense(x)
+      call self%skyline%condense(x)
       x(self%order - self%tail + 1:, :) = on_tail
       call self%skyline%recover(x)
       solution = x(self%position, :)
    end subroutine recover
+
+   !> As extend_interface of linear_solver says.
+   subroutine extend(self, on_tail, solution)
+      class(skyline_solver_type), intent(in) :: self
+      real(dp), intent(in) :: on_tail(:, :)
+      real(dp), intent(out) :: solution(:, :)
+      real(dp), allocatable :: x(:, :)
+
+      allocate (x, mold=solution)
+      x(:self%order - self%tail, :) = 0.0_dp
+      x(self%order - self%tail + 1:, :) = on_tail
+      call self%skyline%recover(x)
+      solution = x(self%position, :)
+   end subroutine extend
 
    !> As release_interface of linear_solver says.
    subroutine release(self)

@@ -5,7 +5,7 @@ module sparse_products
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: congruent
+   public :: between_spaces, congruent
 
 contains
 
@@ -17,6 +17,16 @@ contains
 
       lower = product_of(transposed(t), product_of(a, t, .false.), .true.)
    end function congruent
+
+   !> S^T A T.
+   pure function between_spaces(s, a, t) result(c)
+      type(sparse_matrix_type), intent(in) :: s     !! (n, k) columns of a row in any order
+      type(sparse_matrix_type), intent(in) :: a     !! (n, l)
+      type(sparse_matrix_type), intent(in) :: t     !! (l, m) columns of a row in any order
+      type(sparse_matrix_type) :: c                 !! (k, m)
+
+      c = product_of(transposed(s), product_of(a, t, .false.), .false.)
+   end function between_spaces
 
    !> A B, or its lower triangle.
    pure function product_of(a, b, only_lower) result(c)

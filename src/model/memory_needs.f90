@@ -102,17 +102,13 @@ contains
       real(dp), intent(in) :: points
       real(dp) :: entries
       type(sparse_matrix_type) :: lower
-      integer, allocatable :: order(:), position(:)
       integer :: i
 
       lower = node_graph(model, kinds)
-      allocate (order(lower%row_count), position(lower%row_count))
-      order(:) = profile_order(adjacency(lower, lower%row_count))
-      do i = 1, size(order)
-         position(order(i)) = i
-      end do
-      entries = profile_length(permuted_lower(lower, position))*8.0_dp**levels
-      entries = entries + points*size(order)*4.0_dp**levels
+      associate (position => profile_order(adjacency(lower, [(i, i=1, lower%row_count)])))
+         entries = profile_length(permuted_lower(lower, position))*8.0_dp**levels
+         entries = entries + points*size(position)*4.0_dp**levels
+      end associate
    end function profile
 
    !> Nodes that are joined by an element, lower triangle with its diagonal.

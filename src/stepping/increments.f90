@@ -13,6 +13,7 @@ module increments
    use increment_solution, only: recover_fields, solve_points
    use initial_state, only: make_initial_state
    use kinds, only: dp
+   use known_loads, only: known_loads_type
    use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
@@ -39,6 +40,7 @@ module increments
       type(recovery_type) :: recovery               !! stress and flux with their errors
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
+      type(known_loads_type), allocatable :: known(:)   !! loads of earlier increments, solved
       type(increment_control_type) :: control       !! position in the steps, size of increments
       type(run_seconds_type) :: seconds             !! where the time went
       type(run_size_type) :: sizes                  !! sizes over all steps
@@ -268,7 +270,9 @@ contains
             call measure_factors(bodies, self%sizes)
          end if
          since = wall_seconds()
+         call move_alloc(self%known, workspace%known)
          call solve_points(bodies, self%loads, step, self%state, workspace, next, error)
+         call move_alloc(workspace%known, self%known)
          record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
