@@ -45,7 +45,7 @@ class Extent:
 
 
 WHOLE = Extent((1.0, 100.0, 0.01), COUNT, COUNT, JUMPING, (0, 1, 2), (0, 1), 450)
-TESTED = Extent((1.0,), 20, 100, 100, (0, 1), (0,), 90)
+TESTED = Extent((1.0,), 10, 40, 40, (0,), (0,), 90)
 
 
 class Tally:
