@@ -3,7 +3,7 @@
 !> face with its hat function (mortar_points).
 module contact_points
    use contact_definitions, only: pairing_nodes
-   use edge_segments, only: edge_segment_type
+   use edge_segments, only: edge_segment_type, hat_type
    use kinds, only: dp
    use sum_lists, only: sum_list_type
    implicit none
@@ -50,6 +50,7 @@ module contact_points
       !> last end, along the slave; at least 0 [length]
       real(dp) :: to_end(2) = huge(1.0_dp)
       type(edge_segment_type), allocatable :: segments(:)   !! of mortar points; none of node pairs
+      type(hat_type), allocatable :: hats(:)   !! (m) hat functions of mortar points over these
       logical :: about_axis = .false.          !! whether the model is axisymmetric
    end type contact_points_type
 

@@ -13,7 +13,7 @@ module edge_segments
    use quadrature, only: gauss_point_10, gauss_weight_10
    implicit none
    private
-   public :: edge_profile_type, edge_segment_type, edge_segments_of
+   public :: edge_profile_type, edge_segment_type, edge_segments_of, hat_type, hats_of, support
 
    integer, parameter :: support = 4           !! values of a cubic
    integer, parameter :: gradings = 12         !! intervals on either side of an edge
@@ -30,8 +30,16 @@ module edge_segments
       real(dp), allocatable :: difference(:, :)
       real(dp) :: area(support) = 0.0_dp    !! dA/dt [length^2]
    contains
-      procedure :: integrate
+      procedure :: side
+      procedure :: hat_weights
    end type edge_segment_type
+
+   !> The hat function of a contact point.
+   type :: hat_type
+      integer, allocatable :: segment(:)    !! (n) segments under it
+      integer, allocatable :: end(:)        !! (n) end of their side that it belongs to, 1 or 2
+      integer, allocatable :: nodes(:)      !! of these segments, each once
+   end type hat_type
 
    !> Conductance along the side that contains an edge of contact.
    type :: edge_profile_type
@@ -61,32 +69,40 @@ contains
       end if
    end function conductance_at
 
-   !> Adds the integrals of a hat function, times the conductance of a profile, over a segment.
-   pure subroutine integrate(self, hat, shares, area, profile)
+   !> The side that a segment is in, between contact points `side` and `side + 1`; 0 where its two
+   !> are not beside each other.
+   pure integer function side(self)
       class(edge_segment_type), intent(in) :: self
-      integer, intent(in) :: hat                     !! 1 for 1 - t, 2 for t
-      real(dp), intent(inout) :: shares(:)           !! (n) receives those of `difference`
-      real(dp), intent(inout) :: area                !! receives that of the area
+
+      side = minval(self%points)
+      if (abs(self%points(2) - self%points(1)) /= 1) side = 0
+   end function side
+
+   !> Integrals of the cubics of a segment times both hat functions, 1 - t and t, and times the
+   !> conductance of a profile.
+   pure function hat_weights(self, profile) result(weights)
+      class(edge_segment_type), intent(in) :: self
       type(edge_profile_type), intent(in), optional :: profile   !! without it: a conductance of 1
+      real(dp) :: weights(support, 2)
       real(dp), allocatable :: ends(:)
-      real(dp) :: cubic(support), factor, t
+      real(dp) :: cubic(support), t
       integer :: g, i
 
       ends = self%ends
       if (present(profile)) ends = graded(self%ends, merge(profile%edge, &
          1.0_dp - profile%edge, profile%closed_first))
+      weights = 0.0_dp
       do i = 1, size(ends) - 1
          do g = 1, size(gauss_point_10)
             t = 0.5_dp*(ends(i) + ends(i + 1) + (ends(i + 1) - ends(i))*gauss_point_10(g))
-            factor = 0.5_dp*(ends(i + 1) - ends(i))*gauss_weight_10(g)* &
-               merge(1.0_dp - t, t, hat == 1)
-            if (present(profile)) factor = factor*profile%conductance_at(t)
-            cubic = cubics((2*t - sum(self%ends))/(self%ends(2) - self%ends(1)))
-            shares = shares + factor*matmul(self%difference, cubic)
-            area = area + factor*dot_product(self%area, cubic)
+            cubic = 0.5_dp*(ends(i + 1) - ends(i))*gauss_weight_10(g)* &
+               cubics((2*t - sum(self%ends))/(self%ends(2) - self%ends(1)))
+            if (present(profile)) cubic = cubic*profile%conductance_at(t)
+            weights(:, 1) = weights(:, 1) + (1.0_dp - t)*cubic
+            weights(:, 2) = weights(:, 2) + t*cubic
          end do
       end do
-   end subroutine integrate
+   end function hat_weights
 
    !> Ends of intervals that shrink towards an edge.
    pure function graded(ends, edge) result(all_ends)
@@ -161,5 +177,37 @@ contains
          segment%nodes = nodes([side%nodes, size(slave%x, 2) + shapes%facing])
       end function segment_of
    end function edge_segments_of
+
+   !> The hat functions of the contact points over the segments.
+   pure function hats_of(segments, points) result(hats)
+      type(edge_segment_type), intent(in) :: segments(:)
+      integer, intent(in) :: points           !! number of contact points
+      type(hat_type) :: hats(points)
+      integer :: counts(points), hat, i, j, k
+
+      counts = 0
+      do i = 1, size(segments)
+         do j = 1, 2
+            k = segments(i)%points(j)
+            if (k > 0) counts(k) = counts(k) + 1
+         end do
+      end do
+      do k = 1, points
+         allocate (hats(k)%segment(counts(k)), hats(k)%end(counts(k)), hats(k)%nodes(0))
+      end do
+      counts = 0
+      do i = 1, size(segments)
+         do hat = 1, 2
+            k = segments(i)%points(hat)
+            if (k == 0) cycle
+            counts(k) = counts(k) + 1
+            hats(k)%segment(counts(k)) = i
+            hats(k)%end(counts(k)) = hat
+            associate (known => hats(k)%nodes, more => segments(i)%nodes)
+               hats(k)%nodes = [known, pack(more, [(all(known /= more(j)), j=1, size(more))])]
+            end associate
+         end do
+      end do
+   end function hats_of
 
 end module edge_segments

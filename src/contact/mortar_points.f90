@@ -5,7 +5,7 @@ module mortar_points
    use chain_geometry, only: arc_lengths, edge_lengths
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
-   use edge_segments, only: edge_segments_of
+   use edge_segments, only: edge_segments_of, hats_of
    use face_interpolation, only: interpolate_on_faces
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -73,6 +73,7 @@ contains
          owner == [(c, c=1, size(owner))], points)
       points%segments = edge_segments_of(slave_line, master_line, [slave%nodes, master%nodes], &
          thickness, points%about_axis, point_of)
+      points%hats = hats_of(points%segments, size(kept))
       points%initial_gap = initial_gaps(points, mesh%coordinates)
       allocate (points%master_node, mold=points%slave_node)
       if (size(kept) > 0 .and. .not. master%closed) points%to_end = ends_beyond(mesh%coordinates( &

@@ -19,13 +19,15 @@
 !> turned round. On a closed face none is looked for between the last contact point and the first.
 module zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use contact_definitions, only: pairing_surfaces
+   use contact_points, only: contact_points_type
    use contact_states, only: contact_open, contact_slip, contact_stick
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    implicit none
    private
-   public :: contact_profile_type, contact_edges, contact_end, mean_beyond, stick_edges, turned
-   public :: edges_kept
+   public :: contact_profile_type, contact_profile, contact_edges, contact_end, mean_beyond
+   public :: edges_kept, stick_edges, turned
 
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
@@ -46,6 +48,24 @@ module zone_edges
    end type contact_profile_type
 
 contains
+
+   !> What the contact points of an interface do, along it.
+   pure function contact_profile(points, contact_state, pressure, shear, gap) result(profile)
+      type(contact_points_type), intent(in) :: points
+      integer, intent(in) :: contact_state(:)   !! (m)
+      real(dp), intent(in) :: pressure(:)       !! (m) [stress]
+      real(dp), intent(in) :: shear(:)          !! (m) [stress]
+      real(dp), intent(in) :: gap(:)            !! (m) [length]
+      type(contact_profile_type) :: profile
+
+      profile%s = points%arc_length
+      profile%weight = points%weight
+      profile%contact_state = contact_state
+      profile%pressure = pressure
+      profile%shear = shear
+      profile%gap = gap
+      if (points%pairing == pairing_surfaces) profile%hat_spacings = points%node_spacings
+   end function contact_profile
 
    !> Edges between contact and gap, ascending, padded with NaN, and the outer edge of the contact
    !> zone with the largest s. A zone that reaches the last contact point ends there; that end is no

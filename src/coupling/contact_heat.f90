@@ -76,21 +76,21 @@ contains
       real(dp), intent(inout) :: x(:)                            !! (tail) heat in, solution out
       real(dp), allocatable, intent(out) :: jump(:)              !! (cut hats)
       real(dp) :: sums(size(x), 2*size(workspace%cut%point)), given(size(workspace%cut%point))
-      real(dp) :: supported(bodies%thermal%matrix%row_count)
       real(dp), dimension(size(given)) :: heat, back
       integer :: i, n, t
 
       n = size(given)
       sums = 0.0_dp
       given = 0.0_dp
-      supported = bodies%thermal%map%supported(workspace%heat%given)
+      if (.not. allocated(workspace%supported)) workspace%supported = &
+         bodies%thermal%map%supported(workspace%heat%given)
       associate (cut => workspace%cut, map => bodies%thermal%map)
          heat = bodies%points%weight(cut%point)*cut%conductance
          back = -diagonal(bodies%jump_index(cut%point))
          do i = 1, n
             sums(bodies%jump_index(cut%point(i)), n + i) = 1.0_dp
             associate (nodes => cut%jump%values_of(i), share => cut%jump%coefficients_of(i))
-               given(i) = dot_product(share, supported(nodes))
+               given(i) = dot_product(share, workspace%supported(nodes))
                do t = 1, size(nodes)
                   associate (k => map%tail_index(map%by_unknowns%values_of(nodes(t))), &
                      part => map%by_unknowns%coefficients_of(nodes(t)))

@@ -48,7 +48,8 @@ contains
       if (allocated(error)) return
       if (bodies%points%vary_with_temperature() .and. .not. settles) call take_temperatures( &
          bodies, data, jump, workspace)
-      workspace%pass%image = law_conductance(bodies, workspace%pass%graph%law, state)
+      workspace%pass%image = conductance(workspace%pass%graph%law, state%contact_state /= &
+         contact_open, state%gap, law_pressure(bodies, state))
       call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
    end subroutine contact_operator_pass
 
@@ -72,14 +73,9 @@ contains
       type(conductance_law_type), intent(in) :: law(:)          !! (m) at the temperatures
       type(contact_state_type), intent(in) :: state
       real(dp) :: omega(size(state%contact_state))              !! (m)
-      real(dp) :: pressure(size(state%contact_state))
-      integer :: k
 
-      pressure = law_pressure(bodies, state)
-      do k = 1, size(omega)
-         omega(k) = conductance(law(k), state%contact_state(k) /= contact_open, &
-            state%gap(k), pressure(k))
-      end do
+      omega = conductance(law, state%contact_state /= contact_open, state%gap, &
+         law_pressure(bodies, state))
    end function law_conductance
 
    !> Pressure by which the closed law goes: the printed one.

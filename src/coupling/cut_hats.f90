@@ -15,16 +15,27 @@ module cut_hats
    use conductance_laws, only: conductance_law_type
    use contact_points, only: contact_points_type
    use contact_states, only: contact_open, contact_slip
-   use edge_segments, only: edge_profile_type
+   use edge_segments, only: edge_profile_type, edge_segment_type, support
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type
-   use zone_edges, only: contact_end, contact_profile_type, mean_beyond, turned
+   use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, turned
    implicit none
    private
-   public :: cut_hats_type, find_cut_hats, joined_conductance
+   public :: cut_hat_type, cut_hats_type, find_cut_hats, cut_hats_at, joined_conductance
 
-   !> The contact points whose hats an edge cuts.
+   !> A hat that an edge cuts, for openings of the contact points: integrals over the sides without
+   !> an edge, which the conductance of the point multiplies, and over those with an edge, which
+   !> hold the conductance along them.
+   type :: cut_hat_type
+      integer :: point = 0                      !! contact point
+      logical :: is_open = .false.
+      integer, allocatable :: nodes(:)          !! (n) of both faces
+      real(dp) :: area(2) = 0.0_dp              !! of phi_c [length^2], of phi_c omega
+      real(dp), allocatable :: shares(:, :)     !! (n, 2) the same times J(x)
+   end type cut_hat_type
+
+   !> The contact points whose hats an edge cuts, for openings and conductances.
    type :: cut_hats_type
       integer, allocatable :: point(:)          !! (n) contact points
       real(dp), allocatable :: conductance(:)   !! (n) mean omega_c [power/(length^2 temperature)]
@@ -46,120 +57,149 @@ module cut_hats
 contains
 
    !> The cut hats for openings of the contact points.
-   pure subroutine find_cut_hats(bodies, modulus, opening, omega, cut)
+   pure subroutine find_cut_hats(bodies, modulus, opening, hats)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: modulus(:)        !! (m) pressure per overlap [stress/length]
       real(dp), intent(in) :: opening(:)        !! (m) openings [length]
-      real(dp), intent(in) :: omega(:)          !! (m) conductances of the points themselves
-      type(cut_hats_type), intent(out) :: cut
-      type(contact_profile_type) :: profile
-      type(side_edge_type), allocatable :: edges(:)
-      integer :: first, i, k, last
+      type(cut_hat_type), allocatable, intent(out) :: hats(:)
+      type(cut_hat_type), allocatable :: beside(:)
+      logical :: is_beside(size(opening))
+      logical, allocatable :: is_cut(:)
+      integer :: found, i
 
-      allocate (cut%point(0), cut%conductance(0), cut%own(0))
-      call cut%jump%reserve(8, 64)
       do i = 1, size(bodies%interfaces)
-         first = bodies%points%interface_start(i)
-         last = bodies%points%interface_start(i + 1) - 1
-         if (.not. bodies%points%cuts_hats(i) .or. bodies%points%removed(first)) cycle
-         associate (points => bodies%interfaces(i), z => opening(first:last))
-            profile%s = points%arc_length
-            profile%weight = points%weight
-            profile%contact_state = merge(contact_open, contact_slip, z > 0.0_dp)
-            profile%gap = max(z, 0.0_dp)
-            profile%pressure = max(-z, 0.0_dp)*modulus(first:last)
-            profile%shear = 0.0_dp*z
-            profile%hat_spacings = points%node_spacings
-            edges = edges_of(bodies%points, profile, first - 1)
-            do k = 1, size(z)
-               if (bodies%jump_index(first + k - 1) == 0) cycle
-               associate (beside => profile%contact_state(max(k - 1, 1):min(k + 1, size(z))))
-                  if (all(beside == contact_open) .or. all(beside /= contact_open)) cycle
-               end associate
-               call add_hat(bodies, points, edges, [k, first - 1], z(k) > 0.0_dp, omega, cut)
-            end do
+         associate (first => bodies%points%interface_start(i), &
+            last => bodies%points%interface_start(i + 1) - 1)
+            is_beside(first:last) = .false.
+            if (.not. bodies%points%cuts_hats(i) .or. bodies%points%removed(first)) cycle
+            is_beside(first:last) = bodies%jump_index(first:last) > 0 .and. &
+               beside_edge(opening(first:last) > 0.0_dp)
          end associate
       end do
+      allocate (beside(count(is_beside)))
+      found = 0
+      do i = 1, size(bodies%interfaces)
+         associate (first => bodies%points%interface_start(i), &
+            last => bodies%points%interface_start(i + 1) - 1)
+            if (.not. any(is_beside(first:last))) cycle
+            call integrate_hats(bodies%interfaces(i), edges_of(bodies%interfaces(i), &
+               bodies%points%law(first), opening(first:last), modulus(first:last)), &
+               is_beside(first:last), beside(found + 1:found + count(is_beside(first:last))))
+            associate (new => beside(found + 1:found + count(is_beside(first:last))))
+               new%is_open = opening(first - 1 + new%point) > 0.0_dp
+               new%point = first - 1 + new%point
+            end associate
+            found = found + count(is_beside(first:last))
+         end associate
+      end do
+      is_cut = [(beside(i)%area(2) > 0.0_dp .and. on_tail(bodies, beside(i)%nodes), &
+         i=1, size(beside))]
+      hats = beside(pack([(i, i=1, size(beside))], is_cut))
    end subroutine find_cut_hats
 
-   !> Adds a contact point if an edge cuts its hat.
-   pure subroutine add_hat(bodies, points, edges, numbers, is_open, omega, cut)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(contact_points_type), intent(in) :: points
-      type(side_edge_type), intent(in) :: edges(:)   ! (sides)
-      integer, intent(in) :: numbers(2)  ! contact point of the interface; those before it
-      logical, intent(in) :: is_open
-      real(dp), intent(in) :: omega(:)
-      type(cut_hats_type), intent(inout) :: cut
-      integer, allocatable :: nodes(:)
-      real(dp), allocatable :: shares(:), part(:)
-      real(dp) :: area, factor, of_segment, own
-      integer :: hat, i, j, side
-      logical :: crossed, is_cut
+   !> Contact points with an edge in the side before or behind them.
+   pure function beside_edge(is_open) result(beside)
+      logical, intent(in) :: is_open(:)
+      logical :: beside(size(is_open))
+      integer :: m
 
-      is_cut = .false.
-      area = 0.0_dp
-      own = 0.0_dp
-      associate (k => numbers(1), point => sum(numbers))
-         nodes = bodies%points%difference%values_of(point)
-         allocate (shares(size(nodes)), source=0.0_dp)
-         do i = 1, size(points%segments)
-            associate (segment => points%segments(i))
-               do hat = 1, 2
-                  if (segment%points(hat) /= k) cycle
-                  part = 0.0_dp*segment%difference(:, 1)
-                  of_segment = 0.0_dp
-                  side = side_between(k, segment%points(3 - hat))
-                  crossed = .false.
-                  if (side > 0) crossed = allocated(edges(side)%along)
-                  if (crossed) then
-                     call segment%integrate(hat, part, of_segment, edges(side)%along)
-                  else
-                     call segment%integrate(hat, part, of_segment)
-                  end if
-                  is_cut = is_cut .or. crossed
-                  factor = merge(1.0_dp, omega(point), crossed)
-                  area = area + factor*of_segment
-                  if (.not. crossed) then
-                     own = own + of_segment
-                  else if (.not. is_open .and. omega(point) > 0.0_dp) then
-                     own = own + of_segment/omega(point)
-                  end if
-                  do j = 1, size(part)
-                     call add_share(segment%nodes(j), factor*part(j), nodes, shares)
-                  end do
-               end do
+      m = size(is_open)
+      beside = .false.
+      beside(:m - 1) = is_open(:m - 1) .neqv. is_open(2:)
+      beside(2:) = beside(2:) .or. (is_open(:m - 1) .neqv. is_open(2:))
+   end function beside_edge
+
+   !> The integrals of the hats of an interface beside an edge.
+   pure subroutine integrate_hats(points, edges, is_beside, hats)
+      type(contact_points_type), intent(in) :: points
+      type(side_edge_type), intent(in) :: edges(:)       ! (sides)
+      logical, intent(in) :: is_beside(:)                ! (m)
+      type(cut_hat_type), intent(inout) :: hats(:)       ! (count of them) with numbers in points
+      real(dp) :: weights(support, 2)
+      integer :: i, k, n
+      logical :: crossed
+
+      hats%point = pack([(k, k=1, size(is_beside))], is_beside)
+      do n = 1, size(hats)
+         hats(n)%nodes = points%hats(hats(n)%point)%nodes
+         allocate (hats(n)%shares(size(hats(n)%nodes), 2), source=0.0_dp)
+      end do
+      do n = 1, size(hats)
+         k = hats(n)%point
+         do i = 1, size(points%hats(k)%segment)
+            associate (segment => points%segments(points%hats(k)%segment(i)), &
+               end => points%hats(k)%end(i))
+               crossed = segment%side() > 0
+               if (crossed) crossed = allocated(edges(segment%side())%along)
+               if (.not. crossed) then
+                  weights = segment%hat_weights()
+                  call add(segment, weights(:, end), 1, hats(n))
+               else if (segment%side() == k .or. .not. is_beside(segment%side())) then
+                  ! Both hats of the side take their integrals at once.
+                  weights = segment%hat_weights(edges(segment%side())%along)
+                  call add(segment, weights(:, end), 2, hats(n))
+                  if (segment%side() < k) cycle
+                  if (is_beside(k + 1)) call add(segment, weights(:, 3 - end), 2, hats(n + 1))
+               end if
             end associate
          end do
-         if (.not. is_cut .or. area <= 0.0_dp) return
-         if (.not. on_tail(bodies, nodes)) return
-         cut%point = [cut%point, point]
-         cut%conductance = [cut%conductance, area/bodies%points%weight(point)]
-         cut%own = [cut%own, own/bodies%points%weight(point)]
-         call cut%jump%add(nodes, shares/area)
-      end associate
-   end subroutine add_hat
+      end do
+   end subroutine integrate_hats
 
-   !> The side between two contact points, 0 where they are not beside each other.
-   pure integer function side_between(k, other)
-      integer, intent(in) :: k, other      ! other: 0 for none
+   !> Adds the integrals over a segment to those of a hat.
+   pure subroutine add(segment, weights, kind, hat)
+      type(edge_segment_type), intent(in) :: segment
+      real(dp), intent(in) :: weights(support)
+      integer, intent(in) :: kind             ! of the side: 1 without an edge, 2 with one
+      type(cut_hat_type), intent(inout) :: hat
+      integer :: at, j
 
-      side_between = 0
-      if (other > 0 .and. abs(other - k) == 1) side_between = min(k, other)
-   end function side_between
+      hat%area(kind) = hat%area(kind) + dot_product(segment%area, weights)
+      do j = 1, size(segment%nodes)
+         at = findloc(hat%nodes, segment%nodes(j), dim=1)
+         hat%shares(at, kind) = hat%shares(at, kind) + &
+            dot_product(segment%difference(j, :), weights)
+      end do
+   end subroutine add
+
+   !> The cut hats for conductances of the contact points.
+   pure function cut_hats_at(hats, weight, omega) result(cut)
+      type(cut_hat_type), intent(in) :: hats(:)
+      real(dp), intent(in) :: weight(:)         !! (m) tributary areas [length^2]
+      real(dp), intent(in) :: omega(:)          !! (m) conductances of the points themselves
+      type(cut_hats_type) :: cut
+      real(dp) :: area
+      integer :: i
+
+      cut%point = hats%point
+      allocate (cut%conductance(size(hats)), cut%own(size(hats)))
+      call cut%jump%reserve(size(hats), sum([(size(hats(i)%nodes), i=1, size(hats))]))
+      do i = 1, size(hats)
+         associate (hat => hats(i), own => omega(hats(i)%point))
+            area = own*hat%area(1) + hat%area(2)
+            cut%conductance(i) = area/weight(hat%point)
+            cut%own(i) = hat%area(1)/weight(hat%point)
+            if (.not. hat%is_open .and. own > 0.0_dp) cut%own(i) = cut%own(i) + &
+               hat%area(2)/(own*weight(hat%point))
+            call cut%jump%add(hat%nodes, (own*hat%shares(:, 1) + hat%shares(:, 2))/area)
+         end associate
+      end do
+   end function cut_hats_at
 
    !> The conductances along the sides with an edge, each between a contact point and the next.
-   pure function edges_of(points, profile, before) result(edges)
-      type(all_contact_points_type), intent(in) :: points
-      type(contact_profile_type), intent(in) :: profile
-      integer, intent(in) :: before
-      type(side_edge_type), allocatable :: edges(:)   ! (sides)
+   pure function edges_of(points, law, opening, modulus) result(edges)
+      type(contact_points_type), intent(in) :: points
+      type(conductance_law_type), intent(in) :: law
+      real(dp), intent(in) :: opening(:), modulus(:)  ! (m)
+      type(side_edge_type) :: edges(size(opening) - 1)   ! (sides)
+      type(contact_profile_type) :: profile
       integer :: k
 
-      allocate (edges(size(profile%s) - 1))
+      profile = contact_profile(points, merge(contact_open, contact_slip, opening > 0.0_dp), &
+         max(-opening, 0.0_dp)*modulus, 0.0_dp*opening, max(opening, 0.0_dp))
       do k = 1, size(edges)
          if (count(profile%contact_state(k:k + 1) == contact_open) == 1) edges(k)%along = &
-            edge_between(points%law(before + k), profile, k)
+            edge_between(law, profile, k)
       end do
    end function edges_of
 
@@ -175,22 +215,6 @@ contains
             bodies%thermal%map%by_unknowns%values_of(nodes(i))) > 0)
       end do
    end function on_tail
-
-   pure subroutine add_share(node, share, nodes, shares)
-      integer, intent(in) :: node
-      real(dp), intent(in) :: share
-      integer, allocatable, intent(inout) :: nodes(:)
-      real(dp), allocatable, intent(inout) :: shares(:)
-      integer :: i
-
-      i = findloc(nodes, node, dim=1)
-      if (i == 0) then
-         nodes = [nodes, node]
-         shares = [shares, 0.0_dp]
-         i = size(nodes)
-      end if
-      shares(i) = shares(i) + share
-   end subroutine add_share
 
    !> The conductance along the side between contact points k and k + 1 with an edge.
    pure function edge_between(law, profile, k) result(edge)

@@ -3,7 +3,7 @@ module increment_data
    use contact_states, only: contact_state_type
    use contact_workspace, only: contact_workspace_type
    use controls, only: thermal_scheme_type
-   use cut_hats, only: cut_hats_type
+   use cut_hats, only: cut_hat_type, cut_hats_type
    use field_problem, only: field_load_type
    use fixed_point, only: pass_type
    use kinds, only: dp
@@ -44,9 +44,11 @@ module increment_data
       type(field_load_type) :: force                 !! load of (2.4)
       !> Loads of earlier increments, of (3.4) and of (2.4).
       type(known_loads_type), allocatable :: known(:)
+      real(dp), allocatable :: supported(:) !! (nodes) what prescribed temperatures alone make
       type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
       real(dp), allocatable :: on_tail(:)            !! (thermal tail) their last solution
-      type(cut_hats_type) :: cut                     !! hats that an edge cuts, for the last omega*
+      type(cut_hat_type), allocatable :: edge_hats(:) !! hats that an edge cuts, last openings
+      type(cut_hats_type) :: cut                     !! the same, also for the last omega*
       type(contact_workspace_type) :: contact        !! laws and factors of the contact
       type(contact_workspace_type) :: held           !! with all closed contact points holding
       type(pass_type) :: pass                        !! the last pass

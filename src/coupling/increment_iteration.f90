@@ -5,7 +5,7 @@ module increment_iteration
    use contact_operator, only: contact_operator_pass, residual_floor
    use contact_states, only: closing_law_type, contact_state_type, contact_open
    use controls, only: fixed_point_type, method_newton
-   use cut_hats, only: cut_hats_type, find_cut_hats
+   use cut_hats, only: cut_hats_at, cut_hats_type, find_cut_hats
    use errors, only: error_type, set_error, status_no_convergence
    use fixed_point, only: accelerator_type, point_residual
    use gap_temperatures, only: at_own_temperatures, derivative_by_temperature
@@ -180,13 +180,14 @@ contains
       type(iteration_record_type) :: passes((1 + path_share)*controls%max_iterations)
       type(contact_state_type) :: good
       integer :: turns(size(next%omega)), away, before, i
-      real(dp) :: edge_opening(size(next%omega)), wanted
+      real(dp) :: wanted
 
       before = size(workspace%record%iterations)
       turns = 0
       away = 0
       wanted = controls%tolerance
-      edge_opening = openings(bodies, workspace%pass%graph, data%previous)
+      if (data%cuts_hats) call find_cut_hats(bodies, workspace%pass%graph%modulus, &
+         openings(bodies, workspace%pass%graph, data%previous), workspace%edge_hats)
       call begin_passes(next%omega, workspace)
       call make_accelerator(controls, size(next%omega), accelerator)
       associate (pass => workspace%pass, record => workspace%record)
@@ -198,8 +199,8 @@ contains
             if (allocated(error)) exit
             good = next%contact
             pass%iteration = i
-            if (data%cuts_hats) call find_cut_hats(bodies, pass%graph%modulus, &
-               edge_opening, pass%omega, workspace%cut)
+            if (data%cuts_hats) workspace%cut = cut_hats_at(workspace%edge_hats, &
+               bodies%points%weight, pass%omega)
             call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
             passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
                residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
@@ -214,7 +215,6 @@ contains
                cycle
             end if
             call measure_pass(bodies, data, workspace, next, passes(i)%residual)
-            edge_opening = pass%opening
             wanted = max(controls%tolerance, record%residual_floor)
             if (passes(i)%residual <= wanted) exit
             away = merge(away + 1, 0, runs_away(data, next%jump))
@@ -253,25 +253,25 @@ contains
 
       workspace%pass%opening = openings(bodies, workspace%pass%graph, next%contact)
       call find_residual(data%scales, bodies%points%weight, workspace%pass, residual, next%resting)
-      if (data%cuts_hats) residual = max(residual, cut_residual(bodies, workspace))
+      if (data%cuts_hats) then
+         call find_cut_hats(bodies, workspace%pass%graph%modulus, workspace%pass%opening, &
+            workspace%edge_hats)
+         residual = max(residual, cut_residual(workspace%cut, cut_hats_at(workspace%edge_hats, &
+            bodies%points%weight, workspace%pass%image)))
+      end if
       next%omega = workspace%pass%omega
       next%cut = workspace%cut
       workspace%record%residual_floor = residual_floor(bodies, data, workspace%pass, next%contact)
    end subroutine measure_pass
 
-   !> How far the conductances of cut hats are from those for the openings that a pass found.
-   pure real(dp) function cut_residual(bodies, workspace) result(residual)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(increment_workspace_type), intent(in) :: workspace
-      type(cut_hats_type) :: found
+   !> How far the conductances of cut hats are from those that a pass found.
+   pure real(dp) function cut_residual(cut, found) result(residual)
+      type(cut_hats_type), intent(in) :: cut, found
 
-      associate (pass => workspace%pass, cut => workspace%cut)
-         call find_cut_hats(bodies, pass%graph%modulus, pass%opening, pass%image, found)
-         residual = 1.0_dp
-         if (size(found%point) /= size(cut%point)) return
-         if (any(found%point /= cut%point)) return
-         residual = maxval([0.0_dp, point_residual(cut%conductance, found%conductance)])
-      end associate
+      residual = 1.0_dp
+      if (size(found%point) /= size(cut%point)) return
+      if (any(found%point /= cut%point)) return
+      residual = maxval([0.0_dp, point_residual(cut%conductance, found%conductance)])
    end function cut_residual
 
    !> Keeps the passes, and says so where the last one is not good enough.

@@ -57,7 +57,7 @@ contains
    !> omega of a contact point, eq. (1.8). A side that was not given: an open contact point carries
    !> no heat, a closed contact point has the open law's value at gamma = 0. A negative gap or
    !> pressure counts as zero.
-   pure function conductance(law, closed, gap, pressure) result(omega)
+   elemental function conductance(law, closed, gap, pressure) result(omega)
       type(conductance_law_type), intent(in) :: law
       logical, intent(in) :: closed                 !! whether the contact point is closed
       real(dp), intent(in) :: gap                   !! gamma >= 0 [length]

@@ -4,7 +4,6 @@ module increment_records
    use all_contact_points, only: all_contact_points_type
    use balances, only: contact_violation, force_residual, imbalance, scales_type
    use conductance_laws, only: conductance, conductance_law_type
-   use contact_definitions, only: pairing_surfaces
    use contact_operator, only: kept_contact, unstrained_forces
    use contact_points, only: contact_points_type
    use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
@@ -25,7 +24,7 @@ module increment_records
    use steps, only: solves_heat, solves_mechanics, step_type
    use temperature_laws, only: face_temperatures_type, law_at
    use text, only: to_text
-   use zone_edges, only: contact_edges, contact_profile_type, stick_edges
+   use zone_edges, only: contact_edges, contact_profile, contact_profile_type, stick_edges
    use transforms, only: on_nodes
    implicit none
    private
@@ -181,9 +180,8 @@ contains
       record%shear = shears(points, shear_force, closed, friction, record%pressure)
       record%normal_force = sum(force)
       record%shear_force = sum(shear_force)
-      profile = contact_profile_type(points%arc_length, points%weight, record%contact_state, &
-         record%pressure, record%shear, record%gap, merge(points%node_spacings, 0, &
-         points%pairing == pairing_surfaces))
+      profile = contact_profile(points, record%contact_state, record%pressure, record%shear, &
+         record%gap)
       call contact_edges(profile, record%edges_contact, record%edge_contact)
       call stick_edges(profile, friction, record%edges_stick, record%edge_stick)
    end subroutine measure_contact
