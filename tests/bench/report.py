@@ -15,10 +15,20 @@ from document import Document, Table  # noqa: E402, F401
 
 PREFACE = """# Performance
 
-What runs cost, how that grows with the mesh, and where the time goes. `./setup.sh bench
-performance` writes this document from runs; with the names of sections (`skyline`, `tail`,
-`levels`, `paper`) it renews these alone. Times are CPU seconds of one thread; those of another
-machine, or of the same one on another day, differ. Operations and instructions do not.
+The cost of a run, its growth with the mesh, and where the time goes. In short:
+
+- The published cylinder takes about a tenth of a second. Half of its instructions are those of error
+  estimates and of writing.
+- Each uniform refinement multiplies the displacements by four, and the time by 2 to 8: 142,336
+  displacements take 19 s and 0.8 GB, 567,296 take 2 minutes and 3 GB. From the second refinement on
+  MUMPS is the faster solver, and the program chooses it.
+- Contact iterations factor only the columns of the contact again: below 2 % of the operations of a
+  full factorisation.
+
+`./setup.sh bench performance` writes this document from runs; with the names of sections
+(`skyline`, `tail`, `levels`, `paper`) it renews these alone. Times are CPU seconds of one thread;
+those of another machine, or of the same one on another day, differ. Operations and instructions do
+not.
 """
 DOCUMENT = Document("performance.md", HERE, ("skyline", "tail", "levels", "paper"), PREFACE)
 
