@@ -112,8 +112,9 @@ def test_after_a_cut_back_increments_land_where_they_must(deck):
 HELD_BACK = {"0.1, 1.": "1., 1.", "*STEP\n": "*STEP, INC=1000\n"}
 
 
-@pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN"])
-def test_cut_backs_leave_nothing_behind(tmp_path, scheme):
+@pytest.mark.parametrize(("scheme", "pairing"), [
+    ("IMPLICIT", "NODES"), ("GALERKIN", "NODES"), ("IMPLICIT", "SURFACES")])
+def test_cut_backs_leave_nothing_behind(tmp_path, scheme, pairing):
     """A run whose increments were cut back is, bit by bit, the one whose increments were given.
 
     Friction and (3.4) remember the increments before, films make factors of their own at each
@@ -122,7 +123,8 @@ def test_cut_backs_leave_nothing_behind(tmp_path, scheme):
     source = INPUT / "examples" / "brake_pad.inp"
     (tmp_path / "brake_pad.mesh").write_text((source.parent / "brake_pad.mesh").read_text())
     text = source.read_text()
-    text = text[: text.index("*VERIFY")]
+    text = text[: text.index("*VERIFY")].replace("NAME=TRACK", f"NAME=TRACK, PAIRING={pairing}")
+    assert text.count("PAIRING") == 1
     plain = tmp_path / "plain.inp"
     plain.write_text(text)
     cards = ["*FIXED POINT, METHOD=ZAITSEV, MAXITER=6", f"*THERMAL SCHEME, TYPE={scheme}"]

@@ -2,6 +2,7 @@
 
 import h5py
 import numpy as np
+import pytest
 from deck_runs import CYLINDER, OWN_MESH, solve
 
 A, B = 0.24e-5, 0.3e-5             # of the gas
@@ -9,16 +10,20 @@ A, B = 0.24e-5, 0.3e-5             # of the gas
 CONVERGED = np.array([5.044, 10.95, 17.26, 23.90, 30.80])
 
 
-def cylinder(folder, conductivity="0.18"):
-    """Solve the cylinder on mortar points in increments of 180 C; return the values of its face."""
+GAS = f"{A * 1e5:.2f}E-5, {B * 1e5:.1f}E-5"
+
+
+def cylinder(folder, conductivity="0.18", gas=GAS):
+    """Solve the cylinder on mortar points in increments of 180 C, perhaps with another open law;
+    return the values of its face."""
     text = CYLINDER.read_text().split(OWN_MESH)[0]
     head, steps = text.split("*STEP", 1)
     steps = "*STEP" + steps.split("*VERIFY")[0]
     text = head.split("*VERIFY")[0] + steps.replace("20., 900.", "180., 900.")
-    assert "PAIRING=NODES" in text and "\n0.18\n" in text
+    assert "PAIRING=NODES" in text and "\n0.18\n" in text and f"\n{GAS}\n" in text
     deck = folder / "edge.inp"
     deck.write_text(text.replace("PAIRING=NODES", "PAIRING=SURFACES")
-                    .replace("\n0.18\n", f"\n{conductivity}\n"))
+                    .replace("\n0.18\n", f"\n{conductivity}\n").replace(GAS, gas))
     with h5py.File(solve(deck)) as file:
         face = file["contact/FACE"]
         return {name: face[name][()] for name in face if isinstance(face[name], h5py.Dataset)}
@@ -72,3 +77,19 @@ def test_heat_has_a_third_of_the_error_of_whole_hats(tmp_path):
     error = cylinder(tmp_path)["heat_rate"] / CONVERGED - 1
     assert np.sqrt(np.mean(error**2)) < 0.0037
     assert abs(error).max() < 0.007
+
+
+@pytest.mark.parametrize(("gas", "a", "cuts"), [
+    (GAS, A, True), ("0.48E-5, 0.3E-5", 2 * A, False), (f"{GAS}, 0.\n{GAS}, 1000.", A, False)],
+    ids=["continuous", "jumps", "varies with temperature"])
+def test_hats_are_cut_where_laws_neither_jump_nor_vary_with_temperature(tmp_path, gas, a, cuts):
+    """Whole hats have the conductance of their own pressure or gap; in a cut one, at either side of
+    the edge, it varies by an order of magnitude."""
+    face = cylinder(tmp_path, gas=gas)
+    for last in range(5):
+        pressure, gap = face["pressure"][last], face["gap"][last]
+        rests = (pressure == 0.0) & (gap == 0.0)
+        own = np.where(pressure > 0.0, 0.8 + 0.24 * pressure, a / (B + gap))
+        differs = np.flatnonzero((abs(face["conductance"][last] / own - 1) > 1e-6) & ~rests)
+        edge = np.flatnonzero(pressure > 0.0)[-1]
+        assert differs.tolist() == ([edge, edge + 1] if cuts else [])
