@@ -17,9 +17,20 @@ from document import Document, Table, verdict  # noqa: E402, F401  its folder is
 
 PREFACE = """# Stability at the extremes
 
-Cases at which methods may fail, with their figures and a verdict: `pass`, or `refused` if the program
-says clearly that it cannot solve the case. The script `tests/stability/report.py` writes this
-document from runs of the program; the tests `stability_*` repeat them, the longest ones in part.
+How the program behaves where methods may fail. Every case below passes, or is refused with a clear
+message.
+
+| section | cases | result |
+|---|---|---|
+| [Fixed point of the conductance](#fixed-point-of-the-conductance) | rods with known solutions, 10,000 random ones, laws that jump, the cylinder and its strongly coupled twin | NEWTON solves all of them; the other methods fail in 5 to 13 % |
+| [Contact](#contact) | random blocks with friction up to 10, cycles, shakedown, thin strips that only contact holds | no run ends early, contact conditions are met to 1e-10 |
+| [Values at the extremes](#values-at-the-extremes) | conductances and conductivities over 30 decades, lengths over 60, friction up to 10, slender elements | closed forms are met; what rounding would spoil is refused |
+| [Invariance](#invariance) | other units, positions, numbers, exchanged faces | the same results to 1e-11 |
+| [Time steps](#time-steps) | friction along paths, schemes of (3.4) | the orders of theory; straight paths are exact |
+
+In the tables a verdict is `pass`, or `refused` where the program says clearly that it cannot solve
+the case. The script `tests/stability/report.py` writes this document from runs of the program; the
+tests `stability_*` repeat them, the longest ones in part.
 """
 DOCUMENT = Document("stability.md", HERE, ("fixed_point", "contact", "extremes", "invariance",
                                            "time_steps"), PREFACE)

@@ -13,10 +13,10 @@ from physics import material, mesh
 
 TITLE = "Values at the extremes"
 TEXT = """
-Each case is compared with a closed form or an invariant: `deviation` is the largest difference,
-relative to the largest expected value, and `allowed` its limit. `iterations` are all passes of the
-run, `smallest pivot` is that of the factors of the bodies divided by its diagonal entry, `residual`
-is the larger of heat and force imbalance.
+Every case agrees with its closed form or invariant within what rounding allows, or is refused with
+a message. `deviation` is the largest difference, relative to the largest expected value, and
+`allowed` its limit. `iterations` are all passes of the run, `smallest pivot` is that of the factors
+of the bodies divided by its diagonal entry, `residual` is the larger of heat and force imbalance.
 """
 DEBUG = os.environ.get("THERCON_BUILD_TYPE", "Release") != "Release"
 FACES = ["*CONTACT PAIR, INTERACTION=I, NAME=F", "B.BOTTOM, A.TOP"]
@@ -103,7 +103,7 @@ def scaled(bar, factor):
 def laws(folder):
     """Return the tables of gas laws and of dimensions."""
     table = report.Table("Gas in the gap, omega = A/(B + gap), as B goes to 0", HEAD,
-                         text="Rods whose gap stays open, or all but closes.")
+                         text="Rods whose gap stays open, or nearly closes.")
     for b in (1e-5, 1e-8, 1e-14, 1e-30, 1e-90):
         table.rows.append(two_rods(folder, f"B = {b:.0e}, A kept", R1, (0.15, b),
                                    (0.15 / b, 1e-4), ROUNDING))
@@ -111,7 +111,7 @@ def laws(folder):
         table.rows.append(two_rods(folder, f"B = {b:.0e}, A/B kept", R1, (1.5e4 * b, b),
                                    (1.5e4, 1e-4), ROUNDING))
     sizes = report.Table("Very small and very large dimensions", HEAD,
-                         text="The same rods with all lengths multiplied; gas and conductance follow.")
+                         text="The same rods with all lengths multiplied by a factor, gas and conductance accordingly.")
     for factor in (1e-30, 1e-9, 1e-3, 1e3, 1e9, 1e30):
         sizes.rows.append(two_rods(folder, f"lengths times {factor:.0e}", scaled(R1, factor),
                                    (0.15, 1e-5 * factor), (1.5e4 / factor, 1e-4 / factor), ROUNDING))
@@ -136,8 +136,8 @@ def dragged(folder, mu):
 def friction(folder):
     """Return the table of coefficients of friction."""
     table = report.Table(
-        "Friction", HEAD, text="A block is pressed down and dragged far: where it is not open it slips, and "
-        "every pair and the sum carry mu times the pressure.")
+        "Friction", HEAD, text="A block is pressed down and dragged far: where it is closed it slips, and "
+        "every contact point and the sum carry mu times the pressure.")
     table.rows = [dragged(folder, mu) for mu in (0.0, 1e-6, 1.0, 10.0)]
     return [table]
 
@@ -161,9 +161,9 @@ def pressed(folder, name, young, allowed, poisson=0.0, xs=XS, heights=(1.0, 1.0)
 
 def stiffness(folder):
     """Return the tables of moduli and Poisson's ratios."""
-    table = report.Table("Young's moduli far apart", HEAD, text="A punch is measured by a base alone of which the "
-                         "nodes under it are pushed down evenly. A stiff block that only a soft one holds loses the "
-                         "digits of the ratio; from a pivot of 1e-9 on the program warns.")
+    table = report.Table("Young's moduli far apart", HEAD, text="The reference of a punch is its base alone, the "
+                         "nodes under the punch being pushed down evenly. A stiff block that only a soft one holds loses the "
+                         "digits of the ratio of stiffness; below a pivot of 1e-9 the program warns.")
     for ratio in (1e4, 1e8, 1e-8):
         table.rows.append(pressed(folder, f"A is {ratio:.0e} as stiff as B, flat",
                                   (ratio**0.5, ratio**-0.5),
@@ -173,8 +173,8 @@ def stiffness(folder):
     for ratio in (1e4, 1e8):
         table.rows.append(punch(folder, ratio))
     soft = report.Table(
-        "Nearly incompressible", HEAD, text="A ring shrunk on a tube, `CAX8R`: pressure of the closed form. What is "
-        "left is that of the mesh; rounding grows like 1/(1 - 2 nu).")
+        "Nearly incompressible", HEAD, text="A ring shrunk on a tube, `CAX8R`, against the pressure in closed form. What "
+        "remains is the error of the mesh, and rounding that grows like 1/(1 - 2 nu).")
     for poisson in (0.4999, 0.499999):
         soft.rows.append(shrunk(folder, poisson))
     return [table, soft]
@@ -227,8 +227,8 @@ def shrunk(folder, poisson):
 
 def shapes(folder):
     """Return the tables of slender elements, near nodes and strips."""
-    table = report.Table("Slender elements, near nodes, bodies far apart", HEAD, text="Blocks under an even pressure. What is "
-                         "lost grows with the square of the ratio of the sides; from 1e-5 on the program warns.")
+    table = report.Table("Slender elements, near nodes, bodies far apart", HEAD, text="Blocks under a uniform pressure. The "
+                         "loss grows with the square of the ratio of the sides; below a ratio of 1e-5 the program warns.")
     for width in (1e2, 1e4):
         table.rows.append(pressed(folder, f"elements {width:.0e} times as wide as high", (1000.0, 1000.0),
                                   spoilt(width), 0.3, [0.0, width, 2 * width], (2.0, 2.0)))
@@ -243,8 +243,8 @@ def shapes(folder):
     for gap in (1e3, 1e6, 1e12):
         table.rows.append(far_apart(folder, gap))
     strips = report.Table(
-        "Thin strips that contact alone holds", HEAD, text="Strips with friction, without any support, pressed "
-        "on a base that cannot move: the pressure goes through every face.")
+        "Thin strips that contact alone holds", HEAD, text="Strips with friction and without supports, pressed "
+        "on a base that cannot move: every face carries the pressure.")
     for thickness in (1e-2, 1e-4):
         strips.rows.append(strip(folder, thickness))
     return [table, strips]

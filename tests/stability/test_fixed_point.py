@@ -16,13 +16,15 @@ from rods import Rods
 
 TITLE = "Fixed point of the conductance"
 TEXT = f"""
-Every method solves omega = U(omega): NEWTON, ANDERSON, ZAITSEV, eq. (4.2), PICARD, eq. (4.1), and (4.2) with the constant g = 0.5,
-"relaxed 0.5". A method may give up, with a message, after {MAXITER} passes on the rods and 50 on the cylinder; only NEWTON, the default, may not. What
-a method finds must be a solution. All solutions of the rods are known in closed form, with 60 digits: roots of quadratics, and the state at rest
-where laws jump (`tests/reference/rods.py`). Where laws jump, contact points across one end may also be in different states, which the closed forms
-do not cover; such states must satisfy the equations of both rods, assembled independently (`tests/stability/rod_equations.py`), and are counted. (4.1) converges only if |U'| < 1, and with g = 0.5 only if |0.5 + 0.5 U'| < 1: on R2 both cycle
-without end, which counts as `pass`. Errors are those of omega, relative; "of what is allowed": of 2 (TOL + rounding)/min(|1 - U'|, 1), rounding
-being that of the displacements in omega. `coupling_gain` is compared with finite differences of U in `tests/decks/test_coupling_gain.py`.
+NEWTON, the default, finds a solution in every case of this section. The other methods fail in 5 to 13 % of them, where the coupling is strong.
+
+Every method solves omega = U(omega); "relaxed 0.5" is (4.2) with the constant g = 0.5. Only NEWTON must not give up; the others may, with a message, after {MAXITER} passes on the rods and 50 on the
+cylinder. What a method finds must be a solution. (4.1) converges only if |U'| < 1, and with g = 0.5 only if |0.5 + 0.5 U'| < 1: on R2 both cycle without end, which counts as `pass`.
+
+All solutions of the rods are known in closed form, with 60 digits: roots of quadratics, and the state at rest where laws jump (`tests/reference/rods.py`). Where laws jump, contact points across one
+end may also be in different states, which the closed forms do not cover; such states are counted as "unlike" and must satisfy the equations of both rods, assembled independently
+(`tests/stability/rod_equations.py`). Errors are relative errors of omega. "Error of what is allowed" is their share of 2 (TOL + rounding)/min(|1 - U'|, 1), where rounding is that of the
+displacements in omega. `tests/decks/test_coupling_gain.py` compares `coupling_gain` with finite differences of U.
 """
 BRANCHES = "open", "middle", "closed"
 ON_CYLINDER = tuple(METHODS)[:4]
@@ -31,11 +33,9 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class Extent:
-    """How much is run: steep laws by methods that may give up, by their closed law in parts of
-    A/B; random rods by these methods, by NEWTON, and jumping ones by NEWTON; refinements of the
-    cylinder, also with a jump; and the most increments."""
+    """How much is run: random rods by methods that may give up, by NEWTON, and jumping ones by
+    NEWTON; refinements of the cylinder, also with a jump; and the most increments."""
 
-    steep: tuple[float, ...]
     rods: int
     by_newton: int
     jumping: int
@@ -44,8 +44,8 @@ class Extent:
     increments: int
 
 
-WHOLE = Extent((1.0, 100.0, 0.01), COUNT, COUNT, JUMPING, (0, 1, 2), (0, 1), 450)
-TESTED = Extent((1.0,), 10, 40, 40, (0,), (0,), 90)
+WHOLE = Extent(COUNT, COUNT, JUMPING, (0, 1, 2), (0, 1), 450)
+TESTED = Extent(10, 40, 40, (0,), (0,), 90)
 
 
 class Tally:
@@ -64,29 +64,35 @@ class Tally:
 
 def known_rods(folder, tally):
     """Return the table of R1 to R3."""
-    table = Table("Rods with known answers",
-                  ["rod", "U'", "method", "passes", "ends at", "error", "verdict"],
-                  text="TOL=1e-11. R3 starts near each of its three solutions. A method must find "
-                       "the solution, but for one that repels it, which it must not find; (4.2) "
+    table = Table("Rods with known answers", ["rod", "U'", *METHODS, "largest error", "verdict"],
+                  text="Passes of each method, TOL=1e-11. R3 starts near each of its three "
+                       "solutions; where a method ends at another one, this is named. A method must "
+                       "find the solution, unless the solution repels it: then it must not. (4.2) "
                        "promises nothing where U' > 1.")
     for name in RODS:
         case = known_case(name)
         every = case.solutions()
         wanted = every[BRANCHES.index(name[3:])] if name.startswith("r3") else every[0]
+        cells, worst, right = [], 0.0, True
         for method in METHODS:
             (outcome,) = outcomes(folder / f"{name}-{method}", [case], method)
             repels = method in PLAIN and not attracts(method, wanted.gain)
             free = repels or (method == "ZAITSEV" and wanted.gain > 1)
-            at, error, right = "-", "-", free
+            cell, holds = "cycles", free
             if outcome.conductance is not None:
                 solution, error = landed(case, outcome)
-                at = BRANCHES[every.index(solution)] if len(every) > 1 else "the solution"
-                right = error <= case.allowed(solution) and (
+                cell = str(outcome.passes)
+                if solution != wanted:
+                    cell += f", {BRANCHES[every.index(solution)]}"
+                worst = np.maximum(worst, error)   # NaN where any is
+                holds = error <= case.allowed(solution) and (
                     solution != wanted if repels else free or solution == wanted)
             if wanted.gain < 1:
                 tally.add(method, 1, [outcome.passes] if outcome.passes else [])
-            table.rows.append([name[:3].upper().rstrip("-"), wanted.gain, method,
-                               outcome.passes or "cycles", at, error, verdict(right)])
+            cells.append(cell)
+            right = right and holds
+        label = name.upper() if len(every) == 1 else f"R3, {name[3:]}"
+        table.rows.append([label, wanted.gain, *cells, float(worst), verdict(right)])
     return table
 
 
@@ -117,17 +123,29 @@ def group(folder, cases, method, tally):
             verdict(right and worst <= 1)]
 
 
-def steep_laws(folder, tally, extent):
+def steep_laws(folder, tally):
     """Return the table of ever steeper laws."""
-    table = Table("Ever steeper laws", ["closed law at p = 0", "kept", *GROUP],
-                  text="R1, R1b and R2 with B = 1e-8, 1e-10, 1e-12 and 1e-14. Where laws jump, "
-                       "contact points may rest, and the other methods leave increments to NEWTON.")
+    others = tuple(METHODS)[1:]
+    table = Table("Ever steeper laws",
+                  ["closed law at p = 0", "kept", "NEWTON: failures", "passes, mean", "largest",
+                   "U', lowest", *(f"{method}: failures" for method in others),
+                   "error of what is allowed", "verdict"],
+                  text="R1, R1b and R2 with B = 1e-8, 1e-10, 1e-12 and 1e-14: 12 cases each. Where "
+                       "laws jump, contact points may rest, and the other methods leave increments "
+                       "to NEWTON.")
     for factor, law in ((1.0, "A/B"), (100.0, "100 A/B"), (0.01, "A/(100 B)")):
         for kept in ("A", "A/B"):
             cases = steep_cases(kept, factor)
-            for method in METHODS if factor in extent.steep else ("NEWTON",):
-                where = folder / f"steep-{factor:g}-{kept[-1]}-{method}"
-                table.rows.append([law, kept, *group(where, cases, method, tally)])
+            rows = {method: dict(zip(GROUP, group(
+                folder / f"steep-{factor:g}-{kept[-1]}-{method}", cases, method, tally),
+                strict=True)) for method in METHODS}
+            newton = rows["NEWTON"]
+            table.rows.append([
+                law, kept, *(newton[key] for key in ("failures", "passes, mean", "largest",
+                                                     "U', lowest")),
+                *(rows[method]["failures"] for method in others),
+                float(np.max([row["error of what is allowed"] for row in rows.values()])),
+                verdict(all(row["verdict"] == verdict(True) for row in rows.values()))])
     return table
 
 
@@ -153,71 +171,78 @@ def random_rods(folder, tally, extent):
 
 def cylinders(folder, tally, extent):
     """Return the tables of the cylinder and its twin, and of the same solution by other ways."""
+    others = ON_CYLINDER[1:]
+    starts = {f"FROM={end}": [f"*START, FROM={end}"] for end in ("OPEN", "CLOSED")}
     table = Table("Cylinder and coupled twin",
-                  ["deck", "refined", "increments", "method", "solved", "passes", "largest",
-                   "U', lowest", "largest real", "imbalance", "verdict"],
-                  text="A method that gives up does so with exit status 2, and names the "
-                       "increment: `refused`.")
-    other = Table("One solution by other ways", ["deck", "refined", "against NEWTON", "increments",
-                                                 "largest difference", "verdict"],
-                  text="Gap, pressure, shear, conductance and heat flux of all pairs, by the "
-                       "largest value of each in the increment, in all increments that both have.")
+                  ["deck", "refined", "increments", "NEWTON: passes", "largest", "U', lowest",
+                   "largest real", "imbalance", *others, "verdict"],
+                  text="The other methods have their passes; a method that gives up does so with "
+                       "exit status 2, and names the increment: `refused`.")
+    other = Table("One solution by other ways",
+                  ["deck", "refined", *others, *starts, "verdict"],
+                  text="Gap, pressure, shear, conductance and heat flux of all pairs, in 45 "
+                       "increments or up to the one at which a method gives up: largest difference "
+                       "from NEWTON, relative to the largest value of each in the increment.")
     for name in DECKS:
         for levels in extent.levels:
-            whole = None
-            for increments in (45, 9, 90, 450) if levels == 0 else (45, 9, 90):
-                if increments > extent.increments:
-                    continue
-                run = solve(folder, name, "NEWTON", levels, increments)
-                whole = whole or run
-                table.rows.append(described(name, levels, "NEWTON", run))
+            runs = {count: solve(folder, name, "NEWTON", levels, count)
+                    for count in ((45, 9, 90, 450) if levels == 0 else (45, 9, 90))
+                    if count <= extent.increments}
+            whole = runs[45]
             tally.add("NEWTON", whole.increments, whole.passes)
-            ways = [(method, method, ()) for method in ON_CYLINDER[1:]]
-            ways += [(f"FROM={end}", "NEWTON", [f"*START, FROM={end}"])
-                     for end in ("OPEN", "CLOSED")]
-            for way, method, cards in ways:
-                run = solve(folder, name, method, levels, 45, cards)
-                if method != "NEWTON":
-                    table.rows.append(described(name, levels, method, run))
-                    tally.add(method, run.increments, run.passes)
-                apart = difference(whole, run)
-                other.rows.append([name, levels, way, run.solved, apart,
-                                   verdict(apart <= SAME and (method != "NEWTON"
-                                                              or run.solved == 45))])
+            ways = {method: solve(folder, name, method, levels, 45, ()) for method in others}
+            for method, run in ways.items():
+                tally.add(method, run.increments, run.passes)
+            for count, run in runs.items():
+                beside = [ways[method] if count == 45 else None for method in others]
+                table.rows.append(described(name, levels, run, beside))
+            ways |= {start: solve(folder, name, "NEWTON", levels, 45, cards)
+                     for start, cards in starts.items()}
+            apart = [difference(whole, run) for run in ways.values()]
+            right = np.max(apart) <= SAME and all(ways[start].solved == 45 for start in starts)
+            other.rows.append([name, levels, *apart, verdict(right)])
     return [table, other]
 
 
-def described(name, levels, method, run):
-    """Return the row of a run."""
-    said = verdict(run.imbalance < 1e-8)
-    if run.solved < run.increments:
-        said = "FAIL" if method == "NEWTON" else "refused"
-    return [name, levels, run.increments, method, run.solved, int(run.passes.sum()),
-            int(run.passes.max()), float(run.gain.min()), float(run.gain_max.max()),
-            float(run.imbalance), said]
+def described(name, levels, run, beside):
+    """Return the row of a run by NEWTON and of those of the other methods."""
+    right, cells = run.solved == run.increments and run.imbalance < 1e-8, []
+    for other in beside:
+        cells.append("-")
+        if other:
+            cells[-1] = "refused" if other.solved < other.increments else int(other.passes.sum())
+            right = right and other.imbalance < 1e-8
+    return [name, levels, run.increments, int(run.passes.sum()), int(run.passes.max()),
+            float(run.gain.min()), float(run.gain_max.max()), float(run.imbalance), *cells,
+            verdict(right)]
 
 
 def with_a_jump(folder, extent):
     """Return the table of the cylinder and its twin where they conduct only if they touch."""
     table = Table("Cylinder and coupled twin with a jump",
-                  ["deck", "refined", "increments", "method", "solved", "passes", "largest",
-                   "increments with pairs at rest", "pairs", "first and last at rest, s",
-                   "verdict"],
+                  ["deck", "refined", "increments", *(f"{m}: passes" for m in ON_CYLINDER),
+                   "increments with pairs at rest", "first and last at rest, s", "verdict"],
                   text="omega = 0.8 + 0.24 p closed, 0 open: every increment must have a "
-                       "solution. A contact point at rest has neither gap, pressure nor shear, and "
-                       "a conductance between 0 and 0.8; it is at the edge of contact.")
-    cases = [(name, levels, 45, method) for name in DECKS for levels in extent.jump_levels
-             for method in ON_CYLINDER]
-    cases += [(name, levels, extent.increments, "NEWTON") for name in DECKS
-              for levels in extent.jump_levels]
-    for name, levels, increments, method in cases:
-        run = solve(folder, name, method, levels, increments, (), {OPEN_LAW: ""})
-        rests = resting(run)
+                       "solution, by every method the same. A contact point at rest has neither "
+                       "gap, pressure nor shear, and a conductance between 0 and 0.8; it is at the "
+                       "edge of contact.")
+    cases = [(name, levels, 45, ON_CYLINDER) for name in DECKS for levels in extent.jump_levels]
+    if extent is WHOLE:
+        cases += [(name, levels, extent.increments, ("NEWTON",)) for name in DECKS
+                  for levels in extent.jump_levels]
+    for name, levels, increments, methods in cases:
+        runs = [solve(folder, name, method, levels, increments, (), {OPEN_LAW: ""})
+                for method in methods]
+        at_rest = [resting(run) for run in runs]
+        rests = at_rest[0]
         ends = f"{rests[0][1]:.3g}, {rests[-1][1]:.3g}" if rests else "none"
-        right = run.solved == increments and all(sound for *_, sound in rests)
-        table.rows.append([name, levels, increments, method, run.solved, int(run.passes.sum()),
-                           int(run.passes.max()), len({i for i, *_ in rests}), len(rests), ends,
-                           verdict(right)])
+        right = all(run.solved == increments for run in runs) and all(
+            [one[:2] for one in found] == [one[:2] for one in rests] and all(
+                sound for *_, sound in found) for found in at_rest)
+        passes = [int(run.passes.sum()) for run in runs]
+        table.rows.append([name, levels, increments, *passes,
+                           *["-"] * (len(ON_CYLINDER) - len(passes)), len({i for i, *_ in rests}),
+                           ends, verdict(right)])
     return table
 
 
@@ -225,9 +250,9 @@ def summary(tally):
     """Return the table that chooses the default: fewest failures, then fewest passes."""
     table = Table("The default", ["method", "cases", "failures", "passes of those solved, mean",
                                   "verdict"],
-                  text="All rods above, but for the middle solution of R3, and all 45 increments "
-                       "of the cylinder and its twin, refined 0, 1 and 2 times; increments that a "
-                       "method does not come to count as failures. The default is the method with "
+                  text="All rods above except the middle solution of R3, and all 45 increments of "
+                       "the cylinder and its twin, refined 0, 1 and 2 times; increments that a "
+                       "method does not reach count as failures. The default is the method with "
                        "the fewest failures, then the fewest passes.")
     rows = [[method, tally.tried[method], tally.tried[method] - tally.solved[method],
              tally.passes[method] / tally.solved[method]] for method in METHODS]
@@ -240,7 +265,7 @@ def summary(tally):
 def tables(folder, extent=WHOLE):
     """Run all cases; return their tables."""
     tally = Tally()
-    found = [known_rods(folder, tally), steep_laws(folder, tally, extent),
+    found = [known_rods(folder, tally), steep_laws(folder, tally),
              random_rods(folder, tally, extent)]
     found += cylinders(folder, tally, extent)
     return [*found, with_a_jump(folder, extent), summary(tally)]

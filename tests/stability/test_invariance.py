@@ -9,12 +9,12 @@ from press import Look
 
 TITLE = "Invariance"
 TEXT = """
-A press of two blocks with inclined and bent faces, friction, gas and power conductance, films,
-sources, weights, forces on faces, volumes and nodes; contact points open, slip, stick and close. In
-units other than SI, at another position, with other numbers or with the faces exchanged, the deck
-gives the same results: `deviation` is the largest difference after conversion in any dataset of
-`/contact` and `/history`, relative to the largest value of the dataset. If the contact points run
-in the opposite direction, `shear` and `slip` change their signs and `s` counts from the other end.
+A deck gives the same results in other units, at another position, with other numbers and with the
+faces exchanged. It is a press of two blocks with inclined and bent faces, friction, gas and power
+conductance, films, sources, weights, forces on faces, volumes and nodes; contact points open, slip,
+stick and close. `deviation` is the largest difference after conversion in any dataset of `/contact`
+and `/history`, relative to the largest value of the dataset. If the contact points run in the
+opposite direction, `shear` and `slip` change their signs and `s` counts from the other end.
 """
 HEAD = ["the press", "datasets", "deviation", "allowed", "verdict"]
 SAME = 1e-9
@@ -39,7 +39,7 @@ def turned(degrees):
 
 
 LOOKS = {
-    "as it was": Look(),
+    "as it is": Look(),
     "in mm, N, tonne": Look(1e3, 1e-6, 1e3, 1e-3),
     "in cm, MPa, W": Look(1e2, 1e-6, 1.0, 1.0),
     "in micrometres, MPa, pW": Look(1e6, 1e-6, 1e12, 1.0),
@@ -50,7 +50,7 @@ LOOKS = {
     "turned by 180 degrees": Look(turn=turned(180)),
     "turned by 253 degrees": Look(turn=turned(253)),
     "renumbered": Look(seed=1),
-    "renumbered otherwise": Look(seed=2),
+    "renumbered differently": Look(seed=2),
     "faces exchanged": Look(swapped=True),
     "by MUMPS": Look(solver="MUMPS"),
     "all at once": Look(1e3, 1e-6, 1e3, 1e-3, MIRROR_X @ turned(17), 3, True),
@@ -129,7 +129,7 @@ def tables(folder):
     found = {int(k) for k in np.unique(plain["status"])}
     changes = (np.diff(plain["status"] == 0, axis=0)).any()
     assert found == {0, 1, 2} and changes, "open, slipping, stuck and closing pairs"
-    table = report.Table("The press, written down otherwise", HEAD)
+    table = report.Table("The press in other forms", HEAD)
     for name, look in LOOKS.items():
         count, off = worst(plain, solved(folder, look), look)
         table.rows.append([name, count, off, SAME, report.verdict(off <= SAME)])

@@ -15,8 +15,9 @@ from test_physics_schemes import step as heat_step
 
 TITLE = "Time steps"
 TEXT = """
-The problem has no physical time, but friction depends on the path, and the schemes of (3.4) lag
-behind the conductance. The tables give errors at the end of the loading against the number of
+Errors of the increments fall with the second power of their size where friction depends on the
+path, and with the order of theory for the schemes of (3.4), which lag behind the conductance. The
+problem has no physical time. The tables give errors at the end of the loading against the number of
 increments; the order is that from 40 to 80 increments.
 """
 COUNTS = [5, 10, 20, 40, 80]
@@ -33,7 +34,7 @@ def row_of(name, errors, should):
 
 def head(first):
     """Return the heads of a table of errors."""
-    return [first, *(f"{n} increments" for n in COUNTS), "order", "should be", "verdict"]
+    return [first, *(f"{n} increments" for n in COUNTS), "order", "expected", "verdict"]
 
 
 # One pair on springs, in closed form
@@ -70,7 +71,7 @@ def pairs(folder):
     """Return the table of paths of one pair that are known in closed form."""
     table = Table(
         "Friction: one pair in closed form", head("path"),
-        text="""One pair on springs, friction 0.6; its place at the end. Events at a third of the load fall within an increment for any number of increments. A path on which each pair goes on slipping, or sticking, in one direction has no error at all.""")
+        text="""One contact point on springs, friction 0.6: error of its position at the end. The events at a third of the load fall within an increment for any number of increments. A path on which the point keeps slipping, or sticking, in one direction has no error at all.""")
     speed = 2 * FRICTION * TURN
     nn, tt = 2.0, 1.0
     cases = []
@@ -120,8 +121,8 @@ def hertz(folder, finest=320, frictions=(0.05, 0.3)):
     table = Table(
         "Friction: Hertz with friction", [*head("case")[:-3], "verdict"],
         text=f"""Different materials (input/hertz), against {finest} increments. Errors fall in steps: they come from increments in which
-several pairs close, or a pair closes and slips; where all closed pairs stick and one closes at a time, nothing depends on the
-increments any more.""")
+several contact points close, or one closes and slips. Where all closed points stick and one closes at a time, nothing depends on the
+increments.""")
     names = "shear_force", "slip", "shear"
     for friction in frictions:
         found = {}
@@ -146,8 +147,8 @@ def cylinder(folder, counts=(5, 20, 80, 320, 1280), finest=2560):
     table = Table(
         "Friction: the cylinder", ["quantity at the end", *(f"{n} increments" for n in counts),
                                    "verdict"],
-        text=f"""Its 21 pairs close one after the other while they slide, against {finest} increments; the deck has 45. The limit exists, but convergence is not even: one contact point slips at a time, and each one that closes freezes
-its slip, in which the error of the mesh exceeds that of the increments (docs/theory.md, section 6). Relative errors, of the edge in local nodal spacings.""")
+        text=f"""Its 21 contact points close one after the other while they slide. The reference has {finest} increments, the deck 45. Convergence is uneven: one contact point slips at a time, and each one that closes freezes
+its slip, in which the error of the mesh exceeds that of the increments (docs/theory.md, section 6). Errors are relative; that of the edge is in local nodal spacings.""")
     names = "normal_force", "shear_force", "slip", "shear", "edge_stick", "s"
     found = {}
     for count in [*counts, finest]:
@@ -195,8 +196,8 @@ def schemes(folder):
     for k, name in enumerate(("gap", "temperature of the slave")):
         table = Table(f"Schemes: error of the {name}", head("scheme"),
                       text="""Two rods that a ramp heats through a gas gap (closed form: tests/decks/test_rods.py), against the
-quasi-static solution. A scheme with a3 = a1, b3 = 0 solves (3.3) itself; the others leave of a change of conductance dG in an increment
-a residual a2 dG T_i+1 - b3 dG T_i, which is of second order where a2 = b3, as is the error; else of first.""" * (k == 0))
+quasi-static solution. A scheme with a3 = a1, b3 = 0 solves (3.3) itself. After a change of conductance dG in an increment the others leave
+a residual a2 dG T_i+1 - b3 dG T_i. It is of second order where a2 = b3, else of first, and so is the error.""" * (k == 0))
         for scheme, should in ORDERS.items():
             errors = [float(found[scheme, count][k]) for count in COUNTS]
             table.rows.append(row_of(scheme, errors, should))
@@ -209,8 +210,8 @@ def imbalance(folder):
     increments = 6
     table = Table("Schemes: an initial imbalance", ["scheme", "factor -b1/a1",
                                                     *(f"left after {n}" for n in (1, 2, 3, 6)),
-                                                    "warned of", "verdict"],
-                  text="""The same temperature everywhere at the start, but 0 at both ends: the part of it that remains. No scheme
+                                                    "warning", "verdict"],
+                  text="""A uniform temperature at the start, and 0 prescribed at both ends: the part of it that remains. No scheme
 makes it grow; the run warns if it never vanishes.""")
     for scheme, factor in FACTORS.items():
         deck = model(f"*THERMAL SCHEME, TYPE={FREE.get(scheme, scheme)}", *ENDS, *heat_step(
