@@ -13,7 +13,7 @@ TEXT = ""
 PICTURE = "friction"
 CAPTION = "Shear of Cattaneo's and Mindlin's contact, and the displacement of the block"
 
-# Two like cylinders, pressed by a displacement of the top, then moved aside and back.
+# Two equal cylinders, pressed by a displacement of the top, then moved aside and back.
 RADIUS, YOUNG, POISSON, FRICTION = 1e4, 1e4, 0.3, 0.4
 FIRST_SIDE = 0.2  # side of the elements at the contact before they are refined
 MODULUS = YOUNG / (1 - POISSON**2) / 2
@@ -63,7 +63,7 @@ def sliding(level):
     most = SHARE * FRICTION * LOAD
     width = xs[-1] - xs[0]
     at = {(round(x, 6), round(y, 6)): n for n, (x, y) in nodes_of(cards).items()}
-    # Both bodies are loaded alike, so that without a push nothing slips. The supports hold rigid
+    # Both bodies are loaded equally, so that without a push nothing slips. The supports hold rigid
     # motions only: loads balance, with a couple for the moment of the push about the face.
     below, far = round(-height, 6), round(xs[-1], 6)
     couple = most * height / width
@@ -121,10 +121,10 @@ def cases():
     """Return the cases of the theme."""
     return [
         Case("Cattaneo and Mindlin, with reversal",
-             f"""Two like cylinders (R = 1e4, E = 1e4, nu = 0.3, friction 0.4) are pressed by 2,
+             f"""Two equal cylinders (R = 1e4, E = 1e4, nu = 0.3, friction 0.4) are pressed by 2,
              then pushed aside by {SHARE:g} of the largest friction and back to the opposite, plane
              strain. The sides of elements at the contact are 0.2 long, a/11, before they are
-             refined. Both bodies are 40 or more wide and high and loaded alike, far from the face;
+             refined. Both bodies are 40 or more wide and high and loaded equally, far from the face;
              a couple takes the moment of the push. The load comes in 10, each push in 20
              increments.""",
              """C. Cattaneo 1938, R. D. Mindlin 1949; reversal: R. D. Mindlin, H. Deresiewicz, J.
