@@ -270,9 +270,9 @@ contains
             call measure_factors(bodies, self%sizes)
          end if
          since = wall_seconds()
-         call move_alloc(self%known, workspace%known)
+         ! An increment that fails leaves nothing behind, not even in the last digits.
+         if (allocated(self%known)) workspace%known = self%known
          call solve_points(bodies, self%loads, step, self%state, workspace, next, error)
-         call move_alloc(workspace%known, self%known)
          record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
@@ -295,6 +295,8 @@ contains
          if (solves_heat(step%analysis)) call check_balance(record, error)
          if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call check_violation(record, error)
+         if (allocated(error)) return
+         call move_alloc(workspace%known, self%known)
       end associate
    end subroutine attempt
 

@@ -172,7 +172,7 @@ def test_radiation_below_absolute_zero_is_an_error(tmp_path):
     deck = write(tmp_path / "slabs.inp", slabs(law, (100.0, -50.0), 1.0))
     process = run("run", deck, "--out", tmp_path)
     assert process.returncode == 2
-    assert "contact pair FACE radiates below absolute zero, 0; see" in process.stderr
+    assert "contact pair FACE radiates below absolute zero, 0; check" in process.stderr
 
 
 @pytest.mark.parametrize(("cards", "words"), [
