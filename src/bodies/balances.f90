@@ -103,9 +103,10 @@ contains
    !> the recovered displacements, relative to the largest displacement and force. Where a row is
    !> supported on one body, the traction is taken from the other; where on both, the reduced
    !> system's stands.
-   pure function contact_violation(displacement, residual, supported, points, state, &
+   pure function contact_violation(positions, residual, supported, points, state, &
       friction_acts, scales) result(violation)
-      real(dp), intent(in) :: displacement(:)        !! (2 nodes) [length]
+      !> (2, m) gaps and tangential positions by these displacements [length]
+      real(dp), intent(in) :: positions(:, :)
       !> (2 nodes) as from force_residual, without the forces of ties [force]
       real(dp), intent(in) :: residual(:)
       logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
@@ -115,11 +116,10 @@ contains
       type(scales_type), intent(in) :: scales
       real(dp) :: violation                          !! relative
       real(dp) :: force(2), gap, normal_force, shear_force, slip, cone
-      real(dp) :: relative(2, size(points%slave)), largest(size(points%slave))
+      real(dp) :: largest(size(points%slave))
       integer :: c, k, slave_dof, master_dof
 
       violation = 0.0_dp
-      relative = points%relative(displacement)
       largest = points%largest_friction()
       do k = 1, size(points%slave)
          ! A node may be in several contact points: what they leave over goes to each of them.
@@ -133,10 +133,8 @@ contains
                force(c) = force(c) - residual(master_dof)
             end if
          end do
-         gap = (points%initial_gap(k) - dot_product(relative(:, k), points%normal(:, k)))/ &
-            scales%length
-         slip = (dot_product(relative(:, k), points%tangent(:, k)) - state%reference(k))/ &
-            scales%length
+         gap = positions(1, k)/scales%length
+         slip = (positions(2, k) - state%reference(k))/scales%length
          normal_force = -dot_product(force, points%normal(:, k))/scales%force
          shear_force = dot_product(force, points%tangent(:, k))/scales%force
          cone = friction_bound(points%friction(k)%coefficient, largest(k), &

@@ -34,10 +34,9 @@ contains
 
    !> Conductances, jumps and contact state of an increment.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies.
-   subroutine solve_coupled(bodies, step, previous, data, workspace, next, error)
+   subroutine solve_coupled(bodies, step, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(step_type), intent(in) :: step
-      type(solution_state_type), intent(in) :: previous          !! state at the start
       type(increment_data_type), intent(inout) :: data           !! receives scales
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
       type(solution_state_type), intent(inout) :: next           !! guess in, solution out
@@ -45,12 +44,12 @@ contains
 
       data%scales = contact_scales(bodies, data)
       workspace%pass%graph = make_graph(bodies, data%scales%length)
-      data%cuts_hats = any(bodies%points%cuts_hats) .and. .not. has_memory(data%scheme)
-      next%omega_before = previous%omega
+      workspace%cuts_hats = any(bodies%points%cuts_hats) .and. .not. has_memory(data%scheme)
+      next%omega_before = data%omega_old
       if (step%start%kind == start_both) then
-         call solve_from_both(bodies, step, previous, data, workspace, next, error)
+         call solve_from_both(bodies, step, data, workspace, next, error)
       else
-         next%omega = starting_conductance(bodies, step, step%start%kind, previous, next)
+         next%omega = starting_conductance(bodies, step, step%start%kind, data)
          call iterate(bodies, step%fixed_point, data, workspace, next, error)
       end if
       if (allocated(error) .or. .not. step%fixed_point%finds_gain) return
@@ -58,15 +57,13 @@ contains
    end subroutine solve_coupled
 
    !> omega*^0 of a start.
-   function starting_conductance(bodies, step, kind, previous, next) result(omega)
+   function starting_conductance(bodies, step, kind, data) result(omega)
       type(reduced_bodies_type), intent(in) :: bodies
       type(step_type), intent(in) :: step
       integer, intent(in) :: kind
-      type(solution_state_type), intent(in) :: previous
-      type(solution_state_type), intent(in) :: next
-      real(dp) :: omega(size(previous%omega))
+      type(increment_data_type), intent(in) :: data
+      real(dp) :: omega(size(data%omega_old))
       real(dp), allocatable :: conductor(:)
-      real(dp) :: ratio
       integer :: i, k
 
       select case (kind)
@@ -76,7 +73,7 @@ contains
                step%start%conductance(i)
          end do
       case (start_open, start_closed)
-         omega = previous%omega
+         omega = data%omega_old
          conductor = bodies%conductors()
          do k = 1, size(omega)
             if (bodies%jump_index(k) == 0 .or. bodies%points%weight(k) <= 0.0_dp) cycle
@@ -84,19 +81,16 @@ contains
                bodies%points%weight(k)
          end do
       case default
-         ratio = 1.0_dp
-         if (previous%increment_size > 0.0_dp) ratio = next%increment_size/previous%increment_size
-         omega = predicted_conductance(previous%omega, previous%omega_before, ratio)
+         omega = predicted_conductance(data%omega_old, data%omega_before, data%size_ratio)
       end select
    end function starting_conductance
 
    !> The increment from the last ones, and from both ends of the conductance: do all lead to one
    !> solution? That of the first start that leads to any is the increment's. It is found last, for
    !> the factors to be its own.
-   subroutine solve_from_both(bodies, step, previous, data, workspace, next, error)
+   subroutine solve_from_both(bodies, step, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(step_type), intent(in) :: step
-      type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
@@ -126,7 +120,7 @@ contains
          integer, intent(in) :: i
 
          next = guess
-         next%omega = starting_conductance(bodies, step, kinds(i), previous, next)
+         next%omega = starting_conductance(bodies, step, kinds(i), data)
          workspace = fresh
          call iterate(bodies, step%fixed_point, data, workspace, next, error)
       end subroutine try_start

@@ -12,6 +12,7 @@
 !> point omega is that of the point itself.
 module cut_hats
    use all_contact_points, only: all_contact_points_type
+   use balances, only: heat_residual
    use conductance_laws, only: conductance_law_type
    use contact_points, only: contact_points_type
    use contact_states, only: contact_open, contact_slip
@@ -23,6 +24,7 @@ module cut_hats
    implicit none
    private
    public :: cut_hat_type, cut_hats_type, find_cut_hats, cut_hats_at, joined_conductance
+   public :: supplied_heat
 
    !> A hat that an edge cuts, for openings of the contact points: integrals over the sides without
    !> an edge, which the conductance of the point multiplies, and over those with an edge, which
@@ -296,5 +298,23 @@ contains
       joined = omega
       if (allocated(cut%point)) joined(cut%point) = cut%conductance
    end function joined_conductance
+
+   !> Heat that the supports of each node must supply, without the forces of ties: K T - Q plus what
+   !> leaves through the contact points, of cut hats where it crosses them.
+   pure function supplied_heat(bodies, cut, conducted, load, contact_heat) result(heat)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(cut_hats_type), intent(in) :: cut
+      real(dp), intent(in) :: conducted(:)      !! (nodes) K T of the bodies alone [power]
+      real(dp), intent(in) :: load(:)           !! (nodes) Q [power]
+      real(dp), intent(in) :: contact_heat(:)   !! (m) heat from slave to master [power]
+      real(dp) :: heat(size(conducted))         !! (nodes) zero where not prescribed [power]
+      real(dp) :: uncut(size(contact_heat))
+
+      uncut = contact_heat
+      if (allocated(cut%point)) uncut(cut%point) = 0.0_dp
+      heat = heat_residual(conducted, load, bodies%points, uncut)
+      if (allocated(cut%point)) call cut%jump%add_shares(contact_heat(cut%point), heat)
+      call bodies%thermal%map%carry_over(heat)
+   end function supplied_heat
 
 end module cut_hats

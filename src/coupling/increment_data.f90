@@ -24,8 +24,13 @@ module increment_data
    !> What stays fixed while the increment is solved.
    type :: increment_data_type
       type(thermal_scheme_type) :: scheme            !! scheme of (3.4)
-      type(contact_state_type) :: previous           !! contact state at the start of the increment
+      ! The next five are of the start of the increment, under the laws of its step.
+      type(contact_state_type) :: previous           !! contact state
       real(dp), allocatable :: omega_old(:)          !! (m) omega_i
+      real(dp), allocatable :: omega_before(:)       !! (m) omega_(i-1)
+      logical, allocatable :: resting(:)             !! (m) contact points that rest
+      type(cut_hats_type) :: cut          !! hats that an edge cuts; none with a past in (3.4)
+      real(dp) :: size_ratio = 1.0_dp                !! dt_i/dt_(i-1), 1 in the first increment
       real(dp), allocatable :: jump_old(:)           !! (m) T_xi - T_eta at the start [temperature]
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
       real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
@@ -33,9 +38,7 @@ module increment_data
       real(dp) :: expansion = 0.0_dp !! largest coefficient of expansion [1/temperature]
       !> (m) mean temperature of the faces without jumps, where conductance laws vary with it
       real(dp), allocatable :: welded_mean(:)
-      ! The next two are set where heat and mechanics are coupled.
-      type(contact_scales_type) :: scales            !! largest values
-      logical :: cuts_hats = .false.                 !! whether edges of contact cut hats
+      type(contact_scales_type) :: scales            !! set where heat and mechanics are coupled
    end type increment_data_type
 
    !> What a trial solution needs, and nobody but its own increment changes.
@@ -47,6 +50,7 @@ module increment_data
       real(dp), allocatable :: supported(:) !! (nodes) what prescribed temperatures alone make
       type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
       real(dp), allocatable :: on_tail(:)            !! (thermal tail) their last solution
+      logical :: cuts_hats = .false.                 !! whether edges of contact cut hats
       type(cut_hat_type), allocatable :: edge_hats(:) !! hats that an edge cuts, last openings
       type(cut_hats_type) :: cut                     !! the same, also for the last omega*
       type(contact_workspace_type) :: contact        !! laws and factors of the contact

@@ -31,45 +31,11 @@ contains
 
    !> Conductances, jumps and contact state of an increment. If an edge of contact cuts hats and its
    !> position does not converge, as when it jumps back and forth over a contact point, heat crosses
-   !> whole hats.
-   !> Errors: as iterate_whole.
-   subroutine iterate(bodies, controls, data, workspace, next, error)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(fixed_point_type), intent(in) :: controls
-      type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(inout) :: workspace !! loads in, passes out
-      type(solution_state_type), intent(inout) :: next           !! omega*^0 and guess in
-      type(error_type), allocatable, intent(out) :: error
-      type(solution_state_type) :: start
-      type(increment_data_type) :: whole
-
-      allocate (workspace%record%iterations(0))
-      next%cut = cut_hats_type()
-      if (.not. data%cuts_hats) then
-         call iterate_whole(bodies, controls, data, workspace, next, error)
-         return
-      end if
-      start = next
-      call use_method(bodies, controls, data, workspace, next, error)
-      if (.not. allocated(error)) return
-      if (error%status /= status_no_convergence) return
-      deallocate (error)
-      call append(workspace%record%notes, 'the position of the edge of contact in its element '// &
-         'side does not converge; in this increment the side is not divided for the heat')
-      whole = data
-      whole%cuts_hats = .false.
-      next = start
-      next%cut = cut_hats_type()
-      workspace%cut = next%cut
-      call iterate_whole(bodies, controls, whole, workspace, next, error)
-   end subroutine iterate
-
-   !> The same with whole hats. Where another method fails, Newton's solves the increment if laws
-   !> jump, since the others know no contact points at rest; elsewhere it only tells what the
-   !> failure means.
+   !> whole hats. Where another method fails, Newton's solves the increment if laws jump, since the
+   !> others know no contact points at rest; elsewhere it only tells what the failure means.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies;
    !> status_interrupted where a signal left no more time.
-   subroutine iterate_whole(bodies, controls, data, workspace, next, error)
+   subroutine iterate(bodies, controls, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(fixed_point_type), intent(in) :: controls
       type(increment_data_type), intent(in) :: data
@@ -79,7 +45,20 @@ contains
       type(solution_state_type) :: start
       integer :: before
 
+      allocate (workspace%record%iterations(0))
+      next%cut = cut_hats_type()
       start = next
+      if (workspace%cuts_hats) then
+         call use_method(bodies, controls, data, workspace, next, error)
+         if (.not. allocated(error)) return
+         if (error%status /= status_no_convergence) return
+         deallocate (error)
+         call append(workspace%record%notes, 'the position of the edge of contact in its '// &
+            'element side does not converge; in this increment the side is not divided for the heat')
+         next = start
+         workspace%cuts_hats = .false.
+         workspace%cut = cut_hats_type()
+      end if
       before = size(workspace%record%iterations)
       call use_method(bodies, controls, data, workspace, next, error)
       if (allocated(error) .and. size(workspace%record%iterations) == before) then
@@ -105,7 +84,7 @@ contains
       else if (.not. workspace%contact%driven) then
          call explain_failure(bodies, by_newton(controls), data, start, workspace, error)
       end if
-   end subroutine iterate_whole
+   end subroutine iterate
 
    !> The controls with Newton's method.
    pure function by_newton(controls)
@@ -186,7 +165,7 @@ contains
       turns = 0
       away = 0
       wanted = controls%tolerance
-      if (data%cuts_hats) call find_cut_hats(bodies, workspace%pass%graph%modulus, &
+      if (workspace%cuts_hats) call find_cut_hats(bodies, workspace%pass%graph%modulus, &
          openings(bodies, workspace%pass%graph, data%previous), workspace%edge_hats)
       call begin_passes(next%omega, workspace)
       call make_accelerator(controls, size(next%omega), accelerator)
@@ -194,12 +173,12 @@ contains
          do i = 1, size(passes)
             if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
             ! Where the edge goes over a contact point U jumps, and there is no path.
-            if (data%cuts_hats .and. accelerator%follows_path) exit
+            if (workspace%cuts_hats .and. accelerator%follows_path) exit
             call check_overdue(error)
             if (allocated(error)) exit
             good = next%contact
             pass%iteration = i
-            if (data%cuts_hats) workspace%cut = cut_hats_at(workspace%edge_hats, &
+            if (workspace%cuts_hats) workspace%cut = cut_hats_at(workspace%edge_hats, &
                bodies%points%weight, pass%omega)
             call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
             passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
@@ -253,7 +232,7 @@ contains
 
       workspace%pass%opening = openings(bodies, workspace%pass%graph, next%contact)
       call find_residual(data%scales, bodies%points%weight, workspace%pass, residual, next%resting)
-      if (data%cuts_hats) then
+      if (workspace%cuts_hats) then
          call find_cut_hats(bodies, workspace%pass%graph%modulus, workspace%pass%opening, &
             workspace%edge_hats)
          residual = max(residual, cut_residual(workspace%cut, cut_hats_at(workspace%edge_hats, &

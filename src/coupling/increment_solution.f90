@@ -52,17 +52,11 @@ contains
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
       type(increment_data_type) :: data
-      type(solution_state_type) :: begun
 
       if (.not. allocated(workspace%known)) allocate (workspace%known(2))
-      begun = as_begun(bodies, previous)
-      if (has_memory(step%scheme)) begun%cut = cut_hats_type()
-      next%cut = begun%cut
+      call begin_data(bodies, step, previous, next%increment_size, data)
+      next%cut = data%cut
       call adapt_contact(bodies, next%contact)
-      data%scheme = step%scheme
-      data%previous = begun%contact
-      data%omega_old = begun%omega
-      data%jump_old = previous%jump
       next%omega_start = data%omega_old
       next%keeps_imbalance = .false.
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -74,7 +68,7 @@ contains
          if (allocated(error)) return
          call warn_of_imbalance(bodies, loads, data, previous, next, workspace%record)
          if (size(next%omega) > 0 .and. .not. bodies%is_coupled) then
-            call conduct(bodies, begun, data, workspace, next, error)
+            call conduct(bodies, previous, data, workspace, next, error)
             if (.not. allocated(error)) call check_absolute_zero(bodies, workspace, error)
             if (allocated(error)) return
          end if
@@ -91,9 +85,9 @@ contains
       if (.not. bodies%is_coupled) then
          call solve_mechanics(bodies, step, data, workspace, next, error)
       else if (is_explicit(step%scheme)) then
-         call pass_once(bodies, begun, data, workspace, next, error)
+         call pass_once(bodies, data, workspace, next, error)
       else
-         call solve_coupled(bodies, step, begun, data, workspace, next, error)
+         call solve_coupled(bodies, step, data, workspace, next, error)
       end if
       if (.not. allocated(error)) call settle_idle_points(bodies, workspace%contact%idle, next)
       next%has_mechanics = .true.
@@ -101,27 +95,31 @@ contains
          workspace, error)
    end subroutine solve_points
 
-   !> The state at the start of an increment under the laws of its step: contact points that the
-   !> step removes or adds have other conductances.
-   pure function as_begun(bodies, previous) result(begun)
+   !> The start of an increment under the laws of its step: contact points that the step removes or
+   !> adds have other conductances.
+   pure subroutine begin_data(bodies, step, previous, increment_size, data)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous
-      type(solution_state_type) :: begun
+      real(dp), intent(in) :: increment_size
+      type(increment_data_type), intent(inout) :: data
       real(dp) :: omega(size(previous%omega))
+      logical :: is_new(size(previous%omega))
 
-      begun = previous
-      call adapt_contact(bodies, begun%contact)
-      omega = law_conductance(bodies, bodies%points%laws_of(begun%temperature, begun%jump), &
-         kept_contact(begun%contact, begun%has_mechanics))
-      associate (removed => bodies%points%removed)
-         begun%resting = begun%resting .and. .not. removed
-         begun%cut = begun%cut%without(removed)
-         where (removed .or. begun%omega <= 0.0_dp)
-            begun%omega = omega
-            begun%omega_before = omega
-         end where
-      end associate
-   end function as_begun
+      data%scheme = step%scheme
+      data%jump_old = previous%jump
+      data%previous = previous%contact
+      call adapt_contact(bodies, data%previous)
+      omega = law_conductance(bodies, bodies%points%laws_of(previous%temperature, previous%jump), &
+         kept_contact(data%previous, previous%has_mechanics))
+      is_new = bodies%points%removed .or. previous%omega <= 0.0_dp
+      data%omega_old = merge(omega, previous%omega, is_new)
+      data%omega_before = merge(omega, previous%omega_before, is_new)
+      data%resting = previous%resting .and. .not. bodies%points%removed
+      if (.not. has_memory(step%scheme)) data%cut = previous%cut%without(bodies%points%removed)
+      if (previous%increment_size > 0.0_dp) data%size_ratio = &
+         increment_size/previous%increment_size
+   end subroutine begin_data
 
    !> Contact points that the step removes are open, those without friction slip freely.
    pure subroutine adapt_contact(bodies, contact)
@@ -203,12 +201,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       next%omega = law_conductance(bodies, bodies%points%laws_of(previous%temperature, &
-         previous%jump), kept_contact(previous%contact, previous%has_mechanics))
-      where (previous%resting) next%omega = previous%omega
+         previous%jump), kept_contact(data%previous, previous%has_mechanics))
+      where (data%resting) next%omega = data%omega_old
       data%omega_old = next%omega
-      workspace%cut = previous%cut
+      workspace%cut = data%cut
       if (bodies%points%vary_with_temperature()) then
-         call begin_graphs(bodies, previous, next%omega, workspace%pass)
+         call begin_graphs(bodies, previous, data, next%omega, workspace%pass)
          call settle_conductance(bodies, data, workspace, next%jump, error)
          if (allocated(error)) return
          next%omega = workspace%pass%omega
@@ -222,21 +220,22 @@ contains
 
    !> A pass with given conductances, the graphs of the laws, and the coordinates of a contact state
    !> that stays.
-   subroutine begin_graphs(bodies, previous, omega, pass)
+   subroutine begin_graphs(bodies, previous, data, omega, pass)
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: previous
+      type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: omega(:)
       type(pass_type), intent(out) :: pass
       type(contact_state_type) :: contact
 
-      contact = kept_contact(previous%contact, previous%has_mechanics)
+      contact = kept_contact(data%previous, previous%has_mechanics)
       pass%omega = omega
       allocate (pass%graph(size(omega)))
       pass%graph%law = bodies%points%laws_of(previous%temperature, previous%jump)
       where (law_jumps(bodies%points%law)) pass%graph%width = 1.0_dp
       pass%coordinate = -pass%graph%width - law_pressure(bodies, contact)
       where (contact%contact_state == contact_open) pass%coordinate = max(contact%gap, 0.0_dp)
-      where (previous%resting) pass%coordinate = pass%graph%coordinate_of_omega(omega, 0.0_dp)
+      where (data%resting) pass%coordinate = pass%graph%coordinate_of_omega(omega, 0.0_dp)
    end subroutine begin_graphs
 
    !> Radiation has no meaning below absolute zero.
@@ -260,23 +259,22 @@ contains
 
    !> An increment explicit in omega: temperatures by the conductance at its start, then mechanics,
    !> then the conductance at its end. Nothing is iterated.
-   subroutine pass_once(bodies, previous, data, workspace, next, error)
+   subroutine pass_once(bodies, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
 
-      workspace%pass%omega = previous%omega
-      allocate (workspace%pass%graph(size(previous%omega)))
+      workspace%pass%omega = data%omega_old
+      allocate (workspace%pass%graph(size(data%omega_old)))
       workspace%pass%graph%law = bodies%points%law
       call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
       if (allocated(error)) return
       next%omega = workspace%pass%image
-      next%omega_before = previous%omega
+      next%omega_before = data%omega_old
       next%resting = .false.
-      workspace%record%iterations = [only_pass(workspace%record, previous%contact, next%contact)]
+      workspace%record%iterations = [only_pass(workspace%record, data%previous, next%contact)]
    end subroutine pass_once
 
    !> Record of the only pass of an increment.

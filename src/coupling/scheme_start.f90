@@ -1,6 +1,6 @@
 !> How far from equilibrium heat starts, which some schemes of (3.4) keep for ever.
 module scheme_start
-   use balances, only: heat_residual
+   use cut_hats, only: cut_hats_type, supplied_heat
    use films, only: net_heat
    use increment_data, only: increment_data_type
    use kinds, only: dp
@@ -55,9 +55,8 @@ contains
 
       conducted = bodies%thermal%matrix%multiply(previous%temperature)
       contact_heat = bodies%points%weight*data%omega_old*data%jump_old
-      residual = heat_residual(conducted, net_heat(previous%heat_load, previous%film, &
-         previous%temperature), bodies%points, contact_heat)
-      call bodies%thermal%map%carry_over(residual)
+      residual = supplied_heat(bodies, cut_hats_type(), conducted, net_heat(previous%heat_load, &
+         previous%film, previous%temperature), contact_heat)
       scale = max(maxval(abs(conducted)), maxval(abs(previous%heat_load)), &
          maxval([0.0_dp, abs(contact_heat)]), noise*maxval(abs(bodies%thermal%matrix%value))* &
          maxval(abs(previous%temperature)), tiny(1.0_dp))

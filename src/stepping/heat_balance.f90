@@ -1,6 +1,6 @@
 !> Heat balances of an increment: of the discrete equation (3.4), and of the state at its end.
 module heat_balance
-   use balances, only: heat_residual, imbalance, scheme_contact_heat
+   use balances, only: imbalance, scheme_contact_heat
    use controls, only: thermal_scheme_type
    use films, only: net_heat, scheme_net_heat
    use kinds, only: dp
@@ -8,8 +8,7 @@ module heat_balance
    use model, only: model_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
-   use all_contact_points, only: all_contact_points_type
-   use cut_hats, only: joined_conductance
+   use cut_hats, only: joined_conductance, supplied_heat
    use solution_state, only: carrying_conductance, solution_state_type
    implicit none
    private
@@ -34,15 +33,12 @@ contains
       type(increment_record_type), intent(inout) :: record    !! receives rates and balances
       real(dp), allocatable :: conducted(:), heat(:), residual(:), contact_heat(:)
       real(dp) :: omega(size(next%omega)), scale
-      type(all_contact_points_type) :: points
 
       omega = joined_conductance(next%omega, next%cut)
       contact_heat = bodies%points%weight*carrying_conductance(next, scheme)*next%jump
       conducted = bodies%thermal%matrix%multiply(next%temperature)
       heat = net_heat(next%heat_load, next%film, next%temperature)
-      points = next%cut%points_crossed(bodies%points)
-      residual = heat_residual(conducted, heat, points, contact_heat)
-      call bodies%thermal%map%carry_over(residual)
+      residual = supplied_heat(bodies, next%cut, conducted, heat, contact_heat)
       call sum_rates(loads, next%temperature, residual, record)
       associate (held => loads%temperature%active, weight => bodies%points%weight, &
          body => model%mesh%node_body)
@@ -52,8 +48,7 @@ contains
             tiny(1.0_dp))
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + heat
-         residual = heat_residual(conducted, heat, points, weight*omega*next%jump)
-         call bodies%thermal%map%carry_over(residual)
+         residual = supplied_heat(bodies, next%cut, conducted, heat, weight*omega*next%jump)
          record%heat_imbalance_pointwise = imbalance(conducted, residual, held, body, [.true.], &
             scale)
          associate (whole => scheme%a(1) + scheme%b(1))
@@ -64,8 +59,7 @@ contains
             heat = scheme_net_heat(scheme, previous%heat_load, next%heat_load, previous%film, &
                next%film, previous%temperature, next%temperature)/whole
          end associate
-         residual = heat_residual(conducted, heat, points, contact_heat)
-         call bodies%thermal%map%carry_over(residual)
+         residual = supplied_heat(bodies, next%cut, conducted, heat, contact_heat)
          record%heat_imbalance = imbalance(conducted, residual, held, body, [.true.], &
             scale)
       end associate

@@ -1,7 +1,6 @@
 !> The record of a solved increment, made from its state, which it leaves as it is.
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use all_contact_points, only: all_contact_points_type
    use balances, only: contact_violation, force_residual, imbalance, scales_type
    use conductance_laws, only: conductance, conductance_law_type
    use contact_operator, only: kept_contact, unstrained_forces
@@ -210,13 +209,10 @@ contains
       type(solution_state_type), intent(in) :: next
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
-      type(all_contact_points_type) :: points   ! with the overlaps that are allowed
       type(scales_type) :: scales
-      real(dp) :: least, stiffness
+      real(dp) :: least, positions(2, size(bodies%points%slave)), stiffness
       logical :: along_x
 
-      points = bodies%points
-      points%initial_gap = loads%present_gaps(points)
       least = least_displacement(model, next%temperature)
       scales%length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp), &
          bodies%contact%least_length/noise)
@@ -235,9 +231,13 @@ contains
          along_x = all(model%mesh%element_plane /= axisymmetric)
          record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
             [along_x, .true.], scales%force)
-         record%contact_violation = contact_violation(next%displacement, &
-            residual, held, points, next%contact, bodies%contact%tangent > 0, scales)
-         record%fields%reaction = on_nodes(points%partners, reshape(merge(residual, &
+         positions = bodies%points%relative(next%displacement)
+         positions = reshape([loads%present_gaps(bodies%points) - sum(positions* &
+            bodies%points%normal, dim=1), sum(positions*bodies%points%tangent, dim=1)], &
+            shape(positions), order=[2, 1])
+         record%contact_violation = contact_violation(positions, residual, held, bodies%points, &
+            next%contact, bodies%contact%tangent > 0, scales)
+         record%fields%reaction = on_nodes(bodies%points%partners, reshape(merge(residual, &
             0.0_dp, held), [2, size(next%temperature)]))
       end associate
    end subroutine balance_forces
