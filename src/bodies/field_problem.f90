@@ -35,6 +35,7 @@ module field_problem
    contains
       procedure :: reduce
       procedure :: matrix_of_unknowns
+      procedure :: leading_nodes
       procedure :: load_of
       procedure :: condense_load
       procedure :: recover
@@ -49,10 +50,13 @@ contains
    !> Factors the matrix for a numbering of the unknowns; done once for all increments with the same
    !> supports.
    !> Errors: the matrix or its factors overflow; as the solver's factor.
-   subroutine reduce(self, solver_kind, error)
+   subroutine reduce(self, solver_kind, node_rank, error)
       class(field_problem_type), intent(inout) :: self    !! the problem; its matrix and map are set
       integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
+      !> (nodes) ranks in nested dissection, where they are known
+      integer, allocatable, intent(in) :: node_rank(:)
       type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: rank(:)
 
       call self%release()
       self%reduction = self%reduction + 1
@@ -64,7 +68,8 @@ contains
       call check_finite(self%matrix%value, 'matrices of the bodies', status_deck, error)
       if (allocated(error)) return
       call self%map%stiffen_links(self%matrix)
-      call self%solver%factor(self%matrix_of_unknowns(), self%map%tail, error)
+      if (allocated(node_rank)) rank = node_rank(self%leading_nodes())
+      call self%solver%factor(self%matrix_of_unknowns(), self%map%tail, error, rank)
       if (allocated(error)) return
       call check_finite([self%solver%schur], 'factors of the bodies', status_deck, error)
    end subroutine reduce
@@ -80,6 +85,15 @@ contains
          lower = self%map%transform(self%matrix)
       end if
    end function matrix_of_unknowns
+
+   !> Nodes of the leading unknowns.
+   pure function leading_nodes(self) result(node)
+      class(field_problem_type), intent(in) :: self
+      integer, allocatable :: node(:)                     !! (leading)
+
+      node = self%map%nodes_of_unknowns()
+      node = node(:self%map%equations - self%map%tail)
+   end function leading_nodes
 
    !> The load of an increment.
    pure function load_of(self, forces, given) result(load)

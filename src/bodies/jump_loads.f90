@@ -14,6 +14,7 @@ module jump_loads
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
+   use metis, only: nested_dissection
    use mumps_solver, only: schur_complement
    use ordering, only: adjacency
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
@@ -48,33 +49,36 @@ contains
    end subroutine loads_by_solves
 
    !> The loads from one elimination of both fields, by MUMPS.
-   !> Errors: as schur_complement.
-   subroutine loads_by_elimination(thermal, mechanical, thermal_load, loads, error)
+   !> Errors: as schur_complement; METIS fails.
+   subroutine loads_by_elimination(thermal, mechanical, thermal_load, node_rank, loads, error)
       type(field_problem_type), intent(in) :: thermal            !! numbered
       type(field_problem_type), intent(in) :: mechanical         !! numbered
       type(sparse_matrix_type), intent(in) :: thermal_load !! B, forces per nodal temperature
+      integer, allocatable, intent(out) :: node_rank(:)    !! (nodes) in nested dissection
       real(dp), allocatable, intent(out) :: loads(:, :)    !! (mechanical tail, thermal tail)
       type(error_type), allocatable, intent(out) :: error
       type(triplet_list_type) :: entries
       type(sparse_matrix_type) :: graph
       real(dp), allocatable :: schur(:, :)
-      integer, allocatable :: group(:)
+      integer, allocatable :: node(:)
 
-      call join_fields(thermal, mechanical, thermal_load, entries, graph, group)
+      call join_fields(thermal, mechanical, thermal_load, entries, graph, node)
+      call nested_dissection(graph, node_rank, error)
+      if (allocated(error)) return
       associate (heat => thermal%map%tail, motion => mechanical%map%tail)
-         call schur_complement(entries, graph, group, heat + motion, schur, error)
+         call schur_complement(entries, node_rank(node), heat + motion, schur, error)
          if (allocated(error)) return
          loads = schur(heat + 1:, :heat)/small
       end associate
    end subroutine loads_by_elimination
 
    !> The matrix of both fields, and the nodes by which its leading unknowns are ordered.
-   subroutine join_fields(thermal, mechanical, thermal_load, entries, graph, group)
+   subroutine join_fields(thermal, mechanical, thermal_load, entries, graph, node)
       type(field_problem_type), intent(in) :: thermal, mechanical
       type(sparse_matrix_type), intent(in) :: thermal_load
       type(triplet_list_type), intent(out) :: entries    !! lower triangle
       type(sparse_matrix_type), intent(out) :: graph     !! (nodes, nodes) which of them are joined
-      integer, allocatable, intent(out) :: group(:)      !! (leading unknowns) their nodes
+      integer, allocatable, intent(out) :: node(:)       !! (leading unknowns) their nodes
       type(sparse_matrix_type) :: heat, motion, coupling
       integer, allocatable :: of_heat(:), of_motion(:)
       integer :: i
@@ -83,9 +87,9 @@ contains
       motion = mechanical%matrix_of_unknowns()
       associate (h => thermal%map%equations, m => mechanical%map%equations)
          associate (h_leads => h - thermal%map%tail, m_leads => m - mechanical%map%tail)
-            group = [of_nodes(thermal, h_leads), of_nodes(mechanical, m_leads)]
-            graph = linear_combination(1.0_dp, adjacency(heat, group(:h_leads)), &
-               1.0_dp, adjacency(motion, group(h_leads + 1:)))
+            node = [thermal%leading_nodes(), mechanical%leading_nodes()]
+            graph = linear_combination(1.0_dp, adjacency(heat, node(:h_leads)), &
+               1.0_dp, adjacency(motion, node(h_leads + 1:)))
             of_heat = [(i, i=1, h_leads), (m_leads + i, i=h_leads + 1, h)]
             of_motion = [(h_leads + i, i=1, m_leads), (h + i, i=m_leads + 1, m)]
          end associate
@@ -98,17 +102,6 @@ contains
       deallocate (motion%value, motion%column)
       call add_block(coupling, of_motion, of_heat, small, entries)
    end subroutine join_fields
-
-   !> Nodes of the leading unknowns of a field.
-   pure function of_nodes(field, leading) result(node)
-      type(field_problem_type), intent(in) :: field
-      integer, intent(in) :: leading
-      integer :: node(leading)
-      integer, allocatable :: all_nodes(:)
-
-      all_nodes = field%map%nodes_of_unknowns()
-      node = all_nodes(:leading)
-   end function of_nodes
 
    !> Adds a block, its rows and columns renumbered, below the diagonal.
    pure subroutine add_block(block, rows, columns, factor, entries)

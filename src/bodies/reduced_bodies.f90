@@ -50,6 +50,8 @@ module reduced_bodies
       real(dp), allocatable :: jump_load(:, :)
       !> (m, thermal tail) mean temperature of the faces per jump; formed where laws vary with it
       real(dp), allocatable :: jump_mean(:, :)
+      !> (nodes) ranks in nested dissection; known where one elimination of both fields was made
+      integer, allocatable :: node_rank(:)
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
    contains
       procedure :: prepare
@@ -175,10 +177,10 @@ contains
          call self%mechanical%map%stiffen_links(self%mechanical%matrix)
          call self%thermal%map%stiffen_links(self%thermal%matrix)
          call loads_by_elimination(self%thermal, self%mechanical, self%thermal_load, &
-            self%jump_load, of_jumps)
+            self%node_rank, self%jump_load, of_jumps)
       end if
       if (mechanics) then
-         call self%mechanical%reduce(model%solver, error)
+         call self%mechanical%reduce(model%solver, self%node_rank, error)
          if (allocated(error)) return
          self%contact = contact_system_of(self%mechanical, self%points, self%rigid)
          self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
@@ -198,7 +200,7 @@ contains
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
 
-      call self%thermal%reduce(model%solver, error)
+      call self%thermal%reduce(model%solver, self%node_rank, error)
       if (allocated(error)) then
          call name_cold_bodies(self, model, error)
          return

@@ -32,12 +32,14 @@ module linear_solver
       !> tail.
       !> Error: the matrix is not positive definite (the message begins with "singular"), or the
       !> solver failed.
-      subroutine factor_interface(self, lower, tail, error)
+      subroutine factor_interface(self, lower, tail, error, rank)
          import :: linear_solver_type, sparse_matrix_type, error_type
          class(linear_solver_type), intent(inout) :: self
          type(sparse_matrix_type), intent(in) :: lower      !! lower triangle by rows
          integer, intent(in) :: tail                        !! number of tail unknowns
          type(error_type), allocatable, intent(out) :: error !! failure
+         !> (leading) ranks in nested dissection, those of a node alike, where they are known.
+         integer, intent(in), optional :: rank(:)
       end subroutine factor_interface
 
       !> Right-hand sides condensed on the tail: f_tail - K_tail,lead K_lead^-1 f_lead. The

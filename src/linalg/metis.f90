@@ -1,6 +1,7 @@
 !> Nested dissection by METIS.
 module metis
    use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
+   use errors, only: error_type, set_error, status_internal
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -20,19 +21,21 @@ module metis
 contains
 
    !> Fill-reducing position of each vertex of a graph. METIS's default options fix its random seed.
-   subroutine nested_dissection(graph, position, failed)
+   !> Error: METIS fails.
+   subroutine nested_dissection(graph, position, error)
       type(sparse_matrix_type), intent(in) :: graph !! both triangles without the diagonal
-      integer, intent(out) :: position(:)           !! (rows) new position of each vertex
-      logical, intent(out) :: failed                !! METIS refused
+      integer, allocatable, intent(out) :: position(:)    !! (rows) new position of each vertex
+      type(error_type), allocatable, intent(out) :: error
       integer(c_int), allocatable :: order(:)
       integer(c_int) :: status
       integer(c_int), parameter :: metis_ok = 1
 
-      allocate (order(graph%row_count))
+      allocate (order(graph%row_count), position(graph%row_count))
       status = metis_nodend(int(graph%row_count, c_int), graph%row_start - 1, graph%column - 1, &
          c_null_ptr, c_null_ptr, order, position)
       position(:) = position + 1
-      failed = status /= metis_ok
+      if (status /= metis_ok) call set_error(error, status_internal, &
+         'METIS could not order the unknowns')
    end subroutine nested_dissection
 
 end module metis

@@ -50,18 +50,24 @@ module mumps_solver
 contains
 
    !> As factor_interface of linear_solver says.
-   subroutine factor(self, lower, tail, error)
+   subroutine factor(self, lower, tail, error, rank)
       class(mumps_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       integer, intent(in) :: tail
       type(error_type), allocatable, intent(out) :: error
-      integer, allocatable :: group(:)
+      integer, intent(in), optional :: rank(:)
+      integer, allocatable :: group(:), position(:)
       integer :: i
 
       call start(self, lower%row_count, tail)
-      group = alike_unknowns(lower, self%order - tail)
-      call hand_over_order(self, adjacency(lower, group), group, error)
-      if (allocated(error)) return
+      if (present(rank)) then
+         call hand_over_order(self, rank)
+      else
+         group = alike_unknowns(lower, self%order - tail)
+         call nested_dissection(adjacency(lower, group), position, error)
+         if (allocated(error)) return
+         call hand_over_order(self, position(group))
+      end if
       associate (id => self%mumps)
          allocate (id%irn(size(lower%value)), id%jcn(size(lower%value)), id%a(size(lower%value)))
          do i = 1, lower%row_count
@@ -81,26 +87,23 @@ contains
    end subroutine factor
 
    !> Schur complement of a matrix on its tail, without factors to solve with.
-   !> Errors: the matrix is not positive definite, MUMPS or METIS failed.
-   subroutine schur_complement(entries, graph, group, tail, schur, error)
+   !> Errors: the matrix is not positive definite, MUMPS failed.
+   subroutine schur_complement(entries, rank, tail, schur, error)
       type(triplet_list_type), intent(in), target :: entries !! lower triangle
-      type(sparse_matrix_type), intent(in) :: graph !! groups of leading unknowns that are joined
-      integer, intent(in) :: group(:)                        !! (leading) group of each of them
+      integer, intent(in) :: rank(:) !! (leading) in nested dissection, those of a node alike
       integer, intent(in) :: tail                            !! number of tail unknowns, the last
       real(dp), allocatable, intent(out) :: schur(:, :)      !! (tail, tail) both triangles
       type(error_type), allocatable, intent(out) :: error
       type(mumps_solver_type) :: solver
 
-      call start(solver, size(group) + tail, tail)
+      call start(solver, size(rank) + tail, tail)
       solver%mumps%icntl(31) = factors_are_dropped
-      call hand_over_order(solver, graph, group, error)
-      if (.not. allocated(error)) then
-         solver%mumps%irn => entries%row
-         solver%mumps%jcn => entries%column
-         solver%mumps%a => entries%value
-         call analyse_and_factor(solver, error)
-         nullify (solver%mumps%irn, solver%mumps%jcn, solver%mumps%a)
-      end if
+      call hand_over_order(solver, rank)
+      solver%mumps%irn => entries%row
+      solver%mumps%jcn => entries%column
+      solver%mumps%a => entries%value
+      call analyse_and_factor(solver, error)
+      nullify (solver%mumps%irn, solver%mumps%jcn, solver%mumps%a)
       call solver%release()
       if (.not. allocated(error)) call move_alloc(solver%schur, schur)
    end subroutine schur_complement
@@ -190,25 +193,15 @@ contains
       end associate
    end subroutine start
 
-   !> METIS's order for the leading block, whose groups stay together, the tail behind it.
-   subroutine hand_over_order(self, graph, group, error)
+   !> The order for the leading block, by ranks, and the tail behind it.
+   subroutine hand_over_order(self, rank)
       type(mumps_solver_type), intent(inout) :: self
-      type(sparse_matrix_type), intent(in) :: graph   !! (groups) which of them are joined
-      integer, intent(in) :: group(:)                 !! (leading)
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i, position(graph%row_count)
-      logical :: failed
+      integer, intent(in) :: rank(:)                  !! (leading)
+      integer :: i
 
       allocate (self%mumps%perm_in(self%order))
-      call nested_dissection(graph, position, failed)
-      if (failed) then
-         call set_error(error, status_internal, 'METIS could not order the unknowns')
-         return
-      end if
-      associate (leading => size(group))
-         self%mumps%perm_in(:leading) = ungrouped(group, position)
-         self%mumps%perm_in(leading + 1:) = [(i, i=leading + 1, self%order)]
-      end associate
+      self%mumps%perm_in(:size(rank)) = ungrouped(rank, [(i, i=1, maxval([0, rank]))])
+      self%mumps%perm_in(size(rank) + 1:) = [(i, i=size(rank) + 1, self%order)]
       self%mumps%icntl(7) = order_given
    end subroutine hand_over_order
 
