@@ -144,7 +144,7 @@ contains
          if (found%written(i) > 0) dof_of(found%writer(found%written(i))) = found%written(i)
       end do
       constraints%tied = pack(dof_of, dof_of > 0)
-      constraints%condition = pack(rows%constraint(:rows%count), found%tie .and. found%written == 0)
+      constraints%condition = pack(rows%origin(:rows%count), found%tie .and. found%written == 0)
       call constraints%tied_by%reserve(size(constraints%tied), 8*size(constraints%tied))
       call constraints%condition_given%reserve(size(constraints%condition), &
          8*size(constraints%condition))

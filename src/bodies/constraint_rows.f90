@@ -10,6 +10,7 @@ module constraint_rows
    use sum_lists, only: add_terms, sum_list_type
    implicit none
    private
+   public :: row_origin_type, of_support, of_hanging, of_equation, of_tie, of_contact
    public :: constraint_rows_type, elimination_type, write_values, resolve, largest, &
       least_coefficients, negligible, negligible_in_tie
 
@@ -27,6 +28,19 @@ module constraint_rows
    !> Part of a row's largest coefficient that a degree of freedom needs to be written by the row.
    real(dp), parameter :: pivot_of_choice = 0.1_dp, least_pivot = 0.5_dp
 
+   integer, parameter :: of_support = 1, of_hanging = 2, of_equation = 3, of_tie = 4
+   integer, parameter :: of_contact = 5
+
+   !> What a row comes from. Rows of one origin are one constraint.
+   type :: row_origin_type
+      integer :: kind = 0     !! of_support ... of_contact
+      !> degree of freedom that is supported or hangs, equation, point of a tie, contact point
+      integer :: number = 0
+   contains
+      procedure, private :: is_same
+      generic :: operator(==) => is_same
+   end type row_origin_type
+
    !> The rows.
    type, extends(sum_list_type) :: constraint_rows_type
       integer :: components = 1                 !! degrees of freedom of a node
@@ -34,8 +48,7 @@ module constraint_rows
       logical, allocatable :: on_tail(:)        !! (introduced values) those that contact acts on
       !> (dofs) those that it acts on likewise; unallocated where there are none
       logical, allocatable :: dof_on_tail(:)
-      !> (rows) the constraint that a row is part of; its rows follow each other
-      integer, allocatable :: constraint(:)
+      type(row_origin_type), allocatable :: origin(:)   !! (rows) those of one follow each other
       !> (rows) degree of freedom to be written, if left; 0 for any
       integer, allocatable :: choice(:)
    end type constraint_rows_type
@@ -52,6 +65,14 @@ module constraint_rows
    end type elimination_type
 
 contains
+
+   !> Whether two rows belong to one constraint.
+   elemental logical function is_same(self, other)
+      class(row_origin_type), intent(in) :: self
+      type(row_origin_type), intent(in) :: other
+
+      is_same = self%kind == other%kind .and. self%number == other%number
+   end function is_same
 
    !> Coefficients below which rows have no degree of freedom left.
    pure function least_coefficients(rows) result(least)
@@ -130,7 +151,7 @@ contains
       integer, intent(in) :: first
 
       do last = first, rows%count - 1
-         if (rows%constraint(last + 1) /= rows%constraint(first)) return
+         if (.not. rows%origin(last + 1) == rows%origin(first)) return
       end do
    end function last_of
 

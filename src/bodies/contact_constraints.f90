@@ -10,7 +10,8 @@
 !> compliance.
 module contact_constraints
    use constraint_elimination, only: eliminate
-   use constraint_rows, only: constraint_rows_type
+   use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_hanging, &
+      of_support, row_origin_type
    use equations, only: equation_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
@@ -23,7 +24,7 @@ module contact_constraints
    implicit none
    private
    public :: constrain_displacements, constrain_temperatures, in_cycle, stiffness_alone, &
-      cycle_compliance, first_tied, displacement_rows, temperature_rows, equation_of
+      cycle_compliance, first_tied, displacement_rows, temperature_rows
 
    !> Compliance of a stuck contact point of a cycle, as a part of the bodies' at its nodes.
    real(dp), parameter :: cycle_compliance = 1.0e-8_dp
@@ -64,7 +65,7 @@ contains
       integer :: k
 
       call begin_rows(held, 2, points, rows)
-      call add_equations(points%equations, size(points%slave), .false., rows)
+      call add_equations(points%equations, .false., rows)
       call add_ties(points%ties, held, rows)
       do k = 1, size(points%slave)
          rows%on_tail(2*k - 1:2*k) = [.true., points%friction(k)%coefficient > 0.0_dp]
@@ -102,7 +103,7 @@ contains
       integer :: k
 
       call begin_rows(held, 1, points, rows)
-      call add_equations(points%equations, size(points%slave), .true., rows)
+      call add_equations(points%equations, .true., rows)
       call add_ties(points%ties, held, rows)
       rows%on_tail = .true.
       if (allocated(points%cut_nodes)) then
@@ -134,9 +135,8 @@ contains
    end function in_use
 
    !> Adds the rows of the equations of a field. Their first terms are to be written by the others.
-   pure subroutine add_equations(equations, points, thermal, rows)
+   pure subroutine add_equations(equations, thermal, rows)
       type(equation_type), intent(in) :: equations(:)
-      integer, intent(in) :: points                 ! number of contact points
       logical, intent(in) :: thermal
       type(constraint_rows_type), intent(inout) :: rows
       integer :: i
@@ -145,20 +145,11 @@ contains
          if (equations(i)%is_thermal() .neqv. thermal) cycle
          associate (dofs => equations(i)%places())
             call rows%add(dofs, equations(i)%coefficient)
-            rows%constraint(rows%count) = rows%dofs + points + i
+            rows%origin(rows%count) = row_origin_type(of_equation, i)
             rows%choice(rows%count) = dofs(1)
          end associate
       end do
    end subroutine add_equations
-
-   !> The equation that a constraint is; 0 or less for another one.
-   elemental integer function equation_of(constraint, dofs, points)
-      integer, intent(in) :: constraint             !! as in linear_constraints_type
-      integer, intent(in) :: dofs                   !! number of degrees of freedom
-      integer, intent(in) :: points                 !! number of contact points
-
-      equation_of = constraint - dofs - points
-   end function equation_of
 
    !> The rows of the supports, u - g = 0, and of the hanging nodes.
    pure subroutine begin_rows(held, components, points, rows)
@@ -173,13 +164,13 @@ contains
       introduced = components*size(points%slave)
       most = count(held) + components*points%hanging%count + size(points%equations) + &
          most_rows(points%ties, components) + introduced
-      allocate (rows%on_tail(introduced), rows%constraint(most), rows%choice(most))
+      allocate (rows%on_tail(introduced), rows%origin(most), rows%choice(most))
       call rows%reserve(most, 2*count(held) + components*(introduced + &
          size(points%difference%value)*merge(2, 1, points%turns())))
       do dof = 1, size(held)
          if (.not. held(dof)) cycle
          call rows%add([dof, size(held) + introduced + dof], [1.0_dp, -1.0_dp])
-         rows%constraint(rows%count) = dof
+         rows%origin(rows%count) = row_origin_type(of_support, dof)
          rows%choice(rows%count) = dof
       end do
       call hang(points%hanging, held, rows)
@@ -198,7 +189,7 @@ contains
             associate (dofs => rows%components*(hanging%values_of(i) - 1) + c)
                if (held(dofs(1))) cycle
                call rows%add(dofs, hanging%coefficients_of(i))
-               rows%constraint(rows%count) = dofs(1)
+               rows%origin(rows%count) = row_origin_type(of_hanging, dofs(1))
                rows%choice(rows%count) = dofs(1)
             end associate
          end do
@@ -240,7 +231,7 @@ contains
       end if
       call rows%add([dofs, (rows%dofs + rows%components*(k - 1) + i, i=1, size(introduced))], &
          [-share, introduced])
-      rows%constraint(rows%count) = rows%dofs + k
+      rows%origin(rows%count) = row_origin_type(of_contact, k)
       rows%choice(rows%count) = rows%components*(nodes(1) - 1) + component
    end subroutine relate
 

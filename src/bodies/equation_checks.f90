@@ -2,8 +2,9 @@
 !> points free.
 module equation_checks
    use all_contact_points, only: all_contact_points_type
-   use constraint_rows, only: constraint_rows_type
-   use contact_constraints, only: displacement_rows, equation_of, first_tied, temperature_rows
+   use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_support, of_tie, &
+      row_origin_type
+   use contact_constraints, only: displacement_rows, first_tied, temperature_rows
    use errors, only: error_type, set_error, status_deck
    use linear_constraints, only: linear_constraints_type
    use load_histories, only: load_history_type
@@ -34,7 +35,7 @@ contains
       as_found = .false.
       associate (analysis => model%steps(step)%analysis, points => bodies%points)
          if (solves_mechanics(analysis)) then
-            if (needs_words(bodies%mechanical%map, points)) then
+            if (any(bodies%mechanical%map%condition%kind == of_equation)) then
                rows = displacement_rows(loads%displacement%active, points, as_found)
                call check_field(model, points, bodies%mechanical%map, rows, loads%displacement, &
                   error)
@@ -43,20 +44,11 @@ contains
                loads%displacement, error)
          end if
          if (allocated(error) .or. .not. solves_heat(analysis)) return
-         if (.not. needs_words(bodies%thermal%map, points)) return
+         if (.not. any(bodies%thermal%map%condition%kind == of_equation)) return
          rows = temperature_rows(loads%temperature%active, points, as_found)
          call check_field(model, points, bodies%thermal%map, rows, loads%temperature, error)
       end associate
    end subroutine check_equations
-
-   !> Whether an equation is left no degree of freedom.
-   pure logical function needs_words(map, points)
-      type(linear_constraints_type), intent(in) :: map
-      type(all_contact_points_type), intent(in) :: points
-
-      needs_words = any(equation_of(map%condition, size(map%by_unknowns%start) - 1, &
-         size(points%slave)) > 0)
-   end function needs_words
 
    !> Reports the first equation of a field that is left no degree of freedom.
    subroutine check_field(model, points, map, rows, supports, error)
@@ -67,15 +59,14 @@ contains
       type(load_history_type), intent(in) :: supports
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: others
-      integer :: i, equation
+      integer :: i
       logical :: supported
 
       do i = 1, size(map%condition)
-         equation = equation_of(map%condition(i), rows%dofs, size(points%slave))
-         if (equation <= 0) cycle
+         if (map%condition(i)%kind /= of_equation) cycle
          call name_origins(model, points, rows, supports, map%condition(i), others, supported)
          if (len(others) == 0) cycle
-         associate (own => points%equations(equation))
+         associate (own => points%equations(map%condition(i)%number))
             if (supported) then
                call set_error(error, status_deck, own%title//' is over-determined: all its '// &
                   'degrees of freedom are prescribed by '//others//'; free one '// &
@@ -106,7 +97,8 @@ contains
       if (k == 0) return
       as_found = .false.
       rows = displacement_rows(supports%active, points, as_found)
-      call name_origins(model, points, rows, supports, rows%dofs + k, others, supported)
+      call name_origins(model, points, rows, supports, row_origin_type(of_contact, k), others, &
+         supported)
       i = count(points%interface_start <= k)
       associate (number => model%mesh%node_number)
          call set_error(error, status_deck, model%contacts(i)%title()//': how slave node '// &
@@ -124,10 +116,10 @@ contains
       type(all_contact_points_type), intent(in) :: points
       type(constraint_rows_type), intent(in) :: rows
       type(load_history_type), intent(in) :: supports
-      integer, intent(in) :: constraint
+      type(row_origin_type), intent(in) :: constraint
       character(:), allocatable, intent(out) :: names
       logical, intent(out) :: supported             ! whether supports are among them
-      integer, allocatable :: origins(:)
+      type(row_origin_type), allocatable :: origins(:)
       character(:), allocatable :: name
       integer :: i
 
@@ -135,16 +127,21 @@ contains
       supported = .false.
       origins = origins_of(rows, constraint)
       do i = 1, size(origins)
-         name = ''
-         if (origins(i) < 0) then
-            name = model%ties(points%ties%tie(-origins(i)))%faces%title()
-         else if (origins(i) <= rows%dofs) then
-            supported = .true.
-            if (supports%card(origins(i)) == 0) cycle
-            name = '*BOUNDARY, '//model%boundary_places(supports%card(origins(i)))%value
-         else if (equation_of(origins(i), rows%dofs, size(points%slave)) > 0) then
-            name = points%equations(equation_of(origins(i), rows%dofs, size(points%slave)))%title
-         end if
+         associate (number => origins(i)%number)
+            select case (origins(i)%kind)
+            case (of_tie)
+               name = model%ties(points%ties%tie(number))%faces%title()
+            case (of_support)
+               supported = .true.
+               name = ''
+               if (supports%card(number) > 0) name = '*BOUNDARY, '// &
+                  model%boundary_places(supports%card(number))%value
+            case (of_equation)
+               name = points%equations(number)%title
+            case default
+               name = ''
+            end select
+         end associate
          if (len(name) == 0 .or. index(names//' and ', name//' and ') > 0) cycle
          if (len(names) > 0) names = names//' and '
          names = names//name

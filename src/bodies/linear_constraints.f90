@@ -16,6 +16,7 @@
 !> the bodies are welded; the reduced problem on the tail is eq. (2.4) solved partially.
 !> constraint_elimination makes these matrices from rows of any origin.
 module linear_constraints
+   use constraint_rows, only: row_origin_type
    use kinds, only: dp
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    use sparse_products, only: between_spaces, congruent
@@ -39,7 +40,7 @@ module linear_constraints
       real(dp), allocatable :: link_stiffness(:)    !! (links) k, in the unit of the matrix
       integer, allocatable :: tied(:) !! (tied) what ties write, in the order in which they do
       type(sum_list_type) :: tied_by                !! (tied, dofs) what they write it by
-      integer, allocatable :: condition(:)          !! (conditions) constraints that they are
+      type(row_origin_type), allocatable :: condition(:)   !! (conditions) what they come from
       type(sum_list_type) :: condition_given        !! (conditions, dofs) sums that must be 0
    contains
       procedure :: expand

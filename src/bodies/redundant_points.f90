@@ -10,7 +10,7 @@
 !> nothing. So all directions of a face count as one, along its normals or its tangents.
 module redundant_points
    use all_contact_points, only: all_contact_points_type
-   use constraint_rows, only: constraint_rows_type
+   use constraint_rows, only: constraint_rows_type, of_contact, row_origin_type
    use held_points, only: free_part
    use kinds, only: dp
    use row_origins, only: dependent_rows
@@ -61,7 +61,7 @@ contains
       allocate (rows%on_tail(0))
       associate (hanging => points%hanging)
          rows%choice = [(0, i=1, hanging%count), points%slave(order)]
-         rows%constraint = [(i, i=1, size(rows%choice))]
+         rows%origin = [(row_origin_type(of_contact, i), i=1, size(rows%choice))]
          call rows%reserve(size(rows%choice), 8*size(rows%choice))
          do i = 1, hanging%count
             call rows%add(hanging%values_of(i), hanging%coefficients_of(i))

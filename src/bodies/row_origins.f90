@@ -1,7 +1,7 @@
 !> What rows of constraints say beside those before them.
 module row_origins
    use constraint_rows, only: constraint_rows_type, elimination_type, largest, &
-      least_coefficients, negligible_in_tie, resolve, write_values
+      least_coefficients, negligible_in_tie, resolve, row_origin_type, write_values
    use kinds, only: dp
    implicit none
    private
@@ -27,8 +27,8 @@ contains
    !> value of its own, whose coefficient is its share in what is left of the row.
    pure function origins_of(rows, constraint) result(origins)
       type(constraint_rows_type), intent(in) :: rows
-      integer, intent(in) :: constraint             !! one that is left no degree of freedom
-      integer, allocatable :: origins(:)            !! constraints, in their order
+      type(row_origin_type), intent(in) :: constraint   !! one that is left no degree of freedom
+      type(row_origin_type), allocatable :: origins(:)  !! constraints, in their order
       type(constraint_rows_type) :: marked
       type(elimination_type) :: found
       integer, allocatable :: value(:)
@@ -47,7 +47,7 @@ contains
       is_origin = .false.
       of_part = .false.
       do i = 1, rows%count
-         if (rows%constraint(i) /= constraint) cycle
+         if (.not. rows%origin(i) == constraint) cycle
          call resolve(found, marked, i, value, coefficient)
          coefficient = merge(coefficient, 0.0_dp, abs(coefficient) > &
             negligible_in_tie*largest(rows, i))
@@ -60,8 +60,8 @@ contains
       end do
       ! Where no row alone follows from others, the rows together do.
       if (.not. any(is_origin)) is_origin = of_part
-      is_origin = is_origin .and. rows%constraint(:rows%count) /= constraint
-      origins = pack(rows%constraint(:rows%count), is_origin)
+      is_origin = is_origin .and. .not. rows%origin(:rows%count) == constraint
+      origins = pack(rows%origin(:rows%count), is_origin)
    end function origins_of
 
 end module row_origins

@@ -1,5 +1,6 @@
 !> Whether what supports prescribe on both sides of a tie agrees with it.
 module tie_checks
+   use constraint_rows, only: of_tie
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use linear_constraints, only: linear_constraints_type
@@ -8,7 +9,6 @@ module tie_checks
    use reduced_bodies, only: reduced_bodies_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
-   use tie_constraints, only: tie_point_of
    implicit none
    private
    public :: check_prescribed_ties
@@ -50,7 +50,7 @@ contains
       call map%condition_given%add_totals(given, left)
       do i = 1, size(left)
          associate (dofs => map%condition_given%values_of(i))
-            if (size(dofs) == 0 .or. map%condition(i) > 0) cycle
+            if (size(dofs) == 0 .or. map%condition(i)%kind /= of_tie) cycle
             if (abs(left(i)) <= agreed*maxval(abs(given(dofs)))) cycle
             call blame(model, bodies, map, i, left(i), error)
             return
@@ -71,7 +71,7 @@ contains
 
       associate (dofs => map%condition_given%values_of(i), &
          share => map%condition_given%coefficients_of(i), &
-         tie => model%ties(bodies%points%ties%tie(tie_point_of(map%condition(i)))))
+         tie => model%ties(bodies%points%ties%tie(map%condition(i)%number)))
          nodes = (dofs([maxloc(share, dim=1), minloc(share, dim=1)]) - 1)/map%components + 1
          component = modulo(dofs(1) - 1, map%components) + 1
          what = 'temperatures'

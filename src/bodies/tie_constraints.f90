@@ -6,13 +6,13 @@
 !> of its own; its hat function goes to its neighbour's (Bernardi, Maday and Patera's multipliers,
 !> constant on the last side).
 module tie_constraints
-   use constraint_rows, only: constraint_rows_type
+   use constraint_rows, only: constraint_rows_type, of_tie, row_origin_type
    use kinds, only: dp
    use sum_lists, only: add_terms
    use tie_points, only: tie_points_type
    implicit none
    private
-   public :: add_ties, most_rows, tie_point_of
+   public :: add_ties, most_rows
 
 contains
 
@@ -122,7 +122,7 @@ contains
          rows%components*(ties%slave(k) - 1) + component, rows)
    end subroutine add_point
 
-   !> Adds a row; ties have negative numbers among the constraints.
+   !> Adds a row.
    pure subroutine add_row(dofs, share, point, choice, rows)
       integer, intent(in) :: dofs(:)
       real(dp), intent(in) :: share(:)
@@ -130,15 +130,8 @@ contains
       type(constraint_rows_type), intent(inout) :: rows
 
       call rows%add(dofs, share)
-      rows%constraint(rows%count) = -point
+      rows%origin(rows%count) = row_origin_type(of_tie, point)
       rows%choice(rows%count) = choice
    end subroutine add_row
-
-   !> The point of a tie that a constraint belongs to.
-   elemental integer function tie_point_of(constraint)
-      integer, intent(in) :: constraint             !! as in linear_constraints_type
-
-      tie_point_of = -constraint
-   end function tie_point_of
 
 end module tie_constraints

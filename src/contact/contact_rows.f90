@@ -4,7 +4,8 @@
 !> point which closes and sticks (contact_system), divided by f c_t,
 !> own lambda_t + share lambda_n + spring d_t = 0.
 module contact_rows
-   use contact_states, only: closing_law_type, contact_state_type, contact_open, contact_slip
+   use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type, &
+      is_capped
    use contact_system, only: contact_system_type
    use kinds, only: dp
    implicit none
@@ -45,7 +46,7 @@ contains
             if (state%contact_state(k) == contact_open) then
                cycle
             else if (state%contact_state(k) == contact_slip) then
-               if (abs(state%direction(k)) > 1) cycle
+               if (is_capped(state%direction(k))) cycle
                rows%partner(row) = system%normal(k)
                rows%share(row) = state%direction(k)*system%friction(k)
             else if (law%acts) then

@@ -4,7 +4,7 @@ module contact_states
    use kinds, only: dp
    implicit none
    private
-   public :: contact_state_type, closing_law_type, slip_force, state_code
+   public :: contact_state_type, closing_law_type, is_capped, slip_force, state_code, with_cap
    public :: contact_open, contact_slip, contact_stick
 
    integer, parameter :: contact_open = 0   !! gap, zone I
@@ -15,7 +15,7 @@ module contact_states
    type :: contact_state_type
       integer, allocatable :: contact_state(:) !! (m) contact_open, contact_slip or contact_stick
       !> (m) sign of the friction force where it slips, 0 where it is not known; doubled where the
-      !> force is the largest that friction has, whatever the pressure
+      !> force is the largest that friction has, whatever the pressure (is_capped, with_cap)
       integer, allocatable :: direction(:)
       real(dp), allocatable :: reference(:)   !! (m) d_t from which friction counts [length]
       real(dp), allocatable :: gap(:)         !! (m) gamma = h - d_n [length]
@@ -41,6 +41,21 @@ module contact_states
 
 contains
 
+   !> Whether friction is the largest whatever the pressure.
+   elemental logical function is_capped(direction)
+      integer, intent(in) :: direction       !! as in the state
+
+      is_capped = abs(direction) == 2
+   end function is_capped
+
+   !> A direction of friction with the same sign that is capped, or that is not.
+   elemental integer function with_cap(direction, capped)
+      integer, intent(in) :: direction       !! as in the state, not 0
+      logical, intent(in) :: capped
+
+      with_cap = sign(merge(2, 1, capped), direction)
+   end function with_cap
+
    !> Friction force on the slave at a contact point that slips.
    elemental function slip_force(direction, friction, largest, force) result(shear_force)
       integer, intent(in) :: direction       !! as in the state
@@ -49,7 +64,7 @@ contains
       real(dp), intent(in) :: force          !! positive in compression [force]
       real(dp) :: shear_force                !! [force]
 
-      if (abs(direction) == 2) then
+      if (is_capped(direction)) then
          shear_force = sign(largest, real(direction, dp))
       else
          shear_force = direction*friction*force

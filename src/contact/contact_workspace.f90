@@ -3,8 +3,8 @@
 !> moment. A second trial takes a workspace of its own.
 module contact_workspace
    use contact_rows, only: contact_rows_type, rows_of
-   use contact_states, only: closing_law_type, slip_force, state_code, contact_state_type, &
-      contact_open, contact_slip, contact_stick
+   use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type, &
+      contact_stick, is_capped, slip_force, state_code
    use contact_system, only: contact_system_type
    use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -197,7 +197,7 @@ contains
 
       lambda = 0.0_dp
       do k = 1, size(state%contact_state)
-         if (state%contact_state(k) /= contact_slip .or. abs(state%direction(k)) < 2) cycle
+         if (state%contact_state(k) /= contact_slip .or. .not. is_capped(state%direction(k))) cycle
          if (system%tangent(k) > 0) lambda(system%tangent(k)) = slip_force(state%direction(k), &
             system%friction(k), self%largest_shear(k), state%force(k))
       end do

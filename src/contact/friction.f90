@@ -1,7 +1,7 @@
 !> Coulomb's law for one contact point, eq. (1.6), with a largest friction, in increments: pure
 !> functions of numbers.
 module friction
-   use contact_states, only: contact_open, contact_slip, contact_stick
+   use contact_states, only: contact_open, contact_slip, contact_stick, is_capped, with_cap
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    implicit none
@@ -57,8 +57,8 @@ contains
             if (abs(response%shear_force) <= bound + rounding%force) return
             excess = (abs(response%shear_force) - bound)/rounding%force
             contact_state = contact_slip
-            direction = merge(1, -1, response%shear_force > 0.0_dp)
-            if (over_largest > 0.0_dp) direction = 2*direction
+            direction = with_cap(merge(1, -1, response%shear_force > 0.0_dp), &
+               over_largest > 0.0_dp)
          else if (contact_state == contact_slip .and. direction == 0 .and. &
             friction%coefficient > 0.0_dp) then
             excess = 1.0_dp
@@ -72,12 +72,12 @@ contains
                excess = direction*response%slip/rounding%gap
                contact_state = contact_stick
                direction = 0
-            else if (abs(direction) == 1 .and. over_largest > rounding%force) then
+            else if (.not. is_capped(direction) .and. over_largest > rounding%force) then
                excess = over_largest/rounding%force
-               direction = 2*direction
-            else if (abs(direction) == 2 .and. over_largest < -rounding%force) then
+               direction = with_cap(direction, .true.)
+            else if (is_capped(direction) .and. over_largest < -rounding%force) then
                excess = -over_largest/rounding%force
-               direction = direction/2
+               direction = with_cap(direction, .false.)
             end if
          end if
       end select

@@ -7,7 +7,8 @@
 !> whatever the friction is, so that the path, which cannot return to where it began, arrives at
 !> t = 0 (Lemke's method with its geometric covering vector).
 module lemke_path
-   use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
+   use contact_states, only: contact_open, contact_slip, contact_state_type, contact_stick, &
+      is_capped, with_cap
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -149,7 +150,7 @@ contains
             if (.not. system%removed(k)) slack(1, k) = state%gap(k)
          else if (state%contact_state(k) == contact_slip) then
             slack(:3, k) = [state%force(k), -state%direction(k)*slip(k), largest - cone]
-            if (abs(state%direction(k)) > 1) slack(3, k) = -slack(3, k)
+            if (is_capped(state%direction(k))) slack(3, k) = -slack(3, k)
             if (system%largest_shear(k) >= unlimited) slack(3, k) = 0.0_dp
          else
             slack(:, k) = [cone - state%shear_force(k), cone + state%shear_force(k), &
@@ -182,16 +183,14 @@ contains
          case (2)
             state%contact_state(k) = contact_stick
             entering = merge(1, 2, state%direction(k) > 0)
-            if (abs(state%direction(k)) > 1) entering = entering + 2
+            if (is_capped(state%direction(k))) entering = entering + 2
          case default
-            state%direction(k) = merge(2, 1, abs(state%direction(k)) == 1)* &
-               sign(1, state%direction(k))
+            state%direction(k) = with_cap(state%direction(k), .not. is_capped(state%direction(k)))
             entering = 3
          end select
       case default
          state%contact_state(k) = contact_slip
-         state%direction(k) = merge(1, -1, mod(event, 2) == 1)
-         if (event > 2) state%direction(k) = 2*state%direction(k)
+         state%direction(k) = with_cap(merge(1, -1, mod(event, 2) == 1), event > 2)
          entering = 2
       end select
    end subroutine change_condition
