@@ -22,7 +22,7 @@ module closing_instant
    use active_set, only: solve_contact
    use contact_states, only: closing_law_type, contact_state_type, contact_open, contact_stick
    use contact_system, only: contact_system_type
-   use contact_workspace, only: contact_workspace_type
+   use contact_workspace, only: contact_workspace_type, relief_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
    implicit none
@@ -121,8 +121,8 @@ contains
       type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: held_state
-      logical :: closes(size(state%contact_state)), alone
-      real(dp) :: compliance(2, 2)
+      type(relief_type) :: relief
+      logical :: closes(size(state%contact_state))
       integer :: k
 
       closes = previous%contact_state == contact_open .and. state%contact_state /= &
@@ -132,12 +132,17 @@ contains
       held_state%contact_state = merge(contact_stick, contact_open, holds)
       call held%factor_set(system, held_state, error)
       if (allocated(error)) return
+      if (.not. allocated(held%relief)) allocate (held%relief(size(closes)))
       do k = 1, size(closes)
          if (.not. closes(k)) cycle
-         call find_compliance(system, held, held_state, k, compliance, alone, error)
-         if (allocated(error)) return
-         call make_law(compliance, previous, state, k, laws(k))
-         if (alone) laws(k)%fraction = 0.0_dp
+         if (.not. held%relief(k)%is_known) then
+            call find_compliance(system, held, held_state, k, relief, error)
+            if (allocated(error)) return
+            held%relief(k) = relief
+            held%reliefs = held%reliefs + 1
+         end if
+         call make_law(held%relief(k)%compliance, previous, state, k, laws(k))
+         if (held%relief(k)%alone) laws(k)%fraction = 0.0_dp
       end do
    end subroutine find_laws
 
@@ -159,13 +164,12 @@ contains
    !> opened there. Where only this contact point holds a body, relieved it would go without end: it
    !> closes at once, for which a normal compliance of zero and the start of the increment stand.
    !> Error: a singular system.
-   subroutine find_compliance(system, held, held_state, k, compliance, alone, error)
+   subroutine find_compliance(system, held, held_state, k, relief, error)
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(in) :: held
       type(contact_state_type), intent(in) :: held_state
       integer, intent(in) :: k
-      real(dp), intent(out) :: compliance(2, 2)
-      logical, intent(out) :: alone
+      type(relief_type), intent(out) :: relief
       type(error_type), allocatable, intent(out) :: error
       type(contact_workspace_type) :: opened
       type(contact_state_type) :: opened_state
@@ -183,17 +187,18 @@ contains
          response(tail_rows(1), 1) = 1.0_dp
          response(tail_rows(2), 2) = 1.0_dp
          call opened%solve_free(response)
-         compliance = response(tail_rows, :)
-         alone = size(opened%unconstrained, 2) > size(held%unconstrained, 2)
+         relief%compliance = response(tail_rows, :)
+         relief%alone = size(opened%unconstrained, 2) > size(held%unconstrained, 2)
       else
          stiffness = held%stiffness(system, tail_rows)
          determinant = stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1)
-         alone = determinant <= nothing*system%schur(tail_rows(1), tail_rows(1))* &
+         relief%alone = determinant <= nothing*system%schur(tail_rows(1), tail_rows(1))* &
             system%schur(tail_rows(2), tail_rows(2))
-         if (.not. alone) compliance = reshape([stiffness(2, 2), -stiffness(2, 1), &
+         if (.not. relief%alone) relief%compliance = reshape([stiffness(2, 2), -stiffness(2, 1), &
             -stiffness(1, 2), stiffness(1, 1)], [2, 2])/determinant
       end if
-      if (alone) compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp/system%alone(k)], [2, 2])
+      relief%is_known = .true.
+      if (relief%alone) relief%compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp/system%alone(k)], [2, 2])
    end subroutine find_compliance
 
    !> The closing law of one contact point.

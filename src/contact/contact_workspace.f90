@@ -13,12 +13,19 @@ module contact_workspace
    use unconstrained_motions, only: free_motions, is_driven
    implicit none
    private
-   public :: contact_workspace_type
+   public :: contact_workspace_type, relief_type
 
    real(dp), parameter :: rounding = 1.0e-12_dp !! of the forces that a load is condensed of
    !> Part of the rounding of coordinates: a load that moves a contact point no farther is a
    !> remainder of loads that were taken off.
    real(dp), parameter :: unresolved = 1.0e-3_dp
+
+   !> What a contact point gives way to its own forces, the others keeping their conditions.
+   type :: relief_type
+      logical :: is_known = .false.               !! whether it was found
+      logical :: alone = .false.                  !! whether nothing else holds a body
+      real(dp) :: compliance(2, 2) = 0.0_dp       !! of d_n, d_t to forces along them [length/force]
+   end type relief_type
 
    !> Data of the increment, and the factors for the active set of the last solution.
    type :: contact_workspace_type
@@ -37,6 +44,8 @@ module contact_workspace
       logical :: driven = .false.                 !! whether these are more than rounding
       logical, allocatable :: idle(:)  !! (m) closed contact points that carry nothing (idle_points)
       integer :: factorisations = 0               !! of active sets, so far
+      integer :: reliefs = 0                      !! found so far
+      type(relief_type), allocatable :: relief(:) !! (m) with the factors; none were sought at first
       logical :: several = .false.                !! whether other states under the load are proven
       type(lu_type), private :: lu                !! factors on the free rows, bordered
       real(dp), private :: border = 1.0_dp        !! scale of the border [force/length]
@@ -304,7 +313,8 @@ contains
       end if
    end subroutine factor_set
 
-   !> Whether the factors are those of an active set; where closing starts does not enter them.
+   !> Whether the factors are those of an active set. Where closing starts does not enter them, and
+   !> its law does only where the contact point sticks.
    pure logical function is_factored(self, state)
       type(contact_workspace_type), intent(in) :: self
       type(contact_state_type), intent(in) :: state
@@ -315,6 +325,7 @@ contains
       if (any(self%factored /= state_code(state))) return
       do k = 1, size(self%closing)
          associate (law => self%closing(k), factored => self%factored_closing(k))
+            if (state%contact_state(k) /= contact_stick) cycle
             if (law%acts .neqv. factored%acts) return
             if (.not. law%acts) cycle
             if (abs(law%fraction - factored%fraction) > 0.0_dp) return
@@ -335,6 +346,7 @@ contains
       integer :: i, j
 
       if (allocated(self%factored)) deallocate (self%factored)
+      if (allocated(self%relief)) deallocate (self%relief)
       associate (f => size(self%rows%free), free => self%rows%free)
          do j = 1, f
             column = self%rows%combine(columns(self, system, free(j:j)))
