@@ -13,6 +13,7 @@ module equation_checks
    use reduced_bodies, only: reduced_bodies_type
    use row_origins, only: origins_of
    use steps, only: solves_heat, solves_mechanics
+   use support_names, only: join_name, support_name
    use text, only: to_text
    implicit none
    private
@@ -127,24 +128,19 @@ contains
       supported = .false.
       origins = origins_of(rows, constraint)
       do i = 1, size(origins)
+         name = ''
          associate (number => origins(i)%number)
             select case (origins(i)%kind)
             case (of_tie)
                name = model%ties(points%ties%tie(number))%faces%title()
             case (of_support)
                supported = .true.
-               name = ''
-               if (supports%card(number) > 0) name = '*BOUNDARY, '// &
-                  model%boundary_places(supports%card(number))%value
+               name = support_name(model, supports, number)
             case (of_equation)
                name = points%equations(number)%title
-            case default
-               name = ''
             end select
          end associate
-         if (len(name) == 0 .or. index(names//' and ', name//' and ') > 0) cycle
-         if (len(names) > 0) names = names//' and '
-         names = names//name
+         call join_name(names, name)
       end do
    end subroutine name_origins
 

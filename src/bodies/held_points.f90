@@ -6,7 +6,8 @@ module held_points
    use kinds, only: dp
    implicit none
    private
-   public :: find_held_directions, over_constrained, free_part, tangential_positions
+   public :: find_held_directions, over_constrained, normal_supports, free_part
+   public :: tangential_positions
 
    !> Component of a unit vector that is rounding: two axes are one, or the normal motion of a
    !> contact point is prescribed.
@@ -53,6 +54,30 @@ contains
             all(all_held .or. abs(matmul(points%normal(:, k), axes)) <= least_slant)
       end do
    end function over_constrained
+
+   !> The degrees of freedom, of a contact point's nodes, that supports hold and that move it along
+   !> its normal.
+   pure function normal_supports(points, held, k) result(dofs)
+      type(all_contact_points_type), intent(in) :: points
+      logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
+      integer, intent(in) :: k                     !! a contact point
+      integer, allocatable :: dofs(:)
+      real(dp) :: axes(2, 2)
+      logical :: fixed(2)
+      integer, allocatable :: nodes(:)
+      integer :: c, i
+
+      nodes = points%nodes_of(k)
+      allocate (dofs(0))
+      do i = 1, size(nodes)
+         call find_axes(points, held, nodes(i), axes, fixed)
+         do c = 1, 2
+            if (fixed(c) .and. abs(dot_product(points%normal(:, k), axes(:, c))) > least_slant) then
+               dofs = [dofs, 2*named_node(points, nodes(i)) - 2 + c]
+            end if
+         end do
+      end do
+   end function normal_supports
 
    !> The axes of a contact point's slave node, and along which of them all nodes whose values it
    !> takes are held.
@@ -116,12 +141,22 @@ contains
       integer :: i
 
       axes = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
-      fixed = held(2*node - 1:2*node)
       i = findloc(points%partners%node, node, dim=1)
-      if (i == 0) return
-      axes = points%partners(i)%axes
-      fixed = held(2*points%partners(i)%partner - 1:2*points%partners(i)%partner)
+      if (i > 0) axes = points%partners(i)%axes
+      fixed = held(2*named_node(points, node) - 1:2*named_node(points, node))
    end subroutine find_axes
+
+   !> The node whose degrees of freedom cards name for a node: its partner where *TRANSFORM turns
+   !> its axes.
+   pure integer function named_node(points, node)
+      type(all_contact_points_type), intent(in) :: points
+      integer, intent(in) :: node
+      integer :: i
+
+      named_node = node
+      i = findloc(points%partners%node, node, dim=1)
+      if (i > 0) named_node = points%partners(i)%partner
+   end function named_node
 
    !> Positions of the slave along the tangents, relative to the master. A held contact point slides
    !> only as its supports do: while it is open, the position counts that it would have if it closed

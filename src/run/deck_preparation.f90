@@ -13,16 +13,18 @@ module deck_preparation
    use errors, only: error_type, set_error, status_deck
    use increments, only: simulation_type
    use kinds, only: dp
+   use load_histories, only: load_history_type
    use loads, only: loads_type
    use messages, only: print_error, print_line
    use model, only: model_type
    use interface_reports, only: make_interfaces, make_ties
    use all_contact_points, only: all_contact_points_type
-   use held_points, only: find_held_directions, over_constrained
+   use held_points, only: find_held_directions, normal_supports, over_constrained
    use progress, only: progress_type
    use redundant_points, only: first_redundant
    use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
+   use support_names, only: join_name, support_name
    use text, only: string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
    use variations, only: variation_type
@@ -153,7 +155,7 @@ contains
 
       associate (analysis => model%steps(step)%analysis)
          if (solves_mechanics(analysis)) then
-            call report_over_constrained(model, simulation, loads%displacement%active, step, report)
+            call report_over_constrained(model, simulation, loads%displacement, step, report)
             call unconstrained_in_step(model, points, loads%displacement%active, messages)
             call report_all()
          end if
@@ -175,10 +177,10 @@ contains
    !> Reports the first contact point of each interface whose force is undetermined: its relative
    !> motion is prescribed along the normal, because that of both nodes is, or supports leave fewer
    !> nodes to act on than there are contact points.
-   subroutine report_over_constrained(model, simulation, held, step, report)
+   subroutine report_over_constrained(model, simulation, supports, step, report)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
-      logical, intent(in) :: held(:)
+      type(load_history_type), intent(in) :: supports
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
       type(all_contact_points_type) :: row
@@ -187,32 +189,56 @@ contains
       integer :: i, k
 
       row = simulation%bodies%points
-      call find_held_directions(row, held)
-      too_much = over_constrained(row, held)
+      call find_held_directions(row, supports%active)
+      too_much = over_constrained(row, supports%active)
       do i = 1, size(model%contacts)
          associate (points => simulation%bodies%interfaces(i), number => model%mesh%node_number, &
             first => row%interface_start(i), last => row%interface_start(i + 1) - 1)
             k = findloc(too_much(first:last), .true., dim=1)
             if (k > 0) then
-               reason = 'prescribes the motion of slave node '// &
-                  to_text(number(points%slave_node(k)))//' and master node '// &
+               reason = cards_at(model, row, supports, first + k - 1)//' the motion of '// &
+                  'slave node '//to_text(number(points%slave_node(k)))//' and master node '// &
                   to_text(number(points%master_node(k)))//' towards each other, so that their '// &
                   'contact force is undetermined; free one of the two nodes along the normal '// &
                   'of the faces'
             else if (points%pairing == pairing_surfaces) then
-               k = first_redundant(row, first, last, held)
+               k = first_redundant(row, first, last, supports%active)
                if (k == 0) cycle
-               reason = 'holds slave node '//to_text(number(row%slave(k)))//', and too few '// &
-                  'nodes of the master are free there to determine the contact forces; '// &
+               reason = '*BOUNDARY holds slave node '//to_text(number(row%slave(k)))// &
+                  ', and too few nodes of the master are free there to determine the contact '// &
+                  'forces; '// &
                   'exchange slave and master so that the held face is the master, make the '// &
                   'slave coarser, or leave the faces at held nodes out of the surface'
             else
                cycle
             end if
             call report%error(place_type(image=model%contacts(i)%card), 'step '// &
-               to_text(step)//': contact pair '//points%name//': *BOUNDARY '//reason)
+               to_text(step)//': contact pair '//points%name//': '//reason)
          end associate
       end do
    end subroutine report_over_constrained
+
+   !> The cards that prescribe the motion of a contact point along its normal, and that they do.
+   pure function cards_at(model, points, supports, k) result(words)
+      type(model_type), intent(in) :: model
+      type(all_contact_points_type), intent(in) :: points
+      type(load_history_type), intent(in) :: supports
+      integer, intent(in) :: k
+      character(:), allocatable :: words
+      integer, allocatable :: dofs(:)
+      integer :: i
+
+      words = ''
+      dofs = normal_supports(points, supports%active, k)
+      do i = 1, size(dofs)
+         call join_name(words, support_name(model, supports, dofs(i)))
+      end do
+      if (len(words) == 0) words = 'the axis of symmetry'
+      if (index(words, ' and ') > 0) then
+         words = words//' prescribe'
+      else
+         words = words//' prescribes'
+      end if
+   end function cards_at
 
 end module deck_preparation
