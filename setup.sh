@@ -21,11 +21,11 @@ usage: ./setup.sh COMMAND
    cylinder    install what is missing, build, solve the published cylinder, draw its figures and page
    test        install what is missing, build, check the sources, run every test
    build       install what is missing, build build/release/thercon
-   lint        check the sources: fortitude, findent, shellcheck; with --fix mend what can be mended
+   lint        check the sources: fortitude, findent, shellcheck; with --fix fix what can be fixed
    coverage    install what is missing, build with gcov, run every test, report the lines executed
    verify      run the verification manual again, write docs/verification.md
    bench       run thercon and CalculiX at equal error again, against the figures on record;
-               bench performance [PART...]: measure docs/performance.md anew, all of it or the
+               bench performance [PART...]: measure docs/performance.md again, all of it or the
                parts skyline, tail, levels, paper
 
 What is installed: Debian packages with apt-get, as root or with sudo; without either, the command
@@ -209,7 +209,7 @@ run_lint() {
    "$venv/bin/fortitude" check --progress-bar off "$@" src tests || status=1
    check_indentation "$@" || status=1
    "$venv/bin/shellcheck" setup.sh .ci/run input/*/*.sh tests/*/*.sh || status=1
-   ((status == 0)) || printf 'The sources do not pass; ./setup.sh lint --fix mends some of it.\n'
+   ((status == 0)) || printf 'The sources do not pass; ./setup.sh lint --fix fixes some of it.\n'
    return "$status"
 }
 

@@ -89,7 +89,7 @@ def add_loads(picture):
         action="append",
         type=int,
         metavar="N ...",
-        help="increment, or several, from 1; tells apart load levels met more than once",
+        help="increment, or several, from 1; distinguishes load levels that occur more than once",
     )
 
 
@@ -109,7 +109,7 @@ def add_contact(picture):
         default=[],
         dest="figures",
         metavar="FIGURE.csv",
-        help="lay a digitised figure over",
+        help="overlay a digitised figure",
     )
 
 

@@ -9,7 +9,7 @@
 !>    -width <= coordinate <= 0   rest, opening = 0, between the closed and the open value
 !>    coordinate > 0              open, opening = coordinate
 !>
-!> The origin is where the contact point opens: a law of the gap is ever so much steeper than one of
+!> The origin is where the contact point opens: a law of the gap is far steeper than one of
 !> the pressure, and a small gap must keep its digits.
 !>
 !> At rest omega/(omega + body) is linear in the coordinate, which is nearly so for the heat that

@@ -14,7 +14,7 @@ module increment_quantities
       quantity_type('time', of_history, 'time', &
       description='total time at the end of the increment'), &
       quantity_type('load', of_history, 'load', &
-      description='value on the load axis; attribute label says of what'), &
+      description='value on the load axis, which the attribute label names'), &
       quantity_type('iterations', of_history, '-', is_integer=.true., &
       description='passes of the fixed point'), &
       quantity_type('cut_backs', of_history, '-', is_integer=.true., is_published=.false.), &
@@ -37,11 +37,11 @@ module increment_quantities
       label='quasi-static coupling gain', &
       description='real part of the eigenvalue of U'' that is largest in modulus'), &
       quantity_type('coupling_gain_max', of_history, '-', needs_coupling, &
-      label='largest real one', description='largest real eigenvalue of U'''), &
+      label='largest real eigenvalue', description='largest real eigenvalue of U'''), &
       quantity_type('stress_error', of_bodies, '-', needs_mechanics, label='stress', &
-      description='estimated error of the stress by the mesh, relative; a column a body'), &
+      description='estimated error of the stress by the mesh, relative; one column per body'), &
       quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux', &
-      description='estimated error of the heat flux by the mesh, relative; a column a body'), &
+      description='estimated error of the heat flux by the mesh, relative; one column per body'), &
       quantity_type('increment', of_passes, '-', head='increment', width=12, is_integer=.true., &
       description='increment of the pass'), &
       quantity_type('iteration', of_passes, '-', head='iteration', width=11, is_integer=.true., &
@@ -54,7 +54,7 @@ module increment_quantities
       description='largest factor g of eq. (4.2)'), &
       quantity_type('g_kept', of_passes, '-', head='g kept', width=8, is_integer=.true., &
       is_published=.false.), &
-      quantity_type('pairs_changed', of_passes, '-', head='pairs changed', width=15, &
+      quantity_type('pairs_changed', of_passes, '-', head='points changed', width=15, &
       is_integer=.true., description='contact points whose contact state changed'), &
       quantity_type('cut_backs', of_passes, '-', head='cut-backs', width=11, is_integer=.true., &
       description='cut-backs of the increment before the pass')]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every deck of refused/ must be refused by `thercon check`: exit status 1, nothing on stdout, and on stderr exactly
-# what stands in NAME.expected beside it. NAME.args, where it is there, holds more arguments.
+# the text of NAME.expected beside it. NAME.args, if it exists, has further arguments.
 #
 #    run_refused.sh [PROGRAM]     PROGRAM defaults to $THERCON
 set -u

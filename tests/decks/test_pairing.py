@@ -83,8 +83,8 @@ def test_a_node_beside_its_partner_is_why_faces_do_not_match(tmp_path):
     deck = write(tmp_path / "d.inp", (3, 0.1, 3.0), (3, 0.0, 3.0))
     solve(deck)
     words = " ".join(deck.with_suffix(".lst").read_text().split())
-    assert ("because the faces do not match: slave node 1 and master node 1201 lie 0.1 beside each "
-            "other, 20 % of the node spacing") in words
+    assert ("because the faces do not match: slave node 1 and master node 1201 are offset by "
+            "0.1, 20 % of the node spacing") in words
 
 
 def test_fields_are_linear_along_the_slave_and_projected_to_the_master(tmp_path):

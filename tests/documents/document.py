@@ -106,7 +106,7 @@ class Document:
 
     @property
     def path(self):
-        """Return where the document stands."""
+        """Return the path of the document."""
         return DOCS / self.file
 
     def present(self):
@@ -115,7 +115,7 @@ class Document:
                 if (self.folder / f"test_{name}.py").exists()}
 
     def sections(self):
-        """Return the lines of the sections that stand in the document, by their titles."""
+        """Return the lines of the sections of the document, by their titles."""
         found, lines = {}, []
         for line in self.path.read_text().splitlines() if self.path.exists() else ():
             if line.startswith("## "):

@@ -1,4 +1,4 @@
-!> Elements with nodes that all but coincide. The forces of such nodes, made of stiffnesses that
+!> Elements with nodes that nearly coincide. The forces of such nodes, made of stiffnesses that
 !> grow as the side shrinks, are known to rounding times the square of the ratio of the sides, in
 !> parts of an even load: nothing is left of the pressure at a contact point of such a side at 1e-8.
 module slender_elements
