@@ -13,54 +13,61 @@ from thercon_post import style, trade
 
 TITLE = "Speed for accuracy, measured"
 TEXT = """
-`thercon trade DECK` measures this for any deck; [running.md](running.md#speed-against-accuracy)
-says how. The stated error of a row is its distance from an extrapolated reference plus the
-uncertainty of the reference, so that a row never looks better than it is.
+`thercon trade DECK` measures what accuracy costs for any deck;
+[running.md](running.md#speed-against-accuracy) describes the command. Four decks teach:
 
-- **An error is relative to the value at its instant**, of forces, heat rates and peak pressures, or
-  to a quarter of the largest value over time if that is more, because values are near zero just
-  after first contact. Edges are relative to the length of the contact in the same way;
-  temperatures, of all corner nodes, to the range of all temperatures. The largest error over all
-  instants counts; at a single instant two meshes can agree by chance. The instants are the ends of
-  the longest increments, which are common to all rows. Their states depend on the whole path, so
-  errors of frictional history show in them; each row follows the path by its own increments.
-- **The reference** is the finest mesh with its shortest increments, moved by what Richardson's
-  extrapolation adds over meshes, and over increments on the finest mesh that has three sizes of
-  them. Its uncertainty is the whole of that addition, and at least half the last difference, if
-  differences fall by a steady ratio. Otherwise it is twice the error that the differences allow if
-  it falls at least with the first power of the steps, three times with three meshes, and four times
-  the last difference if they do not settle. This second rule is always used for edges, which lie
-  between two nodes and scatter. The effect of TOL is added. Orders below one half that are hidden
-  behind another term are not seen.
-- **Rows that are finer at the contact** have the deck's elements with 1, 2 or more levels at both
-  faces of all contact pairs, beyond those of the whole mesh, and the increments of the deck and
-  those four times as long. `Q8 x 2:8` divides all sides by 2, and those at the contact faces by 8
-  (`*REFINE, LEVELS=1`, then `LEVELS=2, SURFACE=`). They are not part of the reference, which judges
-  them as the others; the uncertainty of the uniform meshes stays in their stated errors.
-- **A recommendation** is the cheapest row that meets the target, and the targets before it, in all
-  quantities for which any row does; quantities for which no row meets the target are named beside
-  it.
-- **CPU seconds** are user and system time of a process that solves only this row: reading, pairing,
-  factors, increments, and the recovery of stress and flux, but no output; medians of 7 runs below
-  0.1 s, 5 below 1 s, 3 below 5 s. MB is its largest resident memory, some 9 MB of which are the
-  program itself.
-- Refined elements keep the shape of the deck's own sides: what is polygonal or parabolic there
-  stays so, and the reference with it.
+- Refine the mesh, at the contact faces first, with elements that have midside nodes.
+- Leave increments, tolerance and method as they are. Only friction depends on the increments.
+- Where the reference itself is uncertain, as for edges of stick, no row can be more accurate.
 
-In the tables: rows that are Pareto-optimal in CPU and worst error (\\*), the deck as written (=),
-the rows that are recommended, and all that vary one thing. The full tables are what the command
-prints; here with `--limit 8`.
+The tables show the rows that are Pareto-optimal in CPU time and worst error (\\*), the deck as
+written (=), the recommended rows, and all that vary one thing. The command prints the full tables;
+here it ran with `--limit 8`. CPU seconds of one table compare its rows; other jobs on the machine
+lengthen all of them.
+
+**Errors.** The stated error of a row is its distance from an extrapolated reference plus the
+uncertainty of the reference, so a row never looks better than it is. Errors of forces, heat rates
+and peak pressures are relative to the value at the same instant, or to a quarter of the largest
+value over time if that is more, because values are near zero just after first contact. Edges are
+relative to the length of the contact in the same way, temperatures of all corner nodes to the range
+of all temperatures. The largest error over all instants counts, because at a single instant two
+meshes can agree by chance. The instants are the ends of the longest increments, which all rows
+have. Each row follows the path by its own increments, so errors of frictional history show.
+
+**The reference** is the finest mesh with its shortest increments, moved by what Richardson's
+extrapolation adds over meshes, and over increments on the finest mesh that has three sizes of them.
+If differences fall by a steady ratio, its uncertainty is that whole addition, and at least half the
+last difference. Otherwise it is twice the error that the differences allow if it falls at least
+with the first power of the steps, three times with three meshes, and four times the last difference
+if they do not settle. Edges always take this second rule, because they lie between two nodes and
+scatter. The effect of TOL is added. Orders below one half that are hidden behind another term are
+not seen.
+
+**Rows that are finer at the contact** have 1, 2 or more levels at both faces of all contact pairs,
+beyond those of the whole mesh, with the increments of the deck and those four times as long.
+`Q8 x 2:8` divides all sides by 2, and those at the contact faces by 8 (`*REFINE, LEVELS=1`, then
+`LEVELS=2, SURFACE=`). The reference does not use them. Refined elements keep the shape of the
+deck's own sides: what is polygonal or parabolic there stays so, in the reference too.
+
+**A recommendation** is the cheapest row that meets the target, and the targets before it, in all
+quantities for which any row does; the other quantities are named beside it.
+
+**CPU seconds** are user and system time of a process that solves only this row: reading, pairing,
+factors, increments, and the recovery of stress and flux, but no output. They are medians of 7 runs
+below 0.1 s, 5 below 1 s, 3 below 5 s. MB is the largest resident memory, some 9 MB of which are the
+program itself.
 """
 LIMIT = "8"
 CYLINDER = """\
-Elements with midside nodes on the deck's own mesh cost 0.04 s. Force is accurate to 0.2 %, heat to
-2.5 %, the peak to 1.2 %. Spend time on the mesh: each halving costs 4 to 8 times the time and
-halves the errors of heat and edges. Increments hardly matter: increments four times as long are
-equally good except for the edge of stick. Linear elements need the mesh halved twice more for the
-same force, at ten times the cost; for heat and edges they are on a par. Tolerance and method change
-nothing here. `GALERKIN` and `CRANK-NICOLSON` do not damp the error that a closing contact point
-leaves in the heat rate; `MUMPS` takes nearly twice the time and 4 MB more at this size. Early in
-the loading the edge of stick is not accurate to 10 %, because slip is frozen point by point."""
+With midside nodes on the deck's own mesh the force is accurate to 0.2 %, the heat to 2.5 %, the
+peak to 1.2 %. Spend time on the mesh, at the contact faces first: `Q8 x 2:8` has the errors of the
+uniform mesh `Q8 x 8` in a third of its time and a quarter of its memory. Each halving of the whole
+mesh costs 4 to 8 times the time and halves the errors of heat and edges. Increments hardly matter:
+increments four times as long are equally good except for the edge of stick. Linear elements need
+the mesh halved twice more for the same force, at several times the cost. Tolerance and method
+change nothing here. `GALERKIN` and `CRANK-NICOLSON` do not damp the error that a closing contact
+point leaves in the heat rate; `MUMPS` takes nearly twice the time and 4 MB more at this size. Early
+in the loading the edge of stick is not accurate to 10 %, because slip is frozen point by point."""
 TWIN = """\
 At first contact, near 540 C, two contact points compete for the heat; the results there depend on
 the mesh far more than anything on the cylinder above. The uncertainty of the reference shows it:
@@ -69,9 +76,9 @@ contact to 6 %, the edge of stick not at all. A finer mesh improves all of them,
 none. Only `NEWTON` completes the run; the three other methods fail at 500 and 520 C and are listed
 as failed."""
 HERTZ = """\
-Without friction the path does not matter: one increment gives the same digits as sixteen. The
-linear elements of the unrefined deck give the peak pressure to 0.5 % in a tenth of the time of the
-deck as written, and the force on any mesh. The edge of contact is accurate to half a per cent."""
+Without friction the path does not matter: one increment gives the same digits as sixteen. On the
+unrefined mesh linear elements give the peak pressure to 0.5 % in a tenth of the time of the deck as
+written, and every mesh gives the force. The edge of contact is accurate to half a per cent."""
 ROD = """\
 Uniform states are exact on any mesh: all rows of the grid agree with the closed form, so the
 cheapest is sufficient; the choice between them is arbitrary. The method matters: `PICARD` cycles
