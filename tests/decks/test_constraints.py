@@ -45,10 +45,12 @@ EQUATIONS = ["*EQUATION", "2", "10, 1, 1., 9, 1, -1.", "3", "12, 2, 1., 9, 2, -0
 
 @pytest.mark.changes("EQUATION")
 def test_equations_of_displacements_as_in_calculix(tmp_path):
-    theirs, ours = both(tmp_path, body(), EQUATIONS, pull())
-    assert_within(differences(theirs, ours), DIGITS)
-    assert ours[1.0, "U1"][10,] == ours[1.0, "U1"][9,]
-    note_changes(EQUATIONS, ["*EQUATION", "1", "1, 1, 1."])
+    weaker = [card.replace("-0.7", "-0.3") for card in EQUATIONS]
+    for equations in (weaker, EQUATIONS):
+        theirs, ours = both(tmp_path, body(), equations, pull())
+        assert_within(differences(theirs, ours), DIGITS)
+        assert ours[1.0, "U1"][10,] == ours[1.0, "U1"][9,]
+    note_changes(weaker, EQUATIONS)
 
 
 def test_a_node_of_no_element_pulls_what_equations_relate_to_it(tmp_path):
@@ -155,19 +157,21 @@ ROUND = ["*TRANSFORM, NSET=BODY.RIGHT, TYPE=C", "0.5, -1., 0., 0.5, -1., 1."]
 
 
 @pytest.mark.changes("TRANSFORM", "TRANSFORM, TYPE", "TRANSFORM, NSET", "NODE PRINT, GLOBAL")
-@pytest.mark.parametrize("axes", [RECTANGULAR, ROUND, [ROUND[0], "0.5, -1., 0., 0.5, -1., -1."]],
-                         ids=["rectangular", "cylindrical", "reversed"])
-def test_supports_and_forces_along_axes_of_nodes_as_in_calculix(tmp_path, axes):
-    note_changes(RECTANGULAR, ROUND)
-    note_changes(ROUND, [ROUND[0].replace("RIGHT", "TOP"), ROUND[1]])
-    note_changes(["*NODE PRINT, GLOBAL=NO"], ["*NODE PRINT, GLOBAL=YES"])
+def test_supports_and_forces_along_axes_of_nodes_as_in_calculix(tmp_path):
+    """Rectangular axes, cylindrical ones about an axis and its reverse, and those of other nodes."""
     cards = [*STATIC, *LEFT_HELD, "10, 1, 1, 0.01", "12, 2, 2, -0.004", "*CLOAD", "9, 1, 3.",
              "9, 2, -1.", "12, 1, 2.", "*NODE PRINT, NSET=BODY, GLOBAL=YES", "U",
              "*EL PRINT, ELSET=BODY", "S", "*END STEP"]
-    for choice in ("GLOBAL=YES", "GLOBAL=NO"):
-        theirs, ours = both(tmp_path, body(), axes, [c.replace("GLOBAL=YES", choice) for c in cards])
-        assert_within(differences(theirs, ours), DIGITS)
-        assert (ours[1.0, "U1"][10,] == 0.01) == (choice == "GLOBAL=NO")
+    decks = []
+    for axes in (RECTANGULAR, ROUND, [ROUND[0], "0.5, -1., 0., 0.5, -1., -1."],
+                 [ROUND[0].replace("RIGHT", "TOP"), ROUND[1]]):
+        for choice in ("GLOBAL=YES", "GLOBAL=NO"):
+            decks.append([*axes, *(c.replace("GLOBAL=YES", choice) for c in cards)])
+            theirs, ours = both(tmp_path, body(), decks[-1])
+            assert_within(differences(theirs, ours), DIGITS)
+            assert (ours[1.0, "U1"][10,] == 0.01) == (choice == "GLOBAL=NO")
+    for other in decks[1:]:
+        note_changes(decks[0], other)
 
 
 def test_equations_along_axes_of_nodes_as_in_calculix(tmp_path):
