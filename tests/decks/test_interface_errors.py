@@ -47,11 +47,14 @@ def test_error_of_hertz_peak_pressure(tmp_path):
     changes = {"*REFINE, LEVELS=1": "*REFINE, LEVELS=0"}
     coarse = errors(solve(bare(HERTZ, tmp_path, "coarse.inp", changes=changes)), "FACE")
     changes = {"*REFINE, LEVELS=1": "*REFINE, LEVELS=2"}
-    fine = errors(solve(bare(HERTZ, tmp_path, "fine.inp", changes=changes)), "FACE")
+    fine = solve(bare(HERTZ, tmp_path, "fine.inp", ["*OPTIONS, ERRORS=NO"], changes))
+    with h5py.File(fine) as file:
+        peak = file["contact/FACE/pressure"][-1].max()
+        edge = file["contact/FACE/edge_contact"][-1]
     value, mesh, *_ = coarse["peak_pressure"]
-    assert 0.5 <= (fine["peak_pressure"][0] - value) / mesh <= 2.0
+    assert 0.5 <= (peak - value) / mesh <= 2.0
     value, mesh, *_ = coarse["edge_contact"]
-    assert abs(fine["edge_contact"][0] - value) <= mesh
+    assert abs(edge - value) <= mesh
 
 
 @pytest.mark.parametrize("friction", ["*FRICTION\n0.155, 1.E5\n", ""])
@@ -72,7 +75,7 @@ def test_error_of_increments(tmp_path):
     """The explicit scheme is of the first order: its conductance is that of the last increment."""
     cards = ["*THERMAL SCHEME, TYPE=EXPLICIT"]
     runs = []
-    for size in ("5.", "2.5", "0.3125"):
+    for size in ("5.", "2.5", "0.625"):
         deck = bare(CYLINDER, tmp_path, f"steps{size}inp", cards, {"INC=100": "INC=10000",
                                                                    "20., 900.": f"{size}, 900."})
         runs.append(errors(solve(deck), "FACE")["heat_rate"])

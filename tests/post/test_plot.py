@@ -495,11 +495,11 @@ def test_convergence_without_iterations_says_so(fail, result):
 
 
 @pytest.mark.parametrize("choices", [{"heat": False}, {"friction": None}])
-def test_decks_without_heat_or_friction_are_drawn(draw, tmp_path, choices):
+def test_decks_without_heat_or_friction_are_drawn(tabulate, tmp_path, choices):
     path = tmp_path / "case.vtkhdf"
     write_result(path, loads=(300.0, 600.0), **choices)
     for picture in ("profiles", "zones", "fields"):
-        draw(picture, path)
+        tabulate(picture, path)
     columns = table(tmp_path, "case.profiles.csv")
     assert ("heat_flux" in columns) == choices.get("heat", True)
     assert ("mu_p" in columns) == ("friction" not in choices)
