@@ -1,19 +1,14 @@
 !> The rounds of a requested accuracy: what each found at the ends of its steps.
 !>
-!> The bound takes the estimated error of the mesh as one that falls with h only, and adds how much
-!> the quantity scatters over the increments before, which the estimate at one load may miss: errors
-!> change their sign as the edge of contact passes a node. Fourth differences show it, for in them
-!> what is smooth vanishes. It also takes the change from one round to the next. A round that
-!> divides elements leaves less than a part of the error (`left_by_round`), so that this part of the
-!> change bounds what is left; alone where nothing else is known of the mesh, as for faces whose
-!> nodes do not match, ties, and quantities that the path of friction decides.
+!> The bounds are those of the error estimator. Only the change from one round to the next is added:
+!> a round that divides elements leaves less than a part of the error (`left_by_round`), so that this
+!> part of the change bounds what is left; alone where nothing else is known of the mesh.
 module accuracy_rounds
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
-   use error_estimator, only: of_halved_elements
-   use interface_quantities, only: closed_length, edge_resolution
+   use interface_quantities, only: closed_length, edge_spacing
    use kinds, only: dp
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
@@ -22,11 +17,6 @@ module accuracy_rounds
    public :: accuracy_rounds_type, accuracy_round_type, finding_type
 
    real(dp), parameter :: early = 0.25_dp     !! part of the largest value so far: least scale
-   !> The bound in the estimate: errors that fall with h are twice the change of halved elements.
-   real(dp), parameter :: of_estimate = 2.0_dp/of_halved_elements
-   integer, parameter :: scattered = 9        !! increments over which a quantity's scatter is taken
-   !> Standard deviation of the fourth difference of independent values, over theirs.
-   real(dp), parameter :: of_difference = sqrt(70.0_dp)
    !> Part of the change from round to round: what is left where estimates of the mesh agree, and
    !> where there are none.
    real(dp), parameter :: left_by_round = 0.5_dp, left_without_estimate = 1.0_dp
@@ -48,9 +38,9 @@ module accuracy_rounds
    type :: finding_type
       logical :: is_there = .false.        !! whether the quantity has a value and an error
       real(dp) :: value = 0.0_dp           !! of the quantity
-      real(dp) :: mesh = 0.0_dp            !! bound of the error of the mesh; NaN: unknown
-      real(dp) :: increment = 0.0_dp       !! of the increments; NaN: unknown
-      real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: unknown
+      real(dp) :: mesh = 0.0_dp            !! bound of the error of the mesh; NaN: uncertain
+      real(dp) :: increment = 0.0_dp       !! of increments and iteration; NaN: uncertain
+      real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: uncertain
       real(dp) :: allowed = 0.0_dp         !! what the target allows
    contains
       procedure :: is_met
@@ -77,8 +67,6 @@ module accuracy_rounds
       type(demand_type), allocatable :: demands(:)
       type(accuracy_round_type), allocatable :: rounds(:)    !! the last is the present one
       real(dp), allocatable :: largest(:)                    !! (demands) scale so far in the round
-      !> (scattered, demands) values at the last increments of the step, the newest last
-      real(dp), allocatable :: values(:, :)
    contains
       procedure :: begin_round
       procedure :: follow
@@ -113,7 +101,6 @@ contains
       allocate (rounds(n + 1)%findings(size(self%demands), steps))
       call move_alloc(rounds, self%rounds)
       self%largest = [(0.0_dp, i=1, size(self%demands))]
-      if (.not. allocated(self%values)) allocate (self%values(scattered, size(self%demands)))
    end subroutine begin_round
 
    !> Adds the target of one interface or of all.
@@ -150,21 +137,18 @@ contains
 
       if (.not. self%is_on) return
       n = size(self%rounds)
-      if (record%increment_in_step == 1) self%values = ieee_value(1.0_dp, ieee_quiet_nan)
-      self%values(:scattered - 1, :) = self%values(2:, :)
       self%rounds(n)%increments = record%increment
       do d = 1, size(self%demands)
          associate (points => interfaces(self%demands(d)%interface), &
             contact => record%contacts(self%demands(d)%interface))
             value = contact_values(estimated(self%demands(d)%quantity)%name, points, contact)
-            self%values(scattered, d) = value(1)
             scale = scale_of(self%demands(d), value(1), points, contact)
             if (.not. ieee_is_nan(scale)) self%largest(d) = max(self%largest(d), scale)
             if (.not. allocated(record%errors)) cycle
             if (ieee_is_nan(scale)) scale = 0.0_dp
             scale = max(scale, early*self%largest(d))
             self%rounds(n)%findings(d, record%step) = found(self%demands(d), points, &
-               record%errors(self%demands(d)%interface), scale, scatter(self%values(:, d)))
+               record%errors(self%demands(d)%interface), scale)
             call add_change(self%rounds, d, record%step)
          end associate
       end do
@@ -186,46 +170,29 @@ contains
          closed_length(contact, points%arc_length)
    end function scale_of
 
-   !> The estimates of one quantity at the end of a step. Where an edge is the end of the interface
+   !> The bounds of one quantity at the end of a step. Where an edge is the end of the interface
    !> there is nothing to judge.
-   function found(demand, points, errors, scale, scatter) result(finding)
+   function found(demand, points, errors, scale) result(finding)
       type(demand_type), intent(in) :: demand
       type(contact_points_type), intent(in) :: points
       type(interface_errors_type), intent(in) :: errors
-      real(dp), intent(in) :: scale, scatter
+      real(dp), intent(in) :: scale
       type(finding_type) :: finding
-      real(dp) :: resolution(size(estimated))
+      type(quantity_type) :: quantity
 
+      quantity = estimated(demand%quantity)
       associate (q => demand%quantity)
          finding%value = errors%value(q)
          finding%allowed = demand%target*merge(scale, 1.0_dp, demand%is_relative)
          finding%is_there = .not. ieee_is_nan(finding%value) .and. scale > 0.0_dp
          if (.not. finding%is_there) return
-         resolution = edge_resolution(points, errors%value)
-         finding%mesh = of_estimate*abs(errors%mesh(q)) + scatter
-         if (estimated(q)%resolution > 0.0_dp) then
-            finding%is_there = resolution(q) > 0.0_dp
-            finding%mesh = abs(errors%mesh(q))
-         end if
-         finding%increment = abs(errors%increment(q)) + errors%iteration(q)
-         finding%bound = finding%mesh + finding%increment
+         if (quantity%resolution > 0.0_dp) finding%is_there = &
+            edge_spacing(points, finding%value) > 0.0_dp
+         finding%mesh = errors%mesh(q)
+         finding%increment = errors%increment(q) + errors%iteration(q)
+         finding%bound = errors%bound(q)
       end associate
    end function found
-
-   !> How much values scatter about a smooth course; 0 where there are too few of them.
-   pure real(dp) function scatter(values)
-      real(dp), intent(in) :: values(:)
-      real(dp) :: difference(size(values) - 4)
-      integer :: k
-
-      scatter = 0.0_dp
-      if (any(ieee_is_nan(values))) return
-      do k = 1, size(difference)
-         difference(k) = values(k) - 4*values(k + 1) + 6*values(k + 2) - 4*values(k + 3) + &
-            values(k + 4)
-      end do
-      scatter = sqrt(sum(difference**2)/size(difference))/of_difference
-   end function scatter
 
    !> Lets the change from the round before count.
    subroutine add_change(rounds, d, step)

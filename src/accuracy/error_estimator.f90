@@ -1,4 +1,6 @@
-!> The errors of a run, estimated beside it: of the mesh, of the increments, of the fixed point.
+!> Bounds of the errors of a run, found beside it: one for each quantity of an interface at the end of
+!> a step, which everything else prints and judges by. It is the sum of three parts: mesh, increments,
+!> fixed point.
 module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_definitions, only: pairing_surfaces
@@ -7,8 +9,9 @@ module error_estimator
    use errors, only: error_type
    use increment_quantities, only: history_value
    use increments, only: simulation_type
-   use interface_quantities, only: edge_resolution, quantities_of_state
+   use interface_quantities, only: quantities_of, quantities_of_state
    use kinds, only: dp
+   use mesh_bounds, only: bounds_of_mesh, stuck_forces
    use load_histories, only: step_clock_type
    use model, only: model_type
    use records, only: increment_record_type, interface_errors_type
@@ -16,25 +19,23 @@ module error_estimator
    use refinement_error, only: find_change_by_refinement
    use solution_state, only: solution_state_type
    use text, only: append
+   use value_courses, only: value_courses_type
    implicit none
    private
-   public :: error_estimator_type, of_halved_elements
+   public :: error_estimator_type
 
-   !> Error of a mesh in the change that halving its elements makes: errors that fall with h are
-   !> twice the change, those that fall with h^4 are 1.07 of it.
-   real(dp), parameter :: of_halved_elements = 1.25_dp
-   !> The same for bands of edges, which shall hold errors that fall with h, and not by a hair.
-   real(dp), parameter :: of_halved_bands = 2.5_dp
-   !> Error of the increments in the change that doubling them makes: those that fall with their
-   !> length are the change, those that fall with its square a third of it.
-   real(dp), parameter :: of_doubled_increments = 0.6_dp
+   !> Error of the increments in the change that doubling them makes: that of errors that fall with
+   !> their length.
+   real(dp), parameter :: of_doubled_increments = 1.0_dp
 
-   !> What the estimates are made with.
+   !> What the bounds are made with.
    type :: error_estimator_type
       private
       type(refined_model_type) :: refined          !! the model with divided elements
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
+      type(value_courses_type) :: courses          !! quantities at the increments before
+      real(dp), allocatable :: stuck(:)            !! (interfaces) largest stuck_forces so far
       integer :: step = 0                          !! step of the present increment
       logical :: is_on = .false.                   !! whether there is anything to estimate
       character(:), allocatable :: why_not         !! why the mesh cannot be refined; else ''
@@ -63,6 +64,7 @@ contains
       if (size(model%ties) > 0) self%why_not = 'it relaxes nodes that are free, and there are ties'
       if (size(model%equations) > 0) self%why_not = &
          'it relaxes nodes that are free, and there are equations'
+      allocate (self%stuck(size(model%contacts)), source=0.0_dp)
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 
@@ -74,13 +76,14 @@ contains
       if (self%is_on) self%before = simulation%state
    end subroutine begin_increment
 
-   !> Follows an accepted increment; at the end of a step its record receives the errors.
+   !> Follows an accepted increment; at the end of a step its record receives the bounds.
    subroutine end_increment(self, model, simulation, record)
       class(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation     !! the run; its state stays
       type(increment_record_type), intent(inout) :: record
-      real(dp), allocatable :: values(:, :)
+      real(dp) :: values(size(estimated), size(record%contacts))
+      integer :: i
 
       if (.not. self%is_on) return
       if (record%step /= self%step .and. self%why_not == '') then
@@ -92,15 +95,24 @@ contains
       self%step = record%step
       call self%doubled%follow(model, simulation%bodies, simulation%loads, simulation%state, &
          record)
+      do i = 1, size(record%contacts)
+         associate (points => simulation%bodies%interfaces(i), contact => record%contacts(i))
+            values(:, i) = quantities_of(points, contact)
+            self%stuck(i) = max(self%stuck(i), stuck_forces(points, contact))
+         end associate
+      end do
+      call self%courses%follow(record%increment_in_step == 1, values)
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
-      allocate (values(size(estimated), size(record%contacts)))
-      call quantities_of_state(simulation%bodies, simulation%state, &
-         model%steps(self%step)%scheme, values)
       call store(values, record%errors)
-      if (self%why_not == '') call estimate_mesh(self, model, simulation, values, record)
-      call estimate_increments(self, model, simulation, values, record)
-      call estimate_iteration(values, record)
+      if (self%why_not == '') call bound_mesh(self, model, simulation, record)
+      call bound_increments(self, model, simulation, record%errors)
+      call bound_iteration(record)
+      do i = 1, size(record%errors)
+         associate (errors => record%errors(i))
+            errors%bound = errors%mesh + errors%increment + errors%iteration
+         end associate
+      end do
       if (self%why_not /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
          'estimated on one with elements of half the size: '//self%why_not)
    end subroutine end_increment
@@ -118,16 +130,15 @@ contains
       end do
    end subroutine store
 
-   !> Errors of the mesh, from the change that a refined one makes.
-   subroutine estimate_mesh(self, model, simulation, values, record)
+   !> Bounds of the errors of the mesh.
+   subroutine bound_mesh(self, model, simulation, record)
       type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation
-      real(dp), intent(in) :: values(:, :)
       type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable :: error
       type(step_clock_type) :: clock
-      real(dp) :: change(size(values, 1), size(values, 2))
+      real(dp) :: change(size(estimated), size(record%errors))
       integer :: i
 
       clock%total_time = record%time
@@ -141,23 +152,18 @@ contains
          return
       end if
       do i = 1, size(record%errors)
-         associate (mesh => record%errors(i)%mesh)
-            mesh = of_halved_elements*change(:, i)
-            where (estimated%is_path_dependent) mesh = ieee_value(1.0_dp, ieee_quiet_nan)
-            where (estimated%resolution > 0.0_dp) mesh = of_halved_bands*abs(change(:, i)) + &
-               edge_resolution(simulation%bodies%interfaces(i), values(:, i))
-         end associate
+         record%errors(i)%mesh = bounds_of_mesh(simulation%bodies%interfaces(i), &
+            record%contacts(i), change(:, i), self%courses%scatter(i), self%stuck(i))
       end do
-   end subroutine estimate_mesh
+   end subroutine bound_mesh
 
-   !> Errors of the increments, from those of twice the size.
-   subroutine estimate_increments(self, model, simulation, values, record)
+   !> Bounds of the errors of the increments, from those of twice the size.
+   subroutine bound_increments(self, model, simulation, errors)
       type(error_estimator_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
-      real(dp), intent(in) :: values(:, :)
-      type(increment_record_type), intent(inout) :: record
-      real(dp) :: doubled(size(values, 1), size(values, 2))
+      type(interface_errors_type), intent(inout) :: errors(:)
+      real(dp) :: doubled(size(estimated), size(errors))
       integer :: i
 
       if (.not. self%doubled%is_led) return
@@ -166,14 +172,13 @@ contains
          call quantities_of_state(simulation%bodies, self%doubled%state, &
             model%steps(self%step)%scheme, doubled)
       end if
-      do i = 1, size(record%errors)
-         record%errors(i)%increment = of_doubled_increments*(values(:, i) - doubled(:, i))
+      do i = 1, size(errors)
+         errors(i)%increment = of_doubled_increments*abs(errors(i)%value - doubled(:, i))
       end do
-   end subroutine estimate_increments
+   end subroutine bound_increments
 
-   !> Bound of the errors of the fixed point: its residual, through the gain that is nearest to 1.
-   subroutine estimate_iteration(values, record)
-      real(dp), intent(in) :: values(:, :)
+   !> Bounds of the errors of the fixed point: its residual, through the gain that is nearest to 1.
+   subroutine bound_iteration(record)
       type(increment_record_type), intent(inout) :: record
       real(dp) :: relative
       integer :: i
@@ -184,8 +189,8 @@ contains
       relative = history_value('residual', record)/max(tiny(1.0_dp), &
          min(1.0_dp, abs(1.0_dp - record%coupling_gain), abs(1.0_dp - record%coupling_gain_max)))
       do i = 1, size(record%errors)
-         record%errors(i)%iteration = relative*abs(values(:, i))
+         record%errors(i)%iteration = relative*abs(record%errors(i)%value)
       end do
-   end subroutine estimate_iteration
+   end subroutine bound_iteration
 
 end module error_estimator

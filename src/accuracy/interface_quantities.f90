@@ -13,7 +13,7 @@ module interface_quantities
    use solution_state, only: carrying_conductance, solution_state_type
    implicit none
    private
-   public :: closed_length, contact_of, quantities_of, quantities_of_state, edge_resolution
+   public :: closed_length, contact_of, quantities_of, quantities_of_state, edge_spacing
 
 contains
 
@@ -72,21 +72,6 @@ contains
       end associate
    end subroutine quantities_of_state
 
-   !> How far the edges among the quantities are known from the spacing of the contact points; 0 for
-   !> the others and for zones that end with the interface.
-   pure function edge_resolution(points, values) result(resolution)
-      type(contact_points_type), intent(in) :: points !! the contact points of the interface
-      real(dp), intent(in) :: values(:)               !! as quantities_of gave them
-      real(dp) :: resolution(size(values))            !! to either side [length]
-      integer :: q
-
-      do q = 1, size(values)
-         resolution(q) = 0.0_dp
-         if (estimated(q)%resolution > 0.0_dp) resolution(q) = estimated(q)%resolution* &
-            spacing_at(points%arc_length, values(q))
-      end do
-   end function edge_resolution
-
    !> Length of the interface that is closed.
    pure real(dp) function closed_length(contact, s) result(length)
       type(contact_record_type), intent(in) :: contact    !! state of the interface
@@ -100,18 +85,20 @@ contains
       end do
    end function closed_length
 
-   !> Distance of the contact points on both sides of a position; 0 at or beyond the last contact
-   !> point.
-   pure function spacing_at(s, position) result(spacing)
-      real(dp), intent(in) :: s(:), position
-      real(dp) :: spacing
+   !> Distance of the contact points on both sides of an edge; 0 at or beyond the last contact point,
+   !> where a zone ends with the interface.
+   pure real(dp) function edge_spacing(points, edge)
+      type(contact_points_type), intent(in) :: points !! the contact points of the interface
+      real(dp), intent(in) :: edge                    !! as arc length, or NaN [length]
       integer :: k
 
-      spacing = 0.0_dp
-      if (ieee_is_nan(position)) return
-      do k = 1, size(s) - 1
-         if (position >= s(k) .and. position < s(k + 1)) spacing = s(k + 1) - s(k)
-      end do
-   end function spacing_at
+      edge_spacing = 0.0_dp
+      if (ieee_is_nan(edge)) return
+      associate (s => points%arc_length)
+         do k = 1, size(s) - 1
+            if (edge >= s(k) .and. edge < s(k + 1)) edge_spacing = s(k + 1) - s(k)
+         end do
+      end associate
+   end function edge_spacing
 
 end module interface_quantities

@@ -47,13 +47,11 @@ module quantity_types
       logical :: is_geometry = .false.         !! that of the undeformed mesh
       logical :: is_on_faces = .false.         !! also a field over the nodes of both faces
       logical :: is_published = .true.         !! in the result file and in *VERIFY
-      logical :: is_estimated = .false.        !! its errors are estimated
+      logical :: is_estimated = .false.        !! its errors are bounded
       logical :: is_traded = .false.           !! rows of a trade are judged by it
-      !> Friction on the way decides it, so that one increment on a finer mesh does not tell its
-      !> error.
-      logical :: is_path_dependent = .false.
+      logical :: is_of_friction = .false.      !! 0 without friction
       !> Of an edge of a zone: how far it is known on a mesh, in spacings of the contact points
-      !> about it; 0 for what is no edge. Errors of edges are bands to both sides.
+      !> about it (docs/accuracy.md); 0 for what is no edge.
       real(dp) :: resolution = 0.0_dp
       ! In the result file, as attributes of its dataset.
       character(100) :: description = ''       !! what it is, with its sign and codes

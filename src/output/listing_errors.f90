@@ -1,8 +1,8 @@
-!> Estimated errors in the listing: of bodies in the energy norm, and of the global quantities of an
-!> interface, those of the mesh, of the increments and of the iteration beside each other.
+!> Errors in the listing: of bodies in the energy norm, and bounds of those of an interface's
+!> quantities, with the parts of mesh, increments and iteration beside each other.
 module listing_errors
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use contact_quantities, only: estimated, total_errors
+   use contact_quantities, only: estimated
    use increment_quantities, only: body_values
    use kinds, only: dp
    use listing_text, only: column
@@ -46,42 +46,38 @@ contains
       end do
    end subroutine print_body_errors
 
-   !> Prints the errors of an interface. What has no value, or no part in the deck, is left out.
+   !> Prints the bounds of an interface. What has no value, or no part in the deck, is left out.
    subroutine print_interface_errors(unit, name, errors)
       integer, intent(in) :: unit                          !! unit of the listing
       character(*), intent(in) :: name                     !! name of the interface
       type(interface_errors_type), intent(in) :: errors
-      real(dp) :: total(size(estimated))
       integer :: q, width
 
       width = maxval(len_trim(estimated%name))
-      total = total_errors(errors)
-      write (unit, '(/, 3a)') '   ESTIMATED ERRORS OF ', name, &
-         ': exact value minus the value found (+-: of either sign)'
-      write (unit, '(4x, a, a14, a13, 2a14, a12, a11, a14)') repeat(' ', width), 'value', &
-         'mesh', 'increments', 'iteration', 'total', '%', 'largest part'
+      write (unit, '(/, 3a)') '   BOUNDS OF THE ERRORS OF ', name, &
+         ': how far values may be off to either side, with the parts of each bound'
+      write (unit, '(4x, a, a14, a13, a11, a12, 2a14, a14)') repeat(' ', width), 'value', &
+         'bound', '%', 'mesh', 'increments', 'iteration', 'largest part'
       do q = 1, size(estimated)
-         associate (value => errors%value(q))
-            if (.not. is_worth_telling(value, total(q))) cycle
-            write (unit, '(4x, a, a14, a3, a10, a14, a14, a12, a11, a14)') &
-               spaced(estimated(q)%name(:width)), column(value, 14, 6), &
-               merge(' +-', '   ', estimated(q)%resolution > 0.0_dp), &
-               shown(errors%mesh(q), 10), shown(errors%increment(q), 14), &
-               shown(errors%iteration(q), 14), shown(total(q), 12), percent(total(q), value), &
-               largest_part(errors, q)
+         associate (value => errors%value(q), bound => errors%bound(q))
+            if (.not. is_worth_telling(value, bound)) cycle
+            write (unit, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
+               spaced(estimated(q)%name(:width)), column(value, 14, 6), bound_word(bound), &
+               percent(bound, value), shown(errors%mesh(q), 12), shown(errors%increment(q), 14), &
+               shown(errors%iteration(q), 14), largest_part(errors, q)
          end associate
       end do
    end subroutine print_interface_errors
 
    !> Whether a quantity has a value and a part in the deck.
-   pure logical function is_worth_telling(value, error)
-      real(dp), intent(in) :: value, error
+   pure logical function is_worth_telling(value, bound)
+      real(dp), intent(in) :: value, bound
 
       is_worth_telling = .not. ieee_is_nan(value)
       if (.not. is_worth_telling) return
       is_worth_telling = abs(value) > 0.0_dp
-      if (is_worth_telling .or. ieee_is_nan(error)) return
-      is_worth_telling = abs(error) > 0.0_dp
+      if (is_worth_telling .or. ieee_is_nan(bound)) return
+      is_worth_telling = bound > 0.0_dp
    end function is_worth_telling
 
    !> A name with blanks for its underlines.
@@ -96,6 +92,15 @@ contains
       end do
    end function spaced
 
+   !> A bound, or the word where there is none.
+   function bound_word(bound) result(string)
+      real(dp), intent(in) :: bound
+      character(13) :: string
+
+      string = '    uncertain'
+      if (.not. ieee_is_nan(bound)) string = column(bound, 13, 2)
+   end function bound_word
+
    function shown(value, width) result(string)
       real(dp), intent(in) :: value
       integer, intent(in) :: width
@@ -105,16 +110,16 @@ contains
       if (.not. ieee_is_nan(value)) string = column(value, width, 2)
    end function shown
 
-   function percent(error, value) result(string)
-      real(dp), intent(in) :: error, value
+   function percent(bound, value) result(string)
+      real(dp), intent(in) :: bound, value
       character(11) :: string
 
       string = repeat(' ', 10)//'-'
-      if (ieee_is_nan(error)) return
-      if (abs(value) > 0.0_dp) string = column(100.0_dp*error/abs(value), 11, 2)
+      if (ieee_is_nan(bound)) return
+      if (abs(value) > 0.0_dp) string = column(100.0_dp*bound/abs(value), 11, 2)
    end function percent
 
-   !> Which error is the largest.
+   !> Which part of a bound is the largest.
    pure function largest_part(errors, q) result(name)
       type(interface_errors_type), intent(in) :: errors
       integer, intent(in) :: q
@@ -125,8 +130,8 @@ contains
       parts = [errors%mesh(q), errors%increment(q), errors%iteration(q)]
       name = ''
       if (any(ieee_is_nan(parts))) return
-      k = maxloc(abs(parts), dim=1)
-      if (abs(parts(k)) > 0.0_dp) name = kinds_of_error(k)
+      k = maxloc(parts, dim=1)
+      if (parts(k) > 0.0_dp) name = kinds_of_error(k)
    end function largest_part
 
 end module listing_errors

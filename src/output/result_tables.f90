@@ -53,7 +53,7 @@ module result_tables
       procedure, nopass :: write_static => write_contact_static
    end type contact_results_type
 
-   integer, parameter :: error_columns = 4   !! value, errors of mesh, increments and iteration
+   integer, parameter :: error_columns = 5   !! value, bound, its parts
 
    !> Group `/errors`, where errors are estimated: one row a step. `sets` holds the times, then for
    !> each interface one dataset for each quantity with an estimate.
@@ -248,9 +248,9 @@ contains
             associate (set => self%sets(1 + (i - 1)*size(estimated) + q))
                set = growing_dataset('/errors/'//interfaces(i)%name//'/'// &
                   trim(estimated(q)%name), as_real, error_columns, 1, steps)
-               call set%describe_as('value and its estimated errors: '// &
+               call set%describe_as('value and the bound of its error, with its parts: '// &
                   trim(estimated(q)%description), unit_in_words(estimated(q)%unit, labels), &
-                  'value mesh increments iteration')
+                  'value bound mesh increments iteration')
             end associate
          end do
       end do
@@ -267,7 +267,8 @@ contains
       do i = 1, size(errors)
          do q = 1, size(estimated)
             call self%sets(1 + (i - 1)*size(estimated) + q)%append([errors(i)%value(q), &
-               errors(i)%mesh(q), errors(i)%increment(q), errors(i)%iteration(q)])
+               errors(i)%bound(q), errors(i)%mesh(q), errors(i)%increment(q), &
+               errors(i)%iteration(q)])
          end do
       end do
    end subroutine append_errors

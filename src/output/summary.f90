@@ -3,7 +3,7 @@
 module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, estimated, total_errors
+   use contact_quantities, only: contact_values, estimated
    use kinds, only: dp
    use model, only: model_type
    use quantity_types, only: needs_heat
@@ -91,21 +91,21 @@ contains
       character(:), allocatable :: words
       character(name_width) :: name
       character(value_width) :: value
-      real(dp) :: bounds(size(estimated)), values(1)
+      real(dp) :: values(1)
       logical :: has_heat
       integer :: q
 
       has_heat = allocated(self%contacts(i)%heat_flux)
-      if (allocated(self%errors)) bounds = abs(total_errors(self%errors(i)))
       do q = 1, size(estimated)
          if (estimated(q)%needs == needs_heat .and. .not. has_heat) cycle
          values = contact_values(estimated(q)%name, points, self%contacts(i))
          if (ieee_is_nan(values(1))) cycle
-         if (estimated(q)%is_path_dependent .and. .not. abs(values(1)) > 0.0_dp) cycle
+         if (estimated(q)%is_of_friction .and. .not. abs(values(1)) > 0.0_dp) cycle
          name = words_of(estimated(q)%name)
          value = to_text(values(1))
          words = '  '//name//adjustr(value)
-         if (allocated(self%errors)) words = words//bound_words(bounds(q), values(1))
+         if (allocated(self%errors)) words = words//bound_words(self%errors(i)%bound(q), &
+            values(1))
          call append(lines, trim(words//' '//unit_label(estimated(q)%unit, model%units)))
       end do
    end subroutine add_quantities

@@ -4,21 +4,19 @@ module contact_quantities
    use contact_points, only: contact_points_type
    use kinds, only: dp
    use quantity_types, only: needs_heat, of_interface, of_contact_points, quantity_type
-   use records, only: contact_record_type, interface_errors_type
+   use records, only: contact_record_type
    use zone_edges, only: edges_kept
    implicit none
    private
-   public :: contact_table, estimated, contact_values, geometry_values, total_errors
+   public :: contact_table, estimated, contact_values, geometry_values
 
-   ! Of the edges of the published cylinder nine tenths are no further from the converged ones than
-   ! their resolution (docs/accuracy.md). Contact points are in the order of the columns of *CONTACT
-   ! PRINT.
+   ! Contact points are in the order of the columns of *CONTACT PRINT.
    type(quantity_type), parameter :: contact_table(*) = [ &
       quantity_type('normal_force', of_interface, 'stress length^2', label='normal force', &
       head='force', is_estimated=.true., is_traded=.true., &
       description='sum of the normal contact forces; compression is positive'), &
       quantity_type('shear_force', of_interface, 'stress length^2', label='shear force', &
-      is_estimated=.true., is_path_dependent=.true., &
+      is_estimated=.true., is_of_friction=.true., &
       description='sum of the shear forces on the slave towards growing s'), &
       quantity_type('heat_rate', of_interface, 'power', needs_heat, label='heat rate', &
       head='heat', is_estimated=.true., is_traded=.true., &
@@ -26,10 +24,10 @@ module contact_quantities
       quantity_type('peak_pressure', of_interface, 'stress', head='peak', is_estimated=.true., &
       is_traded=.true., is_published=.false., description='largest contact pressure'), &
       quantity_type('edge_contact', of_interface, 'length', label='edge of contact s =', &
-      head='contact', is_estimated=.true., is_traded=.true., resolution=0.1_dp, &
+      head='contact', is_estimated=.true., is_traded=.true., resolution=0.08_dp, &
       description='outer edge of the contact zone with the largest s; NaN: none'), &
       quantity_type('edge_stick', of_interface, 'length', label='of stick s =', head='stick', &
-      is_estimated=.true., is_traded=.true., resolution=0.6_dp, &
+      is_estimated=.true., is_traded=.true., resolution=0.9_dp, &
       description='outer edge of the widest stick zone; NaN: none'), &
       quantity_type('edges_contact', of_interface, 'length', values=edges_kept, &
       description='s of all edges of contact, ascending, padded with NaN'), &
@@ -159,15 +157,5 @@ contains
          allocate (values(0))
       end select
    end function geometry_values
-
-   !> All estimated errors together; those of the iteration count with the sign of the others.
-   pure function total_errors(errors) result(total)
-      type(interface_errors_type), intent(in) :: errors
-      real(dp) :: total(size(estimated))                   !! as the errors of the mesh
-
-      total = errors%mesh + errors%increment
-      where (estimated%resolution > 0.0_dp) total = abs(errors%mesh) + abs(errors%increment)
-      total = total + sign(errors%iteration, total)
-   end function total_errors
 
 end module contact_quantities

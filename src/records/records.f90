@@ -14,14 +14,15 @@ module records
    public :: interface_errors_type
 
 
-   !> Errors of an interface, as estimated: what would have to be added to the quantities, and of
-   !> edges how far they may be off either way. NaN where nothing can be said. Arrays over the
-   !> quantities with an estimate (`estimated` of contact_quantities).
+   !> Bounds of the errors of an interface: how far its quantities may be off to either side. NaN
+   !> where none can be given. Arrays over the quantities with a bound (`estimated` of
+   !> contact_quantities).
    type :: interface_errors_type
       real(dp), allocatable :: value(:)        !! the quantities as computed
-      real(dp), allocatable :: mesh(:)         !! error of the mesh
-      real(dp), allocatable :: increment(:)    !! error of the size of the increments
-      real(dp), allocatable :: iteration(:)    !! largest error of the fixed point, >= 0
+      real(dp), allocatable :: bound(:)        !! of the whole error: the sum of the next three
+      real(dp), allocatable :: mesh(:)         !! of the error of the mesh
+      real(dp), allocatable :: increment(:)    !! of the error of the size of the increments
+      real(dp), allocatable :: iteration(:)    !! of the error of the fixed point
    end type interface_errors_type
 
    !> State of one contact interface; arrays over its contact points, in the order of

@@ -14,14 +14,14 @@ FACTS = {  # attribute of /run -> words
     "equations_mechanical": "unknown displacements",
     "contact_unknowns": "contact unknowns",
 }
-# name in /errors and /contact -> words, kind of unit, whether it is an edge
+# name in /errors and /contact -> words, kind of unit
 BOUNDED = {
-    "normal_force": ("normal force", "force", False),
-    "shear_force": ("shear force", "force", False),
-    "heat_rate": ("heat rate", "power", False),
-    "peak_pressure": ("peak pressure", "stress", False),
-    "edge_contact": ("edge of contact, s", "length", True),
-    "edge_stick": ("edge of stick, s", "length", True),
+    "normal_force": ("normal force", "force"),
+    "shear_force": ("shear force", "force"),
+    "heat_rate": ("heat rate", "power"),
+    "peak_pressure": ("peak pressure", "stress"),
+    "edge_contact": ("edge of contact, s", "length"),
+    "edge_stick": ("edge of stick, s", "length"),
 }
 
 
@@ -76,11 +76,11 @@ def bounds(result):
     found = []
     for contact in contacts_of(result):
         rows = []
-        for key, (words, kind, is_edge) in BOUNDED.items():
+        for key, (words, kind) in BOUNDED.items():
             values = contact["pressure"].max(axis=1) if key == "peak_pressure" else contact.get(key)
             if values is None or np.isnan(values[-1]) or (key == "shear_force" and not values[-1]):
                 continue
-            rows.append(bound_row(result, contact.name, key, float(values[-1]), is_edge))
+            rows.append(bound_row(result, contact.name, key, float(values[-1])))
             rows[-1][0], rows[-1][3] = words, unit_of(result, kind)
         head = ["quantity", "value", "error bound", "unit", "by the mesh", "by increments",
                 "by iteration"]
@@ -89,21 +89,19 @@ def bounds(result):
     return "".join(found)
 
 
-def bound_row(result, name, key, value, is_edge):
+def bound_row(result, name, key, value):
     """Return value, bound and its parts; words where nothing is known of them."""
     errors = result.file.get(f"errors/{name}/{key}")
     row = ["", number(value), "not estimated", "", "–", "–", "–"]
     if errors is None or len(errors) == 0 or result.file["errors/time"][-1] != \
             result.history["time"][-1]:
         return row
-    _, by_mesh, by_increments, by_iteration = errors[-1]
-    total = abs(by_mesh) + abs(by_increments) if is_edge else abs(by_mesh + by_increments)
-    total += by_iteration
-    row[4:] = [number(part, 2) for part in (by_mesh, by_increments, by_iteration)]
+    _, bound, *parts = errors[-1]
+    row[4:] = [number(part, 2) for part in parts]
     row[2] = "uncertain"
-    if np.isfinite(total):
-        share = f" ({number(100.0 * total / abs(value), 2)} %)" if value else ""
-        row[2] = f"± {number(total, 2)}{share}"
+    if np.isfinite(bound):
+        share = f" ({number(100.0 * bound / abs(value), 2)} %)" if value else ""
+        row[2] = f"± {number(bound, 2)}{share}"
     return row
 
 

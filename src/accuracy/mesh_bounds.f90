@@ -1,0 +1,108 @@
+!> Bounds of the errors that the mesh makes in the quantities of an interface.
+!>
+!> They take what halving the elements changes as for errors that fall with h only. At a single load
+!> this is partly chance, for errors change their sign as the edge of contact passes a node; so how
+!> much a quantity scatters over the increments before is added. What friction locked in while the
+!> contact grew over the nodes is known from the old mesh only: its error is a part of the stuck shear
+!> forces that falls with the spacing. An edge lies anywhere within a part of the spacing, and moves by
+!> as large a part of the contact as the force is uncertain by.
+!>
+!> The constants were chosen on decks other than those that judge them (docs/accuracy.md).
+module mesh_bounds
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_points, only: contact_points_type
+   use contact_quantities, only: estimated
+   use contact_states, only: contact_stick
+   use interface_quantities, only: closed_length, edge_spacing
+   use kinds, only: dp
+   use records, only: contact_record_type
+   implicit none
+   private
+   public :: bounds_of_mesh, stuck_forces
+
+   !> Error in the change that halved elements make: that of errors that fall with h; and where too
+   !> few increments tell no scatter.
+   real(dp), parameter :: of_change = 2.0_dp, of_change_alone = 3.0_dp
+   !> Error of shear force and peak pressure in what friction locked in.
+   real(dp), parameter :: of_locked = 0.6_dp, of_locked_in_peak = 0.15_dp
+   !> Errors of edges in the spacing: one at a node itself, and one of stick where contact ends too;
+   !> of others the table of quantities tells.
+   real(dp), parameter :: at_node = 0.25_dp, of_both = 0.15_dp
+   real(dp), parameter :: same_place = 1.0e-6_dp    !! of the spacing
+
+contains
+
+   !> The bounds, for the quantities with an estimate; NaN where none can be given.
+   pure function bounds_of_mesh(points, contact, change, scatter, stuck) result(bounds)
+      type(contact_points_type), intent(in) :: points    !! contact points of the interface
+      type(contact_record_type), intent(in) :: contact   !! its state
+      real(dp), intent(in) :: change(:)                  !! of the quantities by halved elements
+      real(dp), intent(in) :: scatter(:)                 !! over increments; NaN: unknown
+      real(dp), intent(in) :: stuck                      !! largest of stuck_forces so far
+      real(dp) :: bounds(size(estimated))
+      real(dp) :: known_scatter(size(estimated)), length, locked, shift
+      integer :: q
+
+      known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter))
+      bounds = merge(of_change_alone, of_change, ieee_is_nan(scatter))*abs(change) + known_scatter
+      length = closed_length(contact, points%arc_length)
+      locked = 0.0_dp
+      if (length > 0.0_dp) locked = stuck*edge_spacing(points, contact%edge_contact)/length
+      shift = 0.0_dp
+      do q = 1, size(bounds)
+         select case (estimated(q)%name)
+         case ('normal_force')
+            if (contact%normal_force > 0.0_dp) shift = length*bounds(q)/contact%normal_force
+         case ('shear_force')
+            bounds(q) = bounds(q) + of_locked*locked
+         case ('peak_pressure')
+            if (locked > 0.0_dp) bounds(q) = bounds(q) + of_locked_in_peak*locked* &
+               maxval(contact%pressure)/contact%normal_force
+         case ('edge_contact')
+            bounds(q) = edge_bound(points, contact%edge_contact, estimated(q)%resolution, &
+               change(q)) + shift
+         case ('edge_stick')
+            if (ends_with_contact(points, contact)) then
+               bounds(q) = edge_bound(points, contact%edge_stick, of_both, change(q)) + shift
+            else
+               bounds(q) = edge_bound(points, contact%edge_stick, estimated(q)%resolution, &
+                  change(q)) + known_scatter(q) + shift
+            end if
+         end select
+      end do
+   end function bounds_of_mesh
+
+   !> A part of the spacing, and twice what the edge moves by beyond that: finer nodes alone move it
+   !> by up to a quarter.
+   pure real(dp) function edge_bound(points, edge, part, change) result(bound)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: edge, part, change
+      real(dp) :: spacing
+
+      spacing = edge_spacing(points, edge)
+      bound = part*spacing
+      if (any(abs(points%arc_length - edge) <= same_place*spacing)) bound = max(part, at_node)* &
+         spacing
+      bound = bound + of_change*max(0.0_dp, abs(change) - max(part, at_node)*spacing)
+   end function edge_bound
+
+   !> Whether all that is closed up to its outer edge sticks.
+   pure logical function ends_with_contact(points, contact)
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+
+      ends_with_contact = abs(contact%edge_stick - contact%edge_contact) <= &
+         same_place*edge_spacing(points, contact%edge_contact)
+   end function ends_with_contact
+
+   !> Sum of the shear forces of stuck contact points, without their signs [force].
+   pure real(dp) function stuck_forces(points, contact)
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+
+      stuck_forces = 0.0_dp
+      if (allocated(contact%shear)) stuck_forces = sum(abs(points%weight*contact%shear), &
+         mask=contact%contact_state == contact_stick)
+   end function stuck_forces
+
+end module mesh_bounds
