@@ -50,7 +50,8 @@ contains
    end function area_beside
 
    !> Nodal force over weight. A closed contact point of weight 0 has the limit of the profile, no
-   !> further than 0 where the contact points beside it press; an open one has none.
+   !> further than 0 where the contact points beside it press, and what carries the rest of its
+   !> force; an open one has none.
    pure function pressures(points, force, closed) result(pressure)
       type(contact_points_type), intent(in) :: points !! contact points of one interface
       real(dp), intent(in) :: force(:)         !! (m) nodal forces, 0 at open contact points [force]
@@ -60,9 +61,54 @@ contains
 
       pressure = over_weight(points, force)
       do k = 1, size(force)
-         if (closed(k) .and. points%weight(k) <= 0.0_dp) pressure(k) = limit(points, pressure, k)
+         if (.not. closed(k) .or. points%weight(k) > 0.0_dp) cycle
+         pressure(k) = limit(points, pressure, k)
+         pressure(k) = pressure(k) + &
+            alone(points, force(k) - profile_force(points, pressure, k), k)
       end do
    end function pressures
+
+   !> Pressure of a contact point of weight 0 that presses alone: its nodal force, if that presses,
+   !> over the integral of the line that falls from 1 to 0 at the next contact points, half of the
+   !> area between on the axis and a third at a tip. The one in the middle of a side has two thirds
+   !> of the side.
+   pure real(dp) function alone(points, force, k)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: force
+      integer, intent(in) :: k
+      integer :: way
+      real(dp) :: area, part
+
+      area = 0.0_dp
+      do way = -1, 1, 2
+         if (k + 2*way < 1 .or. k + 2*way > size(points%weight)) cycle
+         part = coordinate(points, k, k + way)/coordinate(points, k, k + 2*way)
+         if (on_axis(points, k)) then
+            part = part/2
+         else
+            part = part**2/3
+         end if
+         area = area + 1.5_dp*points%weight(k + way)*part
+      end do
+      alone = 0.0_dp
+      if (area > 0.0_dp) alone = max(force, 0.0_dp)/area
+   end function alone
+
+   !> Nodal force of the profile at a contact point of weight 0 (area_beside), if that presses.
+   pure real(dp) function profile_force(points, pressure, k)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: pressure(:)
+      integer, intent(in) :: k
+      integer :: way
+
+      profile_force = 0.0_dp
+      do way = -1, 1, 2
+         if (k + 2*way < 1 .or. k + 2*way > size(points%weight)) cycle
+         profile_force = profile_force + &
+            (pressure(k) - pressure(k + 2*way))*points%weight(k + way)/20
+      end do
+      profile_force = max(profile_force, 0.0_dp)
+   end function profile_force
 
    !> The same of friction. On the axis it vanishes; elsewhere the limit is no larger than the
    !> friction that the limit of the pressure allows.

@@ -5,7 +5,9 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
+from blocks import write
 from deck_runs import HERTZ, copy_deck, data_cards, solve
+from physics import material, mesh
 
 
 def theory():
@@ -115,3 +117,43 @@ def test_there_is_no_shear_and_no_overlap(contact):
     assert np.all(contact.shear == 0.0)
     assert np.all(contact.gap >= 0.0)
     assert np.all(contact.gap * contact.pressure == 0.0)
+
+
+def dome(folder, zone, spacing=0.125, radius=20.0):
+    """Return the pressures and the force on a dome of CAX8 pressed on a block, and Hertz's peak: the
+    zone of contact has this radius, nodes lie this far from each other."""
+    young, poisson = 1000.0, 0.3
+    xs = [2 * spacing * k for k in range(5)]
+
+    def bulge(x, y):
+        return x, y + (1.0 - y) * x**2 / (2.0 * radius)
+
+    force = float(4.0 / 3.0 * young / (2.0 * (1.0 - poisson**2)) * zone**3 / radius)
+    deck = write(folder / "dome.inp", ["*OPTIONS, WIDTH=300"],
+                 mesh("LOW", xs, [-1.0, -0.5, -0.2, 0.0], "CAX8"),
+                 mesh("DOME", xs, [0.0, 0.2, 0.5, 1.0], "CAX8", 1001, to=bulge),
+                 material("LOW", (young, poisson)), material("DOME", (young, poisson)),
+                 ["*SURFACE INTERACTION, NAME=CUT", "*CONTACT PAIR, INTERACTION=CUT, NAME=CUT",
+                  "DOME.BOTTOM, LOW.TOP", "*STEP", "*STATIC", "1., 1.", "*BOUNDARY",
+                  "LOW.BOTTOM, 2", "LOW.LEFT, 1", "DOME.LEFT, 1", "*DSLOAD",
+                  f"DOME.TOP, P, {float(force / np.pi / xs[-1]**2)!r}", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        pairs = file["contact/CUT"]
+        found = pairs["pressure"][-1], float(pairs["normal_force"][-1])
+    return *found, 1.5 * force / (np.pi * zone**2)
+
+
+def test_a_dome_that_touches_at_its_axis_alone_has_the_pressure_of_its_force(tmp_path):
+    """The mesh then tells the force F alone: a parabola to the next node at r2 carries it.
+    The dome's area exceeds that of its shadow by (r2/R)^2/2."""
+    pressure, force, _ = dome(tmp_path, 0.6 * 0.125)
+    assert np.count_nonzero(pressure) == 1
+    assert pressure[0] == pytest.approx(2.0 * force / (np.pi * 0.125**2), rel=2e-5)
+
+
+@pytest.mark.parametrize(("nodes", "error"), [(3.0, 0.05), (4.0, 0.025)])
+def test_the_force_on_the_axis_tells_the_peak_of_a_dome(tmp_path, nodes, error):
+    """Beside the parabola through the next two nodes, which is 9 and 5 % too low: pressures of
+    half-ellipsoids bend down more than parabolas."""
+    pressure, _, peak = dome(tmp_path, nodes * 0.125)
+    assert pressure[0] == pytest.approx(peak, rel=error)
