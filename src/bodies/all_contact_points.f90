@@ -149,17 +149,7 @@ contains
          end if
       end do
       call row%enter_step(model, 0)
-      if (any(varies_with_temperature(row%law))) then
-         call row%mean%reserve(m, 2*m)
-         do i = 1, size(interfaces)
-            do k = 1, size(interfaces(i)%slave_node)
-               associate (slave => interfaces(i)%slave_mean, master => interfaces(i)%master_mean)
-                  call row%mean%add([slave%values_of(k), master%values_of(k)], &
-                     0.5_dp*[slave%coefficients_of(k), master%coefficients_of(k)])
-               end associate
-            end do
-         end do
-      end if
+      if (any(varies_with_temperature(row%law))) row%mean = means_of_faces(interfaces)
       row%ties = joined_ties(model%mesh, model%ties, of_ties)
       row%hanging = hanging_rows(model%mesh)
       allocate (row%equations(0), row%partners(0))
@@ -167,6 +157,23 @@ contains
       if (allocated(model%equations)) row%equations = model%equations
       call find_cut_faces(interfaces, row)
    end function joined_points
+
+   !> The mean of slave's and master's value at all contact points.
+   pure function means_of_faces(interfaces) result(means)
+      type(contact_points_type), intent(in) :: interfaces(:)
+      type(sum_list_type) :: means
+      integer :: i, k
+
+      call means%reserve(0, 0)
+      do i = 1, size(interfaces)
+         associate (slave => interfaces(i)%slave_mean, master => interfaces(i)%master_mean)
+            do k = 1, slave%count
+               call means%add([slave%values_of(k), master%values_of(k)], &
+                  0.5_dp*[slave%coefficients_of(k), master%coefficients_of(k)])
+            end do
+         end associate
+      end do
+   end function means_of_faces
 
    !> Hats are cut of mortar points whose conductance varies without a jump, where it follows from
    !> gap and pressure alone: the means of the faces (gap_temperatures) go by jumps of whole hats.

@@ -22,11 +22,10 @@ contains
    !> The contact points of two lines with equally many nodes: the k-th nodes along both. A node
    !> that both lines end in, the tip of a crack, is none.
    !> Errors: nodes that are not opposite, bodies on the wrong side, sides without tributary length.
-   subroutine set_node_pairs(mesh, definition, slave, master, turned, thickness, points, error)
+   subroutine set_node_pairs(mesh, definition, slave, master, thickness, points, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
       type(surface_chain_type), intent(in) :: slave, master   !! both from the slave's first node on
-      logical, intent(in) :: turned(2)                !! whether they run against their chains
       real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
       type(contact_points_type), intent(inout) :: points      !! its name and its axis are set
       type(error_type), allocatable, intent(out) :: error
@@ -40,8 +39,8 @@ contains
       last = size(slave%nodes)
       if (slave%nodes(1) == master%nodes(1)) first = 2
       if (slave%nodes(last) == master%nodes(last)) last = last - 1
-      call set_geometry(mesh, slave, master, turned, points)
-      call check_sides(mesh, definition, slave, master, turned, [first, last], error)
+      call set_geometry(mesh, slave, master, points)
+      call check_sides(mesh, definition, slave, master, [first, last], error)
       if (allocated(error)) return
       points%side_nodes = slave%side_nodes
       points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
@@ -101,10 +100,9 @@ contains
 
    !> Positions, arc length, common tangents and normals, and gaps. An unturned line has its body on
    !> the left.
-   subroutine set_geometry(mesh, slave, master, turned, points)
+   subroutine set_geometry(mesh, slave, master, points)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(in) :: slave, master
-      logical, intent(in) :: turned(2)
       type(contact_points_type), intent(inout) :: points
       real(dp) :: side
       integer :: k
@@ -114,7 +112,7 @@ contains
          points%arc_length = arc_lengths(points%position, n, closed)
          points%tangent = chain_tangents(points%position, n, closed) + &
             chain_tangents(x(:, master%nodes), n, closed)
-         side = merge(-1.0_dp, 1.0_dp, turned(1))
+         side = merge(-1.0_dp, 1.0_dp, slave%turned)
          allocate (points%normal, mold=points%tangent)
          do k = 1, size(slave%nodes)
             points%tangent(:, k) = points%tangent(:, k)/max(norm2(points%tangent(:, k)), &

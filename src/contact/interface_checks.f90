@@ -138,12 +138,11 @@ contains
    end function shared_node
 
    !> Refuses faces that look the same way.
-   subroutine check_sides(mesh, definition, slave, master, turned, compared, error)
+   subroutine check_sides(mesh, definition, slave, master, compared, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition   !! the *CONTACT PAIR
       type(surface_chain_type), intent(in) :: slave       !! line of the slave
       type(surface_chain_type), intent(in) :: master      !! line of the master
-      logical, intent(in) :: turned(2) !! whether slave and master run against their chains
       integer, intent(in) :: compared(2)                  !! first and last contact point looked at
       type(error_type), allocatable, intent(out) :: error !! the first such contact point
       real(dp) :: cosine, outward(2)
@@ -155,14 +154,14 @@ contains
          master%side_nodes, master%closed))
          do k = compared(1), compared(2)
             cosine = dot_product(slave_tangent(:, k), master_tangent(:, k))
-            if (turned(1) .neqv. turned(2)) cosine = -cosine
+            if (slave%turned .neqv. master%turned) cosine = -cosine
             if (cosine <= same_way) cycle
             call set_error(error, status_deck, definition%title()// &
                ': at slave node '//to_text(mesh%node_number(slave%nodes(k)))// &
                ' and master node '//to_text(mesh%node_number(master%nodes(k)))// &
                ' both surfaces face the same way')
             outward = [slave_tangent(2, k), -slave_tangent(1, k)]
-            if (turned(1)) outward = -outward
+            if (slave%turned) outward = -outward
             call blame_side(mesh, definition, dot_product(outward, &
                mesh%coordinates(:, master%nodes(k)) - mesh%coordinates(:, slave%nodes(k))), error)
             return
@@ -286,11 +285,10 @@ contains
    end subroutine check_corner
 
    !> Refuses faces of which none lies opposite the other surface.
-   subroutine check_covered(mesh, definition, slave, master, turned, points, error)
+   subroutine check_covered(mesh, definition, slave, master, points, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
       type(surface_chain_type), intent(in) :: slave, master   !! their lines
-      logical, intent(in) :: turned(2) !! whether slave and master run against their chains
       integer, intent(in) :: points                           !! contact points found
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: tangents(2, size(slave%nodes)), outward(2)
@@ -302,7 +300,7 @@ contains
       tangents = chain_tangents(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       k = (size(slave%nodes) + 1)/2
       outward = [tangents(2, k), -tangents(1, k)]
-      if (turned(1)) outward = -outward
+      if (slave%turned) outward = -outward
       associate (x => mesh%coordinates)
          call blame_side(mesh, definition, dot_product(outward, &
             sum(x(:, master%nodes), dim=2)/size(master%nodes) - x(:, slave%nodes(k))), error)

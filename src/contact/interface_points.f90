@@ -30,7 +30,6 @@ contains
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
       type(surface_chain_type) :: slave, master
-      logical :: turned(2)
 
       associate (slave_surface => mesh%surfaces(definition%slave), &
          master_surface => mesh%surfaces(definition%master))
@@ -38,13 +37,13 @@ contains
          if (allocated(error)) return
          call chain_faces(mesh, master_surface, master, error)
          if (allocated(error)) return
-         call aligned_chains(mesh, slave, master, turned)
+         call aligned_chains(mesh, slave, master)
          points%name = definition%name
          points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
       end associate
       call check_shared(mesh, definition, slave, master, error)
       if (allocated(error)) return
-      call find_points(mesh, definition, slave, master, turned, thickness, points, error)
+      call find_points(mesh, definition, slave, master, thickness, points, error)
       if (allocated(error)) return
       if (definition%adjusts) call close_gaps(mesh, definition, points)
       if (definition%has_clearance) points%initial_gap = definition%clearance
@@ -68,11 +67,10 @@ contains
    end subroutine close_gaps
 
    !> The contact points of two lines that run the same way.
-   subroutine find_points(mesh, definition, slave, master, turned, thickness, points, error)
+   subroutine find_points(mesh, definition, slave, master, thickness, points, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition
       type(surface_chain_type), intent(in) :: slave, master
-      logical, intent(in) :: turned(2)
       real(dp), intent(in) :: thickness
       type(contact_points_type), intent(inout) :: points
       type(error_type), allocatable, intent(out) :: error
@@ -83,7 +81,7 @@ contains
          found = points
          call compare_lines(mesh, definition, slave, master, mismatch, advice)
          if (len(mismatch) == 0) then
-            call set_node_pairs(mesh, definition, slave, master, turned, thickness, found, error)
+            call set_node_pairs(mesh, definition, slave, master, thickness, found, error)
             if (allocated(error)) return
             if (definition%pairing /= pairing_nodes) mismatch = mismatch_of_pairs(mesh, found)
          end if
@@ -105,8 +103,8 @@ contains
       end if
       call check_corner(mesh, definition, slave, error)
       if (allocated(error)) return
-      call set_mortar_points(mesh, slave, master, turned, thickness, points)
-      call check_covered(mesh, definition, slave, master, turned, size(points%slave_node), error)
+      call set_mortar_points(mesh, slave, master, thickness, points)
+      call check_covered(mesh, definition, slave, master, size(points%slave_node), error)
    end subroutine find_points
 
 end module interface_points

@@ -30,22 +30,19 @@ module mortar_points
 contains
 
    !> The contact points of two lines of nodes; none where no face of the master is opposite.
-   subroutine set_mortar_points(mesh, slave, master, turned, thickness, points)
+   subroutine set_mortar_points(mesh, slave, master, thickness, points)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(in) :: slave   !! from the end with the smaller x on
       type(surface_chain_type), intent(in) :: master
-      logical, intent(in) :: turned(2)                !! whether they run against their chains
       real(dp), intent(in) :: thickness               !! not used about an axis [length]
       type(contact_points_type), intent(inout) :: points !! its name and its axis are set
       type(mortar_integrals_type) :: integrals
       type(face_line_type) :: slave_line, master_line
       integer, allocatable :: corner(:), owner(:), kept(:), point_of(:)
-      real(dp) :: outward(2)
       integer :: c
 
-      outward = merge(-1.0_dp, 1.0_dp, turned)
-      slave_line = line_of(slave, outward(1))
-      master_line = line_of(master, outward(2))
+      slave_line = line_of(slave)
+      master_line = line_of(master)
       call integrate_segments(slave_line, master_line, thickness, points%about_axis, integrals)
       corner = slave%nodes(1::slave%side_nodes - 1)
       owner = owners(integrals, slave%closed, [(any(master%nodes == corner(c)), c=1, size(corner))])
@@ -66,7 +63,7 @@ contains
       end associate
       if (size(kept) > 0) points%arc_length = points%arc_length - points%arc_length(1)
       points%normal = integrals%normal(:, kept)
-      points%tangent = outward(1)*reshape([-points%normal(2, :), points%normal(1, :)], &
+      points%tangent = slave_line%outward*reshape([-points%normal(2, :), points%normal(1, :)], &
          shape(points%normal), order=[2, 1])
       call set_means(slave, master, integrals, owner, kept, points)
       call set_face_nodes(slave_line, master_line, [slave%nodes, master%nodes], point_of, &
@@ -84,13 +81,12 @@ contains
       end do
 
    contains
-      function line_of(chain, outward) result(line)
+      function line_of(chain) result(line)
          type(surface_chain_type), intent(in) :: chain
-         real(dp), intent(in) :: outward
          type(face_line_type) :: line
 
          line = face_line_type(mesh%coordinates(:, chain%nodes), chain%side_nodes, chain%closed, &
-            outward)
+            merge(-1.0_dp, 1.0_dp, chain%turned))
       end function line_of
    end subroutine set_mortar_points
 

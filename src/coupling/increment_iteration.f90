@@ -165,9 +165,7 @@ contains
       turns = 0
       away = 0
       wanted = controls%tolerance
-      if (workspace%cuts_hats) call find_cut_hats(bodies, workspace%pass%graph%modulus, &
-         openings(bodies, workspace%pass%graph, data%previous), workspace%edge_hats)
-      call begin_passes(next%omega, workspace)
+      call begin_passes(bodies, data, next%omega, workspace)
       call make_accelerator(controls, size(next%omega), accelerator)
       associate (pass => workspace%pass, record => workspace%record)
          do i = 1, size(passes)
@@ -212,7 +210,9 @@ contains
    end subroutine use_method
 
    !> Starts passes from omega*^0 without anything that passes of another method left.
-   pure subroutine begin_passes(omega, workspace)
+   pure subroutine begin_passes(bodies, data, omega, workspace)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: omega(:)                           ! (m) omega*^0
       type(increment_workspace_type), intent(inout) :: workspace
 
@@ -220,6 +220,8 @@ contains
       if (allocated(workspace%pass%coordinate)) deallocate (workspace%pass%coordinate)
       workspace%pass%omega = omega
       workspace%pass%image = omega
+      if (workspace%cuts_hats) call find_cut_hats(bodies, workspace%pass%graph%modulus, &
+         openings(bodies, workspace%pass%graph, data%previous), workspace%edge_hats)
    end subroutine begin_passes
 
    !> What a pass found: solution so far, openings, points at rest, residual and its floor.

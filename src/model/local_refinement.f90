@@ -157,7 +157,6 @@ contains
       type(surface_chain_type) :: slave, master
       type(error_type), allocatable :: error
       integer, allocatable :: of_slave(:), of_master(:)
-      logical :: turned(2)
 
       if (definition%pairing == pairing_surfaces) return
       call chain_faces(mesh, mesh%surfaces(definition%slave), slave, error)
@@ -166,7 +165,7 @@ contains
       if (allocated(error)) return
       if (size(slave%nodes) /= size(master%nodes)) return
       if (slave%side_nodes /= master%side_nodes .or. (slave%closed .neqv. master%closed)) return
-      call aligned_chains(mesh, slave, master, turned)
+      call aligned_chains(mesh, slave, master)
       call elements_along(mesh, mesh%surfaces(definition%slave)%faces, slave, of_slave)
       call elements_along(mesh, mesh%surfaces(definition%master)%faces, master, of_master)
       pairs = reshape([pairs, transpose(reshape([of_slave, of_master], [size(of_slave), 2]))], &

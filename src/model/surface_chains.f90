@@ -17,6 +17,7 @@ module surface_chains
       integer, allocatable :: nodes(:)   !! node indexes, corner first; on a closed face each once
       integer :: side_nodes = 0          !! nodes of a side, 2 or 3
       logical :: closed = .false.        !! closed: the last side leads back to the first node
+      logical :: turned = .false.        !! whether it runs against its faces
    end type surface_chain_type
 
 contains
@@ -75,21 +76,19 @@ contains
 
    !> Turns both lines to run from the slave's first contact point on: an open one if its ends so
    !> lie nearer to the slave's, a closed face of the master always, for it runs against the slave.
-   subroutine aligned_chains(mesh, slave, master, turned)
+   subroutine aligned_chains(mesh, slave, master)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(inout) :: slave, master   !! as from chain_faces
-      logical, intent(out) :: turned(2)             !! whether they run against their faces then
       real(dp) :: distance(size(master%nodes))
       integer :: n, start
 
-      turned(1) = .false.
       associate (x => mesh%coordinates)
          if (.not. slave%closed) then
             n = size(slave%nodes)
             associate (first => x(:, slave%nodes(1)), last => x(:, slave%nodes(n)))
-               turned(1) = precedes(last, first, norm2(last - first))
+               slave%turned = precedes(last, first, norm2(last - first))
             end associate
-            if (turned(1)) slave%nodes = slave%nodes(n:1:-1)
+            if (slave%turned) slave%nodes = slave%nodes(n:1:-1)
          end if
          n = size(master%nodes)
          distance = norm2(x(:, master%nodes) - spread(x(:, slave%nodes(1)), 2, n), dim=1)
@@ -98,12 +97,12 @@ contains
                - 1)
             master%nodes = cshift(master%nodes, start - 1)
             master%nodes(2:) = master%nodes(n:2:-1)
-            turned(2) = .true.
+            master%turned = .true.
          else
             ! Squares of these distances, less what they have in common: bodies may lie far apart.
-            turned(2) = dot_product(x(:, slave%nodes(size(slave%nodes))) - &
+            master%turned = dot_product(x(:, slave%nodes(size(slave%nodes))) - &
                x(:, slave%nodes(1)), x(:, master%nodes(n)) - x(:, master%nodes(1))) < 0.0_dp
-            if (turned(2)) master%nodes = master%nodes(n:1:-1)
+            if (master%turned) master%nodes = master%nodes(n:1:-1)
          end if
       end associate
    end subroutine aligned_chains

@@ -10,7 +10,7 @@ module trade_plan
    use steps, only: analysis_coupled, solves_heat
    use text, only: to_text
    use trade_rows, only: trade_row_type, trade_type
-   use variations, only: varied_increment
+   use variations, only: variation_type, varied_increment
    implicit none
    private
    public :: make_room, add_level, add_contact_level, add_singles, find_row
@@ -113,49 +113,44 @@ contains
          do i = 1, size(tolerances)
             if (.not. is_coupled(model)) exit
             if (abs(tolerances(i)/fixed_point%tolerance - 1.0_dp) < 0.5_dp) cycle
-            call add_single(model, trade, 'TOL='//to_text(tolerances(i)), tolerance=tolerances(i))
+            call add_single(model, 'TOL='//to_text(tolerances(i)), &
+               variation_type(tolerance=tolerances(i)), trade)
          end do
          do i = 1, size(schemes)
             if (.not. any(solves_heat(model%steps%analysis))) exit
             if (schemes(i)%name == scheme%name) cycle
-            call add_single(model, trade, trim(schemes(i)%name), scheme=schemes(i))
+            call add_single(model, trim(schemes(i)%name), variation_type(scheme=schemes(i)), trade)
          end do
          do i = 1, size(method_names)
             if (.not. is_coupled(model)) exit
             if (i == fixed_point%method) cycle
-            call add_single(model, trade, trim(method_names(i)), method=i)
+            call add_single(model, trim(method_names(i)), variation_type(method=i), trade)
          end do
       end associate
-      if (other_pairing /= 0) call add_single(model, trade, pairing_name(other_pairing), &
-         pairing=other_pairing)
+      if (other_pairing /= 0) call add_single(model, pairing_name(other_pairing), &
+         variation_type(pairing=other_pairing), trade)
       if (model%solver == solver_skyline) then
-         call add_single(model, trade, 'MUMPS', solver=solver_mumps)
+         call add_single(model, 'MUMPS', variation_type(solver=solver_mumps), trade)
       else
-         call add_single(model, trade, 'SKYLINE', solver=solver_skyline)
+         call add_single(model, 'SKYLINE', variation_type(solver=solver_skyline), trade)
       end if
    end subroutine add_singles
 
-   pure subroutine add_single(model, trade, varied, tolerance, scheme, method, solver, pairing)
+   pure subroutine add_single(model, varied, variation, trade)
       type(model_type), intent(in) :: model
-      type(trade_type), intent(inout) :: trade
       character(*), intent(in) :: varied
-      real(dp), intent(in), optional :: tolerance
-      type(thermal_scheme_type), intent(in), optional :: scheme
-      integer, intent(in), optional :: method, solver, pairing
+      type(variation_type), intent(in) :: variation   ! of one thing
+      type(trade_type), intent(inout) :: trade
       type(trade_row_type) :: row
 
       row%order = default_order(model)
       row%level = model%written_levels
+      row%variation = variation
       row%variation%order = row%order
       row%variation%levels = row%level
       row%is_grid = .false.
       row%varied = varied
       row%reason = ''
-      if (present(tolerance)) row%variation%tolerance = tolerance
-      if (present(scheme)) row%variation%scheme = scheme
-      if (present(method)) row%variation%method = method
-      if (present(solver)) row%variation%solver = solver
-      if (present(pairing)) row%variation%pairing = pairing
       call add(trade, row)
    end subroutine add_single
 
