@@ -102,7 +102,7 @@ contains
    !> Largest violation of the contact conditions (1.6) by gaps and tractions computed afresh from
    !> the recovered displacements, relative to the largest displacement and force. Where a row is
    !> supported on one body, the traction is taken from the other; where on both, the reduced
-   !> system's stands.
+   !> system's is.
    pure function contact_violation(positions, residual, supported, points, state, &
       friction_acts, scales) result(violation)
       !> (2, m) gaps and tangential positions by these displacements [length]

@@ -35,7 +35,7 @@ contains
    end subroutine eliminate
 
    !> Numbers the unknowns: degrees of freedom, introduced values off the tail, then the tail. On it
-   !> the forces of the links stand behind the values that stiffness holds and before those that
+   !> the forces of the links are behind the values that stiffness holds and before those that
    !> only the links hold: factors without pivoting then have no zero pivot.
    pure subroutine number_unknowns(rows, found, used, constraints, unknown)
       type(constraint_rows_type), intent(in) :: rows

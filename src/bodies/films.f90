@@ -1,4 +1,4 @@
-!> Films in the stepping scheme (3.4). Their matrices F of both ends of an increment stand beside G;
+!> Films in the stepping scheme (3.4). Their matrices F of both ends of an increment are beside G;
 !> a matrix without entries stands for no film.
 module films
    use controls, only: thermal_scheme_type

@@ -213,7 +213,7 @@ contains
    end subroutine reduce_heat
 
    !> Names the bodies that leave the heat problem singular: no prescribed temperature and no film
-   !> stands on them or on a body that contact points join to them.
+   !> is on them or on a body that contact points join to them.
    subroutine name_cold_bodies(self, model, error)
       type(reduced_bodies_type), intent(in) :: self
       type(model_type), intent(in) :: model

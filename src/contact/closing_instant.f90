@@ -162,7 +162,7 @@ contains
    !> Compliance of one contact point while all other closed contact points hold their positions. A
    !> contact point of a cycle may have none along a direction in which the others hold it, so it is
    !> opened there. Where only this contact point holds a body, relieved it would go without end: it
-   !> closes at once, for which a normal compliance of zero and the start of the increment stand.
+   !> closes at once, for which a normal compliance of zero and the start of the increment are.
    !> Error: a singular system.
    subroutine find_compliance(system, held, held_state, k, relief, error)
       type(contact_system_type), intent(in) :: system

@@ -14,7 +14,7 @@ module interface_checks
    public :: check_corner, check_covered, blame_corner
 
    !> Cosine between outward normals from which on faces look the same way: curved faces that part
-   !> far from the contact may stand at right angles there.
+   !> far from the contact may be at right angles there.
    real(dp), parameter :: same_way = 0.1_dp
 
    !> Part of the model's extent within which two nodes coincide.

@@ -215,7 +215,7 @@ contains
       ignored = c_make_folder(path//c_null_char)
    end subroutine make_folder
 
-   !> Copies a file; a file that stands at the target is overwritten.
+   !> Copies a file; a file that is at the target is overwritten.
    !> Error: status_internal, when either file cannot be read or written.
    subroutine copy_file(from, to, error)
       character(*), intent(in) :: from                     !! path that is read
@@ -404,7 +404,7 @@ contains
       if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
    end subroutine append_to_file
 
-   !> Writes text over what stands at a position of an open file.
+   !> Writes text over what is at a position of an open file.
    !> Error: status_internal, when the system refuses.
    subroutine overwrite_in_file(descriptor, path, position, string, error)
       integer, intent(in) :: descriptor                    !! the open file
@@ -483,7 +483,7 @@ contains
    !> A string of C as one of Fortran.
    pure function without_end(buffer) result(string)
       character(*, kind=c_char), intent(in) :: buffer   !! with a null character at its end
-      character(:), allocatable :: string               !! what stands before it
+      character(:), allocatable :: string               !! what is before it
 
       string = buffer(:index(buffer//c_null_char, c_null_char) - 1)
    end function without_end

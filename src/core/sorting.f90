@@ -4,11 +4,11 @@ module sorting
    private
    public :: sort_order, unique_sorted, repeated, number_index_type
 
-   !> Finds where a number stands in a list that need not be sorted.
+   !> Finds where a number is in a list that need not be sorted.
    type :: number_index_type
       private
       integer, allocatable :: sorted(:)   !! the numbers, ascending
-      integer, allocatable :: position(:) !! where each stands in the list
+      integer, allocatable :: position(:) !! where each is in the list
    contains
       procedure :: build
       procedure :: find
@@ -79,7 +79,7 @@ contains
       members = pack(sorted, first)
    end function unique_sorted
 
-   !> Positions of the numbers that stand in the list before.
+   !> Positions of the numbers that are in the list before.
    pure function repeated(numbers) result(positions)
       integer, intent(in) :: numbers(:)        !! (n) numbers in any order
       integer, allocatable :: positions(:)     !! positions of the second and later ones of equals

@@ -342,7 +342,7 @@ contains
    !> The ending of a message that names one of several: their number, if it is more than one.
    pure function others(n, words) result(ending)
       integer, intent(in) :: n                 !! how many there are
-      character(*), intent(in) :: words        !! what stands before the number
+      character(*), intent(in) :: words        !! what is before the number
       character(:), allocatable :: ending      !! empty for one
 
       ending = ''

@@ -80,7 +80,7 @@ contains
       coordinate = self%trial
    end subroutine begin
 
-   !> Goes back to t = 0, to openings where no point rests. Points that are alike by symmetry begin
+   !> Goes back to t = 0, to openings where no point rests. Points that symmetry makes equal begin
    !> apart: where several come to a kink at once, the sign of the determinant tells nothing.
    subroutine restart(self, graph, opening)
       class(homotopy_type), intent(inout) :: self

@@ -5,7 +5,7 @@
 !>
 !> Plain averages of extrapolated values (field_recovery) will not do for an estimate of errors: in
 !> elements of eight nodes they are off at the nodes by the order of the error itself, h^2 times the
-!> curvature of the field, which extrapolation by bilinear functions leaves out on all sides alike.
+!> curvature of the field, which extrapolation by bilinear functions leaves out on all sides.
 module patch_recovery
    use element_patches, only: add_weights, centres_for, find_elements_round_corners, &
       fit_round_corner, is_linear, is_surrounded, layout_type, midsides_at

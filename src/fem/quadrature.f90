@@ -43,7 +43,7 @@ module quadrature
 contains
 
    !> Points at which the matrices of an element are formed: 3 x 3 on the square, 2 x 2 where the
-   !> kind is reduced or linear, three inside the triangle. On the square they stand in rows from
+   !> kind is reduced or linear, three inside the triangle. On the square they are in rows from
    !> the side 1-2 on, as CalculiX numbers them.
    pure subroutine integration_rule(kind, points, weights)
       integer, intent(in) :: kind                           !! kind of the element

@@ -83,7 +83,7 @@ contains
       end do
       measured%error = measured%error + sum(volume*error)
       measured%energy = measured%energy + sum(volume*energy)
-      ! Shear stress stands twice in the tensor.
+      ! Shear stress is twice in the tensor.
       measured%square = measured%square + sum(volume*(d(:, 1)**2 + d(:, 2)**2 + d(:, 3)**2 + &
          2*d(:, 4)**2))
       measured%volume = measured%volume + sum(volume)

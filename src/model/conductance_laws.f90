@@ -143,7 +143,7 @@ contains
       pressure = rise
       if (rise <= 0.0_dp) return
       pressure = -1.0_dp
-      ! With a small n all pressures conduct nearly alike, and the root of another omega overflows.
+      ! With a small n omega is nearly the same at all pressures; the root of another one overflows.
       if (log(rise) - log(c1) < min(n, 1.0_dp)*log(huge(rise))) pressure = (rise/c1)**(1.0_dp/n)
    end function power_root
 

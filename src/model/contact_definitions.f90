@@ -27,7 +27,7 @@ module contact_definitions
       integer :: card = 0                     !! card image of the *CONTACT PAIR or *TIE
       integer :: interaction = 0              !! index into model%interactions
       integer :: pairing = pairing_by_faces   !! PAIRING=
-      logical :: has_clearance = .false.      !! whether *CLEARANCE stands in place of the geometry
+      logical :: has_clearance = .false.      !! whether *CLEARANCE is in place of the geometry
       real(dp) :: clearance = 0.0_dp     !! its gap of all contact points, negative overlap [length]
       logical :: adjusts = .false.            !! ADJUST=: some slave nodes start without a gap
       real(dp) :: adjusted = 0.0_dp           !! those up to this gap [length]; without a set

@@ -274,7 +274,7 @@ contains
       type(division_type), intent(in) :: division
       type(mesh_type), intent(in) :: mesh              !! the mesh before
       logical, intent(in) :: member(:)                 !! (nodes) whether a node is in the set
-      logical :: refined(division%nodes_after)         !! alike
+      logical :: refined(division%nodes_after)         !! likewise
       integer :: e, s
 
       refined = .false.

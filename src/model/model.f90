@@ -64,7 +64,7 @@ module model
       type(coupling_type), allocatable :: couplings(:)           !! kinematic couplings
       real(dp), allocatable :: initial_temperature(:)            !! (nodes) [temperature]
       type(step_type), allocatable :: steps(:)                   !! steps in their order
-      !> (data cards of *BOUNDARY, by their running numbers) where each stands, in words
+      !> (data cards of *BOUNDARY, by their running numbers) where each is, in words
       type(string_type), allocatable :: boundary_places(:)
       type(verify_type), allocatable :: verifications(:)         !! *VERIFY cards
       type(unit_labels_type) :: units                            !! labels of units

@@ -13,7 +13,7 @@ module print_requests
    integer, parameter :: print_heat = 4           !! RFL: external heat into nodes
    integer, parameter :: print_stress = 5         !! S: stresses at integration points
    integer, parameter :: print_heat_flux = 6      !! HFL: heat fluxes at integration points
-   integer, parameter :: print_position = 7       !! COORD: stands in every table
+   integer, parameter :: print_position = 7       !! COORD: is in every table
 
    !> One card: a table of the nodes, or of the integration points of the elements, of a set.
    type :: print_request_type

@@ -151,8 +151,9 @@ contains
          law%closed_kind /= law_none .and. .not. law%closed_adds
    end function radiation_ends
 
-   !> Temperatures, both faces alike, at which the law without radiation jumps most at gamma = p =
-   !> 0: among those of its tables, between which the jump is no larger but for a B that varies.
+   !> Temperatures, equal on both faces, at which the law without radiation jumps most at
+   !> gamma = p = 0: among those of its tables, between which the jump is no larger but for a B that
+   !> varies.
    pure function largest_jump(law) result(faces)
       type(conductance_law_type), intent(in) :: law      !! as the deck has it
       type(face_temperatures_type) :: faces

@@ -13,7 +13,7 @@ module batch_table
    public :: print_batch, write_batch, table_name
 
    !> Name of the CSV file. Those of a deck's results end otherwise, and a table of values that
-   !> stands in the folder is likely to be called batch.csv.
+   !> is in the folder is likely to be called batch.csv.
    character(*), parameter :: table_name = 'thercon-batch.csv'
    character(*), parameter :: columns = 'deck,status,outcome,reason,increments,iterations,'// &
       'checks_passed,checks_failed,seconds,cpu_seconds,peak_megabytes'

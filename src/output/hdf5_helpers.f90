@@ -67,7 +67,7 @@ contains
       call h5close_f(status)
    end subroutine close_hdf5
 
-   !> Creates a file, over one that stands there. Format 1.8 keeps it readable everywhere.
+   !> Creates a file, over one that is there. Format 1.8 keeps it readable everywhere.
    !> Error: status_internal, when it cannot be written.
    subroutine create_file(path, file, error)
       character(*), intent(in) :: path                    !! path of the file
@@ -106,7 +106,7 @@ contains
       call check_status([status], 'cannot finish the result file', error)
    end subroutine close_file
 
-   !> Creates a group; its parent stands already.
+   !> Creates a group; its parent is already.
    !> Error: status_internal, when it cannot be created.
    subroutine create_group(file, path, error)
       integer(hid_t), intent(in) :: file                  !! the open file

@@ -194,7 +194,7 @@ contains
             else
                call print_absence(unit, title, 'HFL')
             end if
-         case default   ! places stand in every table
+         case default   ! places are in every table
          end select
       end do
       n = size(names)

@@ -145,7 +145,7 @@ contains
    !> Prints text under a mark, broken at blanks.
    subroutine print_wrapped(unit, mark, string)
       integer, intent(in) :: unit          !! unit of the listing
-      character(*), intent(in) :: mark     !! what stands before the first line
+      character(*), intent(in) :: mark     !! what is before the first line
       character(*), intent(in) :: string   !! the text
       integer :: first, last, room
 

@@ -20,8 +20,8 @@ module progress
       logical :: is_shown = .false.         !! whether there is a terminal that wants it
       real(dp) :: last_update = 0.0_dp      !! when the line was last drawn [s]
       character(:), allocatable :: last     !! what the last increment came to
-      integer :: length = 0                 !! characters that stand on the line
-      character(line_length) :: line = ''   !! what stands there
+      integer :: length = 0                 !! characters that are on the line
+      character(line_length) :: line = ''   !! what is there
    contains
       procedure :: start
       procedure :: is_on_line

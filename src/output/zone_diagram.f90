@@ -10,7 +10,7 @@ module zone_diagram
    private
    public :: zone_diagram_type, zone_numeral, zone_counts
 
-   integer, parameter :: panel_columns = 28 !! contact points that stand side by side on 132 columns
+   integer, parameter :: panel_columns = 28 !! contact points that are side by side on 132 columns
 
    !> Zones of one interface at every increment.
    type :: zone_diagram_type

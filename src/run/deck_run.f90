@@ -376,7 +376,7 @@ contains
       call outcome%fail(error)
       call self%output%progress%clear()
       if (error%status == status_no_convergence) then
-         call print_error(self%path, error%message//' (the listing shows the iteration)')
+         call print_error(self%path, error%message//'; the listing shows the iterations')
       else
          call print_error(self%path, error%message)
       end if

@@ -93,7 +93,7 @@ contains
       end do
    end subroutine make_ties
 
-   !> The first contact point that stands among those before it already: the same two nodes, and
+   !> The first contact point that is among those before it already: the same two nodes, and
    !> normals along one line; 0 where there is none.
    pure integer function first_repeated(slave, master, normal)
       integer, intent(in) :: slave(:)            !! (m) slave nodes

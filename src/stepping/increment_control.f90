@@ -1,4 +1,4 @@
-!> Where a run stands in its steps, and how long its increments are: fixed, cut back where one fails
+!> Where a run is in its steps, and how long its increments are: fixed, cut back where one fails
 !> and grown again behind it.
 module increment_control
    use increment_instants, only: cut_size, grown_size, is_smallest, next_end

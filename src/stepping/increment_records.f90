@@ -38,7 +38,7 @@ module increment_records
 contains
 
    !> Completes the record of an increment, which has its position in the steps and its passes, with
-   !> contact state, fields and balances. What the step does not solve stands as the last step that
+   !> contact state, fields and balances. What the step does not solve is as the last step that
    !> did left it; stress and flux with their errors are made where needed.
    pure subroutine complete_record(bodies, model, recovery, loads, previous, next, record)
       type(reduced_bodies_type), intent(in) :: bodies

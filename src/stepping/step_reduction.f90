@@ -176,7 +176,7 @@ contains
       strain = strain .and. any(solves_mechanics(model%steps%analysis))
    end function temperatures_strain
 
-   !> Notes the memory of the factors that stand, and their smallest pivot.
+   !> Notes the memory of the factors that are, and their smallest pivot.
    subroutine measure_factors(bodies, sizes)
       type(reduced_bodies_type), intent(in) :: bodies
       type(run_size_type), intent(inout) :: sizes               !! receives both

@@ -121,7 +121,7 @@ contains
       values = [(trade%rows(list(k))%values%temperatures(node, t), k=1, size(list))]
    end function temperatures_of
 
-   !> Rows whose values make a limit; in place of one that is missing stands one that adds nothing.
+   !> Rows whose values make a limit; in place of one that is missing is one that adds nothing.
    pure function all_rows(rows) result(list)
       type(sequences_type), intent(in) :: rows
       integer, allocatable :: list(:)

@@ -23,7 +23,7 @@ module deck_builder_equations
       integer, allocatable :: item(:), set(:)      !! node indexes, or sets
       integer, allocatable :: dof(:)
       real(dp), allocatable :: coefficient(:)
-      type(place_type), allocatable :: at(:)       !! where each term stands
+      type(place_type), allocatable :: at(:)       !! where each term is
       logical :: valid = .true.                    !! whether no error was found in it
    end type terms_type
 

@@ -168,7 +168,7 @@ contains
    !> Warns of a law that jumps, where the gap closes or where its table of clearances ends.
    subroutine check_law(card, law_place, interaction, report)
       type(keyword_card_type), intent(in) :: card
-      type(place_type), intent(in) :: law_place      ! where the last of its laws stands
+      type(place_type), intent(in) :: law_place      ! where the last of its laws is
       type(interaction_type), intent(in) :: interaction
       type(deck_report_type), intent(inout) :: report
       type(conductance_law_type) :: law

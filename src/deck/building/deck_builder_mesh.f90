@@ -89,7 +89,7 @@ contains
       end do
    end subroutine add_rotations
 
-   !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what stands behind z
+   !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what is behind z
    !> is the direction of a normal in Abaqus.
    subroutine build_node(data, context, report, number, coordinates, z, valid)
       type(data_card_type), intent(in) :: data
@@ -298,7 +298,7 @@ contains
    subroutine check_layout(data, kind, keyword, report)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
-      type(place_type), intent(in) :: keyword          ! where the *ELEMENT card stands
+      type(place_type), intent(in) :: keyword          ! where the *ELEMENT card is
       type(deck_report_type), intent(inout) :: report
 
       associate (fields => size(data%fields), due => element_node_count(kind) + 1)

@@ -25,7 +25,7 @@ module deck_builder_sets
 
 contains
 
-   !> Takes all sets of nodes or of elements, lines among them; a name that stands on several cards
+   !> Takes all sets of nodes or of elements, lines among them; a name that is on several cards
    !> is one set.
    subroutine build_sets(noun, cards, context, mesh, report, sets)
       character(*), intent(in) :: noun                           !! node or element
@@ -90,7 +90,7 @@ contains
       draft%counts(set) = 0
    end subroutine open_set
 
-   !> Adds members that stand in a row.
+   !> Adds members that are in a row.
    subroutine add_range(draft, set, first, last)
       type(draft_type), intent(inout) :: draft
       integer, intent(in) :: set, first, last

@@ -25,12 +25,12 @@ module gap_tables
 contains
 
    !> Rows of conductance and what it belongs to. Those of a table with temperatures have one behind
-   !> it and stand in groups of one temperature.
+   !> it and are in groups of one temperature.
    subroutine read_table(cards, card, noun, temperature, report, table)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
-      real(dp), intent(in) :: temperature(:)               !! (rows) alike for one temperature
+      real(dp), intent(in) :: temperature(:)               !! (rows) equal for one temperature
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(gap_table_type), intent(out) :: table
       integer :: i, n

@@ -40,7 +40,7 @@ contains
             if (any(keys(:, order(last + 1)) /= keys(:, order(first)))) exit
             last = last + 1
          end do
-         ! Sorting keeps the order of equals: sides stand before lines.
+         ! Sorting keeps the order of equals: sides are before lines.
          face = owner(:, order(first))
          do i = first, last
             if (owner(1, order(i)) > 0 .or. face(1) == 0) cycle

@@ -54,11 +54,11 @@ contains
       end do
    end subroutine apply_temperatures
 
-   !> Prescribed values, after refinement. What stands before the first step belongs to it.
+   !> Prescribed values, after refinement. What is before the first step belongs to it.
    subroutine apply_boundaries(context, model, report)
       type(deck_context_type), intent(in) :: context       !! requests
       type(model_type), intent(inout) :: model             !! receives the prescribed values
-      type(deck_report_type), intent(in) :: report         !! knows where lines stand
+      type(deck_report_type), intent(in) :: report         !! knows where lines are
       integer, allocatable :: nodes(:)
       integer :: s, i, j, n, counts(size(model%steps))
 
@@ -92,7 +92,7 @@ contains
       end do
    end subroutine apply_boundaries
 
-   !> OP=NEW in the first step ends what stands before it.
+   !> OP=NEW in the first step ends what is before it.
    pure logical function is_ended(request, model)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model

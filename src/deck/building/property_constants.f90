@@ -1,4 +1,4 @@
-!> Constants of a property of a material, as they stand on its data cards.
+!> Constants of a property of a material, as they are on its data cards.
 module property_constants
    use card_parameters, only: choose
    use card_values, only: check_extra, need_field, take_field
@@ -19,7 +19,7 @@ module property_constants
 contains
 
    !> Takes TYPE= of a property: how many constants it has. CalculiX reads the first letters only,
-   !> so longer words stand in decks for it.
+   !> so longer words are in decks for it.
    subroutine choose_symmetry(card, choices, report, symmetry)
       type(keyword_card_type), intent(in) :: card              !! the property
       character(*), intent(in) :: choices                      !! words, separated by slashes

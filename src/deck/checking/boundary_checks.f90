@@ -108,11 +108,11 @@ contains
       end do
    end subroutine check_dropped
 
-   !> Warns where a data card replaces what another one of the same step prescribes. What stands
+   !> Warns where a data card replaces what another one of the same step prescribes. What is
    !> before the first step may be replaced in it.
    subroutine check_conflicts(context, step, model, report)
       type(deck_context_type), intent(in) :: context
-      integer, intent(in) :: step                          ! 0 for what stands before the first
+      integer, intent(in) :: step                          ! 0 for what is before the first
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       integer :: given(3, size(model%mesh%node_number)), i, j, dof, n, node

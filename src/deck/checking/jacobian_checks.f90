@@ -19,7 +19,7 @@ module jacobian_checks
 contains
 
    !> The Jacobian is positive at the Gauss points of every element. A node that is out of place is
-   !> reported where it stands, once for all elements that it inverts; elements that go round
+   !> reported where it is, once for all elements that it inverts; elements that go round
    !> clockwise, or whose cards have their nodes in another order, are reported once.
    subroutine check_jacobians(context, mesh, misordered, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
@@ -170,7 +170,7 @@ contains
 
    !> The same of elements that lost their midside nodes; the first that is not sound is named.
    subroutine check_corners(place, mesh, report)
-      type(place_type), intent(in) :: place                !! where the order of elements stands
+      type(place_type), intent(in) :: place                !! where the order of elements is
       type(mesh_type), intent(in) :: mesh                  !! the mesh, of linear elements
       type(deck_report_type), intent(inout) :: report      !! receives an error
       integer :: e

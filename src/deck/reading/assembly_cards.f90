@@ -15,7 +15,7 @@ module assembly_cards
    private
    public :: flatten_cards
 
-   ! Where a card stands.
+   ! Where a card is.
    integer, parameter :: at_model = 0, at_part = 1, at_assembly = 2, at_instance = 3
 
    !> What is open while the cards are taken.
@@ -117,7 +117,7 @@ contains
          (values(5) - 1)*values(7)
    end function largest_number
 
-   !> Takes one card where it stands.
+   !> Takes one card where it is.
    subroutine take_card(cards, k, open, all, report)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: k
@@ -159,7 +159,7 @@ contains
       end associate
    end subroutine take_card
 
-   !> Opens something where it may stand.
+   !> Opens something where it may be.
    subroutine enter(card, k, from, to, open, report, enters)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: k, from, to

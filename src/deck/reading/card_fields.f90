@@ -151,7 +151,7 @@ contains
    !> A text without the quotes around it.
    pure function without_quotes(string) result(bare)
       character(*), intent(in) :: string   !! text, quoted or not
-      character(:), allocatable :: bare    !! what stands between the quotes
+      character(:), allocatable :: bare    !! what is between the quotes
       integer :: n
 
       n = len(string)

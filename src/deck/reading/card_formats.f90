@@ -39,7 +39,7 @@ contains
    pure subroutine parse_format(string, format, position, fault)
       character(*), intent(in) :: string                   !! with its brackets
       type(card_format_type), intent(out) :: format        !! what it says
-      integer, intent(out) :: position                     !! where the fault stands in string
+      integer, intent(out) :: position                     !! where the fault is in string
       character(:), allocatable, intent(out) :: fault      !! what is wrong, or empty
       type(edit_type) :: edits(most_edits)
       character(:), allocatable :: upper
@@ -193,7 +193,7 @@ contains
       end do
    end subroutine repeat_edits
 
-   !> A number where one stands, else the default.
+   !> A number where one is, else the default.
    pure subroutine take_number(string, default, position, number)
       character(*), intent(in) :: string
       integer, intent(in) :: default
@@ -213,7 +213,7 @@ contains
       if (.not. valid) number = huge(number)
    end subroutine take_number
 
-   !> The digits behind the point of F10.3; 0 where none stand.
+   !> The digits behind the point of F10.3; 0 where none are.
    pure subroutine take_decimals(string, position, decimals)
       character(*), intent(in) :: string
       integer, intent(inout) :: position

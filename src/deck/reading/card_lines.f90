@@ -26,7 +26,7 @@ module card_lines
       type(deck_parameters_type) :: parameters              !! *PARAMETER so far
       integer :: width = default_width                      !! columns of a card
       character(:), allocatable :: include                  !! path that the card just read includes
-      type(place_type) :: include_place                     !! where it stands
+      type(place_type) :: include_place                     !! where it is
       type(field_type), allocatable, private :: pending(:)  !! fields of a card that continues
       logical, private :: pending_keyword = .false.         !! that card is a keyword card
       character(:), allocatable, private :: keyword         !! keyword to which data cards belong
@@ -184,7 +184,7 @@ contains
       end if
    end subroutine take_fields
 
-   !> A complete keyword card. *INCLUDE is obeyed and leaves no card: what it includes stands in its
+   !> A complete keyword card. *INCLUDE is obeyed and leaves no card: what it includes is in its
    !> place.
    subroutine take_keyword(self, fields, cards, report)
       type(card_lines_type), intent(inout) :: self

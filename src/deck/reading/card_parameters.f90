@@ -59,7 +59,7 @@ contains
    pure function parameter_place(card, name) result(place)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name              !! name as in the table of keywords
-      type(place_type) :: place                     !! where the value stands
+      type(place_type) :: place                     !! where the value is
 
       place = card%place
       if (has_parameter(card, name)) place = card%parameters(position(card, name))%value_place

@@ -1,4 +1,4 @@
-!> The cards of a deck: what stands in its lines, before anything is known of its meaning.
+!> The cards of a deck: what is in its lines, before anything is known of its meaning.
 module cards
    use deck_source, only: place_type
    use text, only: append, string_type
@@ -40,7 +40,7 @@ module cards
    !> One data card, continuations included.
    type :: data_card_type
       type(field_type), allocatable :: fields(:)   !! its fields, empty ones at its end left out
-      type(place_type) :: end                      !! where a missing field would stand
+      type(place_type) :: end                      !! where a missing field would be
    end type data_card_type
 
    !> All cards of a deck.
@@ -89,7 +89,7 @@ contains
    pure function field_place(data, i) result(place)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position, from 1
-      type(place_type) :: place                  !! where it stands
+      type(place_type) :: place                  !! where it is
 
       place = data%end
       if (i <= size(data%fields)) place = data%fields(i)%place

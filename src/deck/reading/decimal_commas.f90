@@ -117,7 +117,7 @@ contains
    end subroutine check_unneeded
 
    !> As check_unneeded for the temperature behind a property: a plausible one is no decimals,
-   !> unless it stands directly behind the comma of `0,`.
+   !> unless it is directly behind the comma of `0,`.
    subroutine check_unneeded_temperature(data, i, report)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                            !! position of the field, from 2

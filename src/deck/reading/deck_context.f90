@@ -36,25 +36,25 @@ module deck_context
       integer, allocatable :: line_number(:)              !! (lines) numbers of the lines
       integer, allocatable :: line_nodes(:, :)            !! (3, lines) indexes, 0 where it has two
       type(set_type), allocatable :: line_sets(:)         !! the lines of the element sets
-      type(place_type), allocatable :: element_place(:)   !! (elements) where the element stands
+      type(place_type), allocatable :: element_place(:)   !! (elements) where the element is
       logical, allocatable :: element_valid(:)            !! (elements) whether its nodes are known
-      type(place_type), allocatable :: node_place(:)      !! (nodes) where the node stands
+      type(place_type), allocatable :: node_place(:)      !! (nodes) where the node is
       logical, allocatable :: node_valid(:)               !! (nodes) whether its place is known
       type(place_list_type), allocatable :: face_places(:)   !! (surfaces) where each face is named
-      type(place_type), allocatable :: material_place(:)  !! (materials) where the material stands
-      type(place_type), allocatable :: step_place(:)      !! (steps) where the step stands
+      type(place_type), allocatable :: material_place(:)  !! (materials) where the material is
+      type(place_type), allocatable :: step_place(:)      !! (steps) where the step is
       !> PLANE=, a plane of element_kinds
       integer :: plane = plane_by_element
       integer :: order = 2                                !! ORDER= of the elements, 1 or 2
-      type(place_type) :: order_place                     !! where it stands
+      type(place_type) :: order_place                     !! where it is
       logical, allocatable :: dropped(:)                  !! (nodes) whether ORDER=1 drops them
       integer :: levels = 0                               !! *REFINE, LEVELS=
-      type(place_type) :: levels_place                    !! where it stands
+      type(place_type) :: levels_place                    !! where it is
       type(refined_region_type), allocatable :: regions(:)   !! *REFINE with a surface or a set
       !> divisions that follow, as those of a variation
       type(element_levels_type), allocatable :: divisions(:)
       character(:), allocatable :: load_set   !! LOAD=: node set; unallocated when not given
-      type(place_type) :: load_place                      !! where it stands
+      type(place_type) :: load_place                      !! where it is
       type(request_list_type) :: boundaries               !! *BOUNDARY
       type(request_list_type) :: loads                    !! all other loads
       integer :: load_cards = 0                           !! data cards of these loads
@@ -106,7 +106,7 @@ contains
       character(*), intent(in) :: noun                  !! what is named, such as material
       character(*), intent(in) :: name                  !! the name that is not known
       type(string_type), intent(in) :: names(:)         !! the names that are known
-      type(place_type), intent(in) :: place             !! where it stands
+      type(place_type), intent(in) :: place             !! where it is
       type(deck_report_type), intent(inout) :: report   !! receives the error
       logical :: nameless, slip
       integer :: i
@@ -125,7 +125,7 @@ contains
    !> Reports an element set that has lines only where elements or their faces are due.
    subroutine report_lines(name, place, report, valid)
       character(*), intent(in) :: name                  !! the set
-      type(place_type), intent(in) :: place             !! where it stands
+      type(place_type), intent(in) :: place             !! where it is
       type(deck_report_type), intent(inout) :: report   !! receives the error
       logical, intent(inout) :: valid                   !! becomes false
 

@@ -305,7 +305,7 @@ contains
       if (diagnostic%places > 1) line = line//' ('//to_text(diagnostic%places)//' such places)'
    end function first_line
 
-   !> Column of a byte, which may stand behind the line: a character of several bytes is one column.
+   !> Column of a byte, which may be behind the line: a character of several bytes is one column.
    pure integer function column_of(image, byte)
       character(*), intent(in) :: image
       integer, intent(in) :: byte

@@ -1,4 +1,4 @@
-!> The lines of a deck as they stand in its files: the deck itself and, where they are included, the
+!> The lines of a deck as they are in its files: the deck itself and, where they are included, the
 !> others.
 module deck_source
    use file_calls, only: read_file

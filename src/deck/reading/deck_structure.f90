@@ -1,4 +1,4 @@
-!> Whether the cards of a deck stand where they may stand, and whether those that every deck needs
+!> Whether the cards of a deck are where they may be, and whether those that every deck needs
 !> are there.
 module deck_structure
    use card_parameters, only: has_parameter, parameter_text
@@ -120,7 +120,7 @@ contains
       end if
    end subroutine check_step_card
 
-   !> Whether a card of the model stands behind the first *STEP.
+   !> Whether a card of the model is behind the first *STEP.
    pure logical function is_late(card, after_step)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: after_step
@@ -129,7 +129,7 @@ contains
       if (is_late) is_late = known_keywords(card%known)%section == in_model
    end function is_late
 
-   !> Reports a card of the model that stands behind the first *STEP, with those that follow it.
+   !> Reports a card of the model that is behind the first *STEP, with those that follow it.
    subroutine report_late(cards, first, report)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: first
@@ -203,7 +203,7 @@ contains
       if (most > 0) words = 'at most '//to_text(most)
    end function most_cards
 
-   !> Reports a card that no deck can do without, unless a refused one stands in its place.
+   !> Reports a card that no deck can do without, unless a refused one is in its place.
    subroutine need_card(cards, name, report)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name

@@ -68,7 +68,7 @@ contains
       own = own(:last)
    end function own_name
 
-   !> In what a type of Abaqus differs from that of this program in whose place it stands.
+   !> In what a type of Abaqus differs from that of this program in whose place it is.
    pure function difference(name) result(words)
       character(*), intent(in) :: name
       character(:), allocatable :: words

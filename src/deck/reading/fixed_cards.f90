@@ -81,7 +81,7 @@ contains
       if (reads_node) reads_node = kinds(1) == edit_whole .and. all(kinds(2:) == edit_real)
    end function reads_node
 
-   !> Whether data cards stand in fixed columns.
+   !> Whether data cards are in fixed columns.
    pure logical function is_open(self)
       class(fixed_cards_type), intent(in) :: self   !! the format
 
@@ -94,7 +94,7 @@ contains
       character(*), intent(in) :: line                    !! card image
       integer, intent(in) :: image                        !! its running number
       type(deck_report_type), intent(inout) :: report     !! receives an error
-      logical, intent(out) :: complete                    !! whether all fields that are due stand
+      logical, intent(out) :: complete                    !! whether all fields that are due are
       type(field_type), allocatable :: more(:), all(:)
       integer :: i, n
       logical :: sound

@@ -15,7 +15,7 @@ module fixed_columns
    integer, parameter :: undescribed = 0   !! column of which the format says nothing
    integer, parameter :: skipped = -1      !! column that it passes over
 
-   !> Where a field stands.
+   !> Where a field is.
    type :: column_field_type
       integer :: first = 0       !! first column
       integer :: last = 0        !! last column
@@ -33,7 +33,7 @@ contains
       integer, intent(in) :: most                                 !! fields that are due
       integer, intent(inout) :: edit                              !! where the format goes on
       type(field_type), allocatable, intent(out) :: fields(:)     !! the fields of this line
-      logical, intent(out) :: sound       !! whether all whole numbers stand well before an error
+      logical, intent(out) :: sound       !! whether all whole numbers are well before an error
       type(deck_report_type), intent(inout) :: report             !! receives an error
       type(column_field_type) :: places(size(format%edits))
       integer :: owner(last_text(line) + 1), n, i, bad
@@ -131,7 +131,7 @@ contains
    end subroutine find_fault
 
    !> Whether two neighbouring columns look like one number on both sides of an edge. A sign begins
-   !> a number, and one that fills all its columns stands close behind the one before.
+   !> a number, and one that fills all its columns is close behind the one before.
    pure logical function crosses(line, owner, column)
       character(*), intent(in) :: line
       integer, intent(in) :: owner(:), column

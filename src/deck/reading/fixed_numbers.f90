@@ -14,7 +14,7 @@ contains
    pure subroutine number_fault(text, whole, bad, fault)
       character(*), intent(in) :: text                     !! all columns of the field
       logical, intent(in) :: whole                         !! whether the format is I
-      integer, intent(out) :: bad                          !! where the fault stands in text
+      integer, intent(out) :: bad                          !! where the fault is in text
       character(:), allocatable, intent(out) :: fault      !! what is wrong, or empty
       character(:), allocatable :: number
       integer :: first, last, inner
@@ -44,7 +44,7 @@ contains
          scan(number(2:), '+-') == 0
    end function ends_safely
 
-   !> A number as it stands on a card of fields between commas: with the point that the format
+   !> A number as it is on a card of fields between commas: with the point that the format
    !> implies and an E before the exponent. What is no number stays as it is.
    pure function plain_number(text, decimals, real) result(number)
       character(*), intent(in) :: text            !! all columns of the field

@@ -16,7 +16,7 @@ module foreign_keywords
    type :: foreign_keyword_type
       character(36) :: name = ''         !! without the star
       integer :: status = 0              !! one of the four above; 0 for none
-      character(20) :: stands_for = ''   !! keyword of this program in whose place it stands
+      character(20) :: stands_for = ''   !! keyword of this program in whose place it is
       character(100) :: reason = ''      !! why it is passed over or refused, and what to do
    end type foreign_keyword_type
 

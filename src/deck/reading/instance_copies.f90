@@ -76,7 +76,7 @@ contains
    end subroutine read_motion
 
    !> Adds a card of a part for an instance. Errors that the copy has are reported where the card
-   !> of the part stands.
+   !> of the part is.
    subroutine copy_card(cards, card, instance, all)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card           !! one of its keyword cards

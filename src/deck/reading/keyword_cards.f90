@@ -172,7 +172,7 @@ contains
    end subroutine take_parameters
 
    !> Reports a number among the parameters: the decimals of a value, or the first of data that
-   !> stand on the keyword card.
+   !> are on the keyword card.
    subroutine report_number(fields, i, report)
       type(field_type), intent(in) :: fields(:)
       integer, intent(in) :: i

@@ -19,7 +19,7 @@ module keyword_slips
 contains
 
    !> Puts in the commas that are missing on a keyword card: behind a keyword that is known, and
-   !> before a parameter of it that stands in the value of another one.
+   !> before a parameter of it that is in the value of another one.
    subroutine mend_commas(fields, report)
       type(field_type), allocatable, intent(inout) :: fields(:)   !! the first with the star
       type(deck_report_type), intent(inout) :: report             !! receives errors
@@ -87,7 +87,7 @@ contains
       end do
    end function end_of_keyword
 
-   !> Position of the blank before a parameter that stands in the value of another; 0 where there is
+   !> Position of the blank before a parameter that is in the value of another; 0 where there is
    !> none. A value in quotes is left alone.
    pure integer function start_of_parameter(known, string)
       integer, intent(in) :: known

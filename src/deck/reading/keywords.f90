@@ -1,5 +1,5 @@
 !> The keywords of the dialect: which are understood, which are refused and why, where each may
-!> stand, and which parameters it takes.
+!> are, and which parameters it takes.
 module keywords
    use text, only: append, is_same_name, string_type
    implicit none
@@ -13,14 +13,14 @@ module keywords
    integer, parameter :: not_needed = 2   !! read, and means nothing to this program
    integer, parameter :: refused = 3      !! will not be built; refusal gives the reason
 
-   integer, parameter :: in_model = 1     !! stands before the first *STEP
-   integer, parameter :: in_step = 2      !! stands between *STEP and *END STEP
-   integer, parameter :: in_both = 3      !! stands anywhere
+   integer, parameter :: in_model = 1     !! is before the first *STEP
+   integer, parameter :: in_step = 2      !! is between *STEP and *END STEP
+   integer, parameter :: in_both = 3      !! is anywhere
 
    integer, parameter :: many = huge(1)
 
    !> One keyword. Its parameters are separated by slashes; `=` marks one that needs a value and `?`
-   !> one that may have one; `~` stands before one that is not needed, `!` before a refused one.
+   !> one that may have one; `~` is before one that is not needed, `!` before a refused one.
    type :: known_keyword_type
       character(32) :: name          !! without the star
       integer :: status              !! built, not_needed or refused
@@ -282,7 +282,7 @@ contains
       end do
    end function refusal
 
-   !> What stands between the slashes of the table.
+   !> What is between the slashes of the table.
    pure function parameter_entries(known) result(entries)
       integer, intent(in) :: known
       type(string_type), allocatable :: entries(:)
