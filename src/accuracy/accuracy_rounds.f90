@@ -1,8 +1,8 @@
 !> The rounds of a requested accuracy: what each found at the ends of its steps.
 !>
-!> The bounds are those of the error estimator. Only the change from one round to the next is added:
-!> a round that divides elements leaves less than a part of the error (`left_by_round`), so that this
-!> part of the change bounds what is left; alone where nothing else is known of the mesh.
+!> The bounds are those of the error estimator. Only the change from one round to the next is
+!> added: a round that divides elements leaves less than a part of the error (`left_by_round`), so
+!> that this part of the change bounds what is left; alone where nothing else is known of the mesh.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type

@@ -1,6 +1,6 @@
-!> Bounds of the errors of a run, found beside it: one for each quantity of an interface at the end of
-!> a step, which everything else prints and judges by. It is the sum of three parts: mesh, increments,
-!> fixed point.
+!> Bounds of the errors of a run, found beside it: one for each quantity of an interface at the end
+!> of a step, which everything else prints and judges by. It is the sum of three parts: mesh,
+!> increments, fixed point.
 module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_definitions, only: pairing_surfaces

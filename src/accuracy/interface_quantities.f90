@@ -85,8 +85,8 @@ contains
       end do
    end function closed_length
 
-   !> Distance of the contact points on both sides of an edge; 0 at or beyond the last contact point,
-   !> where a zone ends with the interface.
+   !> Distance of the contact points on both sides of an edge; 0 at or beyond the last contact
+   !> point, where a zone ends with the interface.
    pure real(dp) function edge_spacing(points, edge)
       type(contact_points_type), intent(in) :: points !! the contact points of the interface
       real(dp), intent(in) :: edge                    !! as arc length, or NaN [length]

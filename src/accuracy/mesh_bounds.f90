@@ -3,9 +3,9 @@
 !> They take what halving the elements changes as for errors that fall with h only. At a single load
 !> this is partly chance, for errors change their sign as the edge of contact passes a node; so how
 !> much a quantity scatters over the increments before is added. What friction locked in while the
-!> contact grew over the nodes is known from the old mesh only: its error is a part of the stuck shear
-!> forces that falls with the spacing. An edge lies anywhere within a part of the spacing, and moves by
-!> as large a part of the contact as the force is uncertain by.
+!> contact grew over the nodes is known from the old mesh only: its error is a part of the stuck
+!> shear forces that falls with the spacing. An edge lies anywhere within a part of the spacing, and
+!> moves by as large a part of the contact as the force is uncertain by.
 !>
 !> The constants were chosen on decks other than those that judge them (docs/accuracy.md).
 module mesh_bounds
@@ -68,6 +68,8 @@ contains
                bounds(q) = edge_bound(points, contact%edge_stick, estimated(q)%resolution, &
                   change(q)) + known_scatter(q) + shift
             end if
+         case default
+            cycle
          end select
       end do
    end function bounds_of_mesh
@@ -84,6 +86,8 @@ contains
       if (any(abs(points%arc_length - edge) <= same_place*spacing)) bound = max(part, at_node)* &
          spacing
       bound = bound + of_change*max(0.0_dp, abs(change) - max(part, at_node)*spacing)
+      ! On the finer mesh there is no such edge.
+      if (ieee_is_nan(change)) bound = change
    end function edge_bound
 
    !> Whether all that is closed up to its outer edge sticks.

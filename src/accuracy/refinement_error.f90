@@ -40,8 +40,8 @@ module refinement_error
    private
    public :: find_change_by_refinement
 
-   integer, parameter :: corrections = 4            !! solutions of the increment
-   integer, parameter :: smoothing_steps = 12       !! steps of conjugate gradients before each
+   integer, parameter :: corrections = 3            !! solutions of the increment
+   integer, parameter :: smoothing_steps = 8       !! steps of conjugate gradients before each
 
    !> The fields of both meshes as they are corrected.
    type :: corrected_type

@@ -62,7 +62,7 @@ PARTS = {
     "films": {"films", "loads:film_matrix", "loads:integrate_films"},
     "estimated errors": {
         "companion_steps", "doubled_increments", "error_estimator", "interface_quantities", "linked_relaxation",
-        "refined_model", "refined_points", "refinement_error",
+        "mesh_bounds", "refined_model", "refined_points", "refinement_error", "value_courses",
     },
     "refinement": {"child_elements", "hanging_nodes", "load_refinement", "local_refinement",
                    "mesh_division", "refinement"},

@@ -61,7 +61,7 @@ def test_error_of_hertz_peak_pressure(tmp_path):
 @pytest.mark.parametrize("friction", ["*FRICTION\n0.155, 1.E5\n", ""])
 def test_mesh_of_a_coupled_run(tmp_path, friction):
     """The bound of the mesh is three times what the next one changes, without factoring it: to
-    the few per cent that four corrections leave. In one increment, before which nothing has
+    the tenth that three corrections leave, for which the bound has room. In one increment, before which nothing has
     slipped: what friction left on the finer mesh is not known."""
     changes = {"20., 900.": "900., 900.", "*FRICTION\n0.155, 1.E5\n": friction}
     coarse = errors(solve(bare(CYLINDER, tmp_path, "coarse.inp", changes=changes)), "FACE")
@@ -69,7 +69,7 @@ def test_mesh_of_a_coupled_run(tmp_path, friction):
                   "FACE")
     for name in ("normal_force", "heat_rate", "peak_pressure")[: 2 if friction else 3]:
         value, _, mesh, *_ = coarse[name]
-        assert 3 * abs(fine[name][0] - value) == pytest.approx(mesh, rel=0.05), name
+        assert 3 * abs(fine[name][0] - value) == pytest.approx(mesh, rel=0.1), name
 
 
 def test_error_of_increments(tmp_path):
