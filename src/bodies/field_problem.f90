@@ -27,6 +27,7 @@ module field_problem
    !> Matrix of the bodies, numbering of the unknowns, factors.
    type :: field_problem_type
       type(sparse_matrix_type) :: matrix !! (dofs, dofs) bodies alone, both triangles
+      real(dp) :: largest_entry = 0.0_dp                      !! of the bodies alone, set by reduce
       !> (dofs, dofs) what is added to it, such as films; without values where there is nothing.
       type(sparse_matrix_type) :: added
       type(linear_constraints_type) :: map                    !! u = T v + B g, and the unknowns v
@@ -67,6 +68,7 @@ contains
       end if
       call check_finite(self%matrix%value, 'matrices of the bodies', status_deck, error)
       if (allocated(error)) return
+      self%largest_entry = maxval(abs(self%matrix%value))
       call self%map%stiffen_links(self%matrix)
       if (allocated(node_rank)) rank = node_rank(self%leading_nodes())
       call self%solver%factor(self%matrix_of_unknowns(), self%map%tail, error, rank)

@@ -58,7 +58,7 @@ contains
       residual = supplied_heat(bodies, cut_hats_type(), conducted, net_heat(previous%heat_load, &
          previous%film, previous%temperature), contact_heat)
       scale = max(maxval(abs(conducted)), maxval(abs(previous%heat_load)), &
-         maxval([0.0_dp, abs(contact_heat)]), noise*maxval(abs(bodies%thermal%matrix%value))* &
+         maxval([0.0_dp, abs(contact_heat)]), noise*bodies%thermal%largest_entry* &
          maxval(abs(previous%temperature)), tiny(1.0_dp))
       relative = maxval([0.0_dp, pack(abs(residual), .not. held)])/scale
    end function start_imbalance

@@ -43,6 +43,7 @@ contains
 
       do i = 1, self%row_count
          total = 0.0_dp
+         !GCC$ unroll 4
          do k = self%row_start(i), self%row_start(i + 1) - 1
             total = total + self%value(k)*x(self%column(k))
          end do

@@ -58,7 +58,10 @@ contains
             end associate
          end do
          associate (first => c%row_start(i), last => c%row_start(i + 1) - 1)
-            c%column(first:last) = columns(sort_order(columns(:n)))
+            c%column(first:last) = columns(:n)
+            ! Most rows come in order, and sorting takes memory for each.
+            if (any(columns(2:n) < columns(:n - 1))) c%column(first:last) = &
+               columns(sort_order(columns(:n)))
             c%value(first:last) = row(c%column(first:last))
          end associate
          do k = a%row_start(i), a%row_start(i + 1) - 1

@@ -40,14 +40,35 @@ contains
       character(*), intent(in) :: unit                    !! its unit; '-' for a pure number
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(*), intent(in), optional :: components    !! their names; empty or absent: none
+      integer(hid_t) :: object, type
+      integer :: status(5)
 
-      call write_attribute(file, path, 'description', trim(description), error)
-      if (allocated(error)) return
-      call write_attribute(file, path, 'unit', trim(unit), error)
-      if (allocated(error) .or. .not. present(components)) return
-      if (len_trim(components) > 0) call write_attribute(file, path, 'components', &
-         trim(components), error)
+      status = 0
+      call h5oopen_f(file, path, object, status(1))
+      call utf8_string_type(type, status(2))
+      call write_text(object, 'description', trim(description), type, status(3))
+      if (status(3) >= 0) call write_text(object, 'unit', trim(unit), type, status(3))
+      if (status(3) >= 0 .and. present(components)) then
+         if (len_trim(components) > 0) call write_text(object, 'components', trim(components), &
+            type, status(3))
+      end if
+      call h5tclose_f(type, status(4))
+      call h5oclose_f(object, status(5))
+      call check_status(status, 'cannot describe '//path, error)
    end subroutine describe
+
+   !> Writes text to an open object.
+   subroutine write_text(object, name, value, type, status)
+      integer(hid_t), intent(in) :: object, type
+      character(*), intent(in) :: name, value
+      integer, intent(out) :: status
+      character(len(value) + 1, kind=c_char), target :: copy
+      type(c_ptr), target :: start
+
+      copy = value//c_null_char
+      start = c_loc(copy)
+      call write_to(object, name, stored_value_type(type, type, c_loc(start)), status)
+   end subroutine write_text
 
    !> Error: status_internal, when the attribute cannot be written.
    subroutine write_integer_attribute(file, path, name, value, error)
@@ -110,17 +131,16 @@ contains
       character(*), intent(in) :: name                    !! name of the attribute
       character(*), intent(in) :: value                   !! its value, shown by h5py as str
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      character(len(value) + 1, kind=c_char), target :: copy
-      type(c_ptr), target :: start
-      integer(hid_t) :: type
-      integer :: status(2)
+      integer(hid_t) :: object, type
+      integer :: status(5)
 
-      copy = value//c_null_char
-      start = c_loc(copy)
-      call utf8_string_type(type, status(1))
-      call write_any(file, path, name, stored_value_type(type, type, c_loc(start)), error)
-      call h5tclose_f(type, status(2))
-      if (.not. allocated(error)) call check_status(status, 'cannot write text', error)
+      status = 0
+      call h5oopen_f(file, path, object, status(1))
+      call utf8_string_type(type, status(2))
+      call write_text(object, name, value, type, status(3))
+      call h5tclose_f(type, status(4))
+      call h5oclose_f(object, status(5))
+      call check_status(status, 'cannot write attribute '//path//'@'//name, error)
    end subroutine write_text_attribute
 
    !> Writes text of fixed length, the form that VTK asks for.
@@ -149,13 +169,27 @@ contains
       character(*), intent(in) :: name
       type(stored_value_type), intent(in) :: value
       type(error_type), allocatable, intent(out) :: error
-      integer(hid_t) :: object, attribute, space
-      integer :: status(8)
+      integer(hid_t) :: object
+      integer :: status(3)
+
+      ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.
+      call h5oopen_f(file, path, object, status(1))
+      call write_to(object, name, value, status(2))
+      call h5oclose_f(object, status(3))
+      call check_status(status, 'cannot write attribute '//path//'@'//name, error)
+   end subroutine write_any
+
+   !> Writes an attribute of an open object.
+   subroutine write_to(object, name, value, worst)
+      integer(hid_t), intent(in) :: object
+      character(*), intent(in) :: name
+      type(stored_value_type), intent(in) :: value
+      integer, intent(out) :: worst
+      integer(hid_t) :: attribute, space
+      integer :: status(6)
       logical :: exists
 
       status = 0
-      ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.
-      call h5oopen_f(file, path, object, status(7))
       call h5aexists_f(object, name, exists, status(1))
       if (exists) then
          call h5aopen_f(object, name, attribute, status(2))
@@ -170,8 +204,7 @@ contains
       end if
       call h5awrite_f(attribute, value%memory_type, value%address, status(5))
       call h5aclose_f(attribute, status(6))
-      call h5oclose_f(object, status(8))
-      call check_status(status, 'cannot write attribute '//path//'@'//name, error)
-   end subroutine write_any
+      worst = minval(status)
+   end subroutine write_to
 
 end module hdf5_attributes

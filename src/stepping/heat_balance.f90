@@ -44,7 +44,7 @@ contains
          body => model%mesh%node_body)
          scale = max(record%heat_in, record%heat_out, abs(sum(contact_heat)), &
             maxval(abs(residual), mask=held), maxval(abs(heat)), &
-            noise*maxval(abs(bodies%thermal%matrix%value))*maxval(abs(next%temperature)), &
+            noise*bodies%thermal%largest_entry*maxval(abs(next%temperature)), &
             tiny(1.0_dp))
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + heat

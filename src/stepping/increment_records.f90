@@ -221,7 +221,7 @@ contains
       end if
       internal = bodies%mechanical%matrix%multiply(next%displacement) - &
          unstrained_forces(bodies, next%temperature)
-      stiffness = maxval(abs(bodies%mechanical%matrix%value))
+      stiffness = bodies%mechanical%largest_entry
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)
       associate (held => loads%displacement%active)
