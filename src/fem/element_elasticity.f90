@@ -6,6 +6,7 @@
 !> in place of that at each point (B-bar: Hughes, Int. J. Num. Meth. Eng. 15 (1980) 1413), so that
 !> nearly incompressible materials do not lock them.
 module element_elasticity
+   use blas_lapack, only: dgemm
    use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4
    use kinds, only: dp
    use quadrature, only: integration_rule, point_count
@@ -33,12 +34,15 @@ contains
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
       real(dp) :: k(2*element_node_count(kind), 2*element_node_count(kind)) !! [stress length]
       real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
-      integer :: g
+      real(dp) :: stress(4, 2*element_node_count(kind))
+      integer :: g, n
 
       call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
+      n = size(k, 1)
       k = 0.0_dp
       do g = 1, size(volumes)
-         k = k + volumes(g)*matmul(transpose(b(:, :, g)), matmul(e(:, :, g), b(:, :, g)))
+         stress = matmul(volumes(g)*e(:, :, g), b(:, :, g))
+         call dgemm('T', 'N', n, n, 4, 1.0_dp, b(1, 1, g), 4, stress, 4, 1.0_dp, k, n)
       end do
    end function element_stiffness
 
