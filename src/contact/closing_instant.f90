@@ -198,7 +198,8 @@ contains
             -stiffness(1, 2), stiffness(1, 1)], [2, 2])/determinant
       end if
       relief%is_known = .true.
-      if (relief%alone) relief%compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp/system%alone(k)], [2, 2])
+      if (relief%alone) relief%compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, &
+         1.0_dp/system%alone(k)], [2, 2])
    end subroutine find_compliance
 
    !> The closing law of one contact point.

@@ -21,8 +21,8 @@ elapsed time is, so other processes blur the stages. Short runs are medians of t
 `*SOLVER` the solver is SKYLINE below 5000 displacements, MUMPS from there on: the crossing lies
 between the first and the second refinement. *Reducing* is the work
 that the interface needs at least once: factoring the thermal and the mechanical matrix, each with
-its Schur complement on the contact points, and solving both for a unit temperature jump at each
-contact point.
+its Schur complement on the contact points, and what a unit temperature jump at each contact point
+makes of the forces there. SKYLINE solves for each jump; MUMPS eliminates both fields together.
 """
 STAGES = ("read", "assemble", "reduce", "iterate", "recover", "write")
 RUNS = (*((solver, level) for level in range(4) for solver in ("SKYLINE", "MUMPS")),
