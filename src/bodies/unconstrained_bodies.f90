@@ -21,23 +21,39 @@ module unconstrained_bodies
 contains
 
    !> Bodies that neither supports nor contact could ever constrain: all contact points that are not
-   !> removed count as closed, those with friction as stuck. One message a motion.
+   !> removed count as closed, those with friction as stuck. One message a body.
    subroutine unconstrained_in_step(model, points, held, messages)
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points !! all contact points
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
       type(string_type), allocatable, intent(out) :: messages(:)
       type(free_motion_type), allocatable :: motions(:)
-      integer :: i
+      character(:), allocatable :: words
+      integer :: i, n
+      logical :: is_first, is_last
 
       call free_motions(model, points, held, &
          merge(contact_open, merge(contact_stick, contact_slip, points%has_friction()), &
          points%removed), motions)
       allocate (messages(0))
-      do i = 1, size(motions)
-         call append(messages, mover(model, motions(i))//' can '// &
-            trim(merge('turn', 'move', motions(i)%turns))//' '//motions(i)%way// &
-            motions(i)%company//': no *BOUNDARY and no contact holds it')
+      n = size(motions)
+      do i = 1, n
+         is_first = i == 1
+         if (i > 1) is_first = mover(model, motions(i)) /= mover(model, motions(i - 1))
+         is_last = i == n
+         if (i < n) is_last = mover(model, motions(i)) /= mover(model, motions(i + 1))
+         if (is_first) then
+            words = mover(model, motions(i))//' can '
+         else
+            words = words//trim(merge(' and', ',   ', is_last))//' '
+         end if
+         words = words//trim(merge('turn', 'move', motions(i)%turns))//' '//motions(i)%way
+         if (is_last) then
+            call append(messages, words//motions(i)%company// &
+               ': no *BOUNDARY and no contact holds it; hold it by *BOUNDARY')
+         else if (motions(i)%company /= motions(i + 1)%company) then
+            words = words//motions(i)%company
+         end if
       end do
    end subroutine unconstrained_in_step
 

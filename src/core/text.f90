@@ -8,11 +8,12 @@ module text
    public :: others, counted, to_text, to_upper, without_blanks, is_same_name, read_integer
    public :: read_real, append
    public :: is_whole, integer_fault, real_fault, largest_magnitude
-   public :: nearest_name, nearest_known, edit_distance, is_slip
+   public :: nearest_name, nearest_known, known_choices, edit_distance, is_slip
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
    real(dp), parameter :: smallest_magnitude = 1.0e-100_dp, largest_magnitude = 1.0e100_dp
+   integer, parameter :: most_listed = 16         !! choices that a message lists
    integer, parameter :: most_slips = 2           !! letters that differ in a misspelt name,
    integer, parameter :: letters_per_slip = 3     !! and letters for each of them
 
@@ -283,7 +284,7 @@ contains
       end do
    end function nearest_name
 
-   !> The end of a message on an unknown name; empty where nothing is known.
+   !> The end of a message on an unknown name; empty where no known one is like it.
    pure function nearest_known(name, names) result(hint)
       character(*), intent(in) :: name             !! what was written
       type(string_type), intent(in) :: names(:)    !! what is known
@@ -293,8 +294,26 @@ contains
 
       hint = ''
       nearest = nearest_name(name, names)
-      if (nearest > 0) hint = '; the nearest known is '//names(nearest)%value
+      if (nearest == 0) return
+      if (is_slip(name, names(nearest)%value)) hint = '; the nearest known is '// &
+         names(nearest)%value
    end function nearest_known
+
+   !> The end of a message on a word that is none of a fixed list: what it is like, or the whole list
+   !> where that is short.
+   pure function known_choices(name, names) result(hint)
+      character(*), intent(in) :: name             !! what was written
+      type(string_type), intent(in) :: names(:)    !! the list
+      character(:), allocatable :: hint            !! such as "; known: MOD, NEW"
+      integer :: i
+
+      hint = nearest_known(name, names)
+      if (len(hint) > 0 .or. size(names) == 0 .or. size(names) > most_listed) return
+      hint = '; known: '//names(1)%value
+      do i = 2, size(names)
+         hint = hint//', '//names(i)%value
+      end do
+   end function known_choices
 
    !> Whether a name is likely a misspelling of another one, whatever their cases: in a short one
    !> fewer letters may differ.

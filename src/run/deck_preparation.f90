@@ -7,6 +7,7 @@ module deck_preparation
    use contact_definitions, only: pairing_surfaces
    use contact_quantities, only: estimated
    use deck_builder, only: build_model
+   use deck_builder_friction, only: frictionless
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -73,7 +74,7 @@ contains
          call simulation%start(model, error)
          if (.not. allocated(error)) call check_arc_lengths(model, &
             simulation%bodies%interfaces, report)
-         call check_supports(cards%last, model, simulation, report)
+         call check_supports(cards, model, simulation, report)
          call report_at_card(error, report)
       end if
       model%warnings = report%warnings()
@@ -123,8 +124,8 @@ contains
 
    !> Reports what supports hold too much, and what they and the contact leave unconstrained or
    !> without a temperature, for the first step that has such.
-   subroutine check_supports(last, model, simulation, report)
-      type(place_type), intent(in) :: last
+   subroutine check_supports(cards, model, simulation, report)
+      type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(deck_report_type), intent(inout) :: report
@@ -138,13 +139,27 @@ contains
          call loads%begin_step(model%steps(step), simulation%state%displacement, &
             simulation%state%temperature)
          call points%enter_step(model, step)
-         call check_step(last, model, simulation, points, loads, step, report)
+         call check_step(step_place(cards, step), model, simulation, points, loads, step, report)
          if (report%has_errors()) return
       end do
    end subroutine check_supports
 
-   subroutine check_step(last, model, simulation, points, loads, step, report)
-      type(place_type), intent(in) :: last
+   !> Where a step begins.
+   pure type(place_type) function step_place(cards, step)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: step
+      integer :: k, n
+
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'STEP') cycle
+         n = n + 1
+         if (n == step) step_place = cards%keywords(k)%place
+      end do
+   end function step_place
+
+   subroutine check_step(place, model, simulation, points, loads, step, report)
+      type(place_type), intent(in) :: place
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(all_contact_points_type), intent(in) :: points   ! in the step
@@ -152,12 +167,15 @@ contains
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
       type(string_type), allocatable :: messages(:)
+      logical :: convicted
 
       associate (analysis => model%steps(step)%analysis)
          if (solves_mechanics(analysis)) then
             call report_over_constrained(model, simulation, loads%displacement, step, report)
             call unconstrained_in_step(model, points, loads%displacement%active, messages)
-            call report_all()
+            convicted = .false.
+            if (size(messages) > 0) call report%convict(frictionless, convicted)
+            if (.not. convicted) call report_all()
          end if
          if (solves_heat(analysis)) then
             call undetermined_in_step(model, points, loads%temperature%active, step, messages)
@@ -169,7 +187,7 @@ contains
          integer :: i
 
          do i = 1, size(messages)
-            call report%error(last, 'step '//to_text(step)//': '//messages(i)%value)
+            call report%error(place, 'step '//to_text(step)//': '//messages(i)%value)
          end do
       end subroutine report_all
    end subroutine check_step

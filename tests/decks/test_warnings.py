@@ -117,9 +117,9 @@ def test_a_second_value_for_one_degree_of_freedom(tmp_path):
     pushed = ["*BOUNDARY", "B.TOP, 1, 1, 0.", "B.LEFT, 1, 1, 0.1", "B.LEFT, 1, 1, 0.1"]
     found = warnings(tmp_path, blocks(), step(*pushed))
     assert re.fullmatch(r"node \d+: another card of this step gives degree of freedom 1 another "
-                        "value; the last one takes precedence", one(found, "B.LEFT, 1, 1, 0.1"))
+                        r"value; the last value is used \(1 node\)", one(found, "B.LEFT, 1, 1, 0.1"))
     crossing = ["*BOUNDARY", "A.TOP, 2, 2, 0.", "A, 2, 2, 0.1"]
-    assert one(warnings(tmp_path, blocks(), step(*crossing)), "A, ").endswith("with two: 9")
+    assert one(warnings(tmp_path, blocks(), step(*crossing)), "A, ").endswith("is used (9 nodes)")
     assert warnings(tmp_path, blocks(), step("*BOUNDARY", "A.BOTTOM, 1, 2, 0.1")) == []
     assert warnings(tmp_path, blocks(), step("*BOUNDARY", "A.BOTTOM, 1, 2, 0."),
                     step("*BOUNDARY", "A.BOTTOM, 1, 2, 0.1")) == []
@@ -396,3 +396,38 @@ def test_nlgeom_is_warned_of_once_and_not_in_steps_of_heat(tmp_path):
     message = one(warnings(tmp_path, asked), "*STEP, NLGEOM=YES")
     assert message == "NLGEOM is not modelled: displacements and strains stay small"
     assert warnings(tmp_path, conducting([*heat, "*STEP", *pressed])) == []
+
+
+@pytest.mark.parametrize(("given", "missing"), [((), 0), (("A", "B"), 0), (("A",), 37)])
+def test_initial_temperatures_of_some_nodes_only(tmp_path, given, missing):
+    """The upper block has 4 x 2 elements with 15 corners and 22 midside nodes."""
+    start = ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", *(f"{name}, 20." for name in given)] if given else []
+    heated = ["*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "A.BOTTOM, 11, 11, 20.",
+              "B.TOP, 11, 11, 50.", "*END STEP"]
+    laws = blocks()
+    at = laws.index("*SURFACE INTERACTION, NAME=I") + 1
+    laws[at:at] = ["*GAP LAW, TYPE=CLEARANCE", "1., 0."]
+    found = warnings(tmp_path, laws, start, heated)
+    assert len(found) == (missing > 0)
+    if missing:
+        assert one(found, "A, 20.").endswith(
+            f"no initial temperature to {missing} nodes of the bodies, such as 101: they start at 0")
+
+
+def test_a_table_of_conductances_that_are_all_0(tmp_path):
+    """The first column is the conductance; the law of the other tables conducts somewhere."""
+    for rows, warned in ((["0., 1.", "0., 2."], True), (["0., 1.", "1., 2."], False)):
+        laws = blocks()
+        at = laws.index("*SURFACE INTERACTION, NAME=I") + 1
+        laws[at:at] = ["*GAP CONDUCTANCE", *rows]
+        found = [told for told, _ in warnings(tmp_path, laws, PRESSED)]
+        assert any("all conductances of this table of I are 0" in told for told in found) == warned
+
+
+def test_a_support_out_of_the_plane_alone(tmp_path):
+    """With a degree of freedom that the plane has, the others are ignored without a word."""
+    for degrees, warned in (("3", True), ("1, 3", False), ("PINNED", False)):
+        support = ["*BOUNDARY", f"B.LEFT, {degrees}"]
+        found = [told for told, _ in warnings(tmp_path, blocks(), support, PRESSED)]
+        assert found == ["degree of freedom 3 does not exist in a plane model: this support is "
+                         "ignored"][:warned]

@@ -25,13 +25,13 @@ module deck_builder
    use deck_builder_surfaces, only: build_surfaces
    use deck_builder_ties, only: build_ties
    use deck_builder_transforms, only: apply_transforms, build_transforms, turn_equations
-   use deck_builder_verify, only: build_verifications, check_heat_quantities
+   use deck_builder_verify, only: build_verifications, check_heat_quantities, heatless
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
    use errors, only: error_type
-   use heat_checks, only: check_heat_paths
+   use heat_checks, only: check_heat_paths, check_starts
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
    use load_checks, only: first_heat
    use kinds, only: dp
@@ -146,6 +146,7 @@ contains
       call turn_equations(model)
       deck_nodes = size(model%mesh%node_number)
       call apply_temperatures(context, deck_nodes, .true., model)
+      call check_starts(context, model, report)
       call refine_model(context, model, report, error)
       if (allocated(error)) return
       call apply_temperatures(context, deck_nodes, .false., model)
@@ -173,9 +174,9 @@ contains
       do s = 1, first_heat(context, model) - 1
          if (model%steps(s)%analysis /= analysis_coupled) cycle
          model%steps(s)%analysis = analysis_static
-         call report%warning(context%step_place(s), 'step '//to_text(s)//' solves no heat: '// &
+         call report%suspect(context%step_place(s), 'step '//to_text(s)//' solves no heat: '// &
             'nothing prescribes a temperature and nothing heats the bodies; give *BOUNDARY '// &
-            'with degree of freedom 11, or take *STATIC')
+            'with degree of freedom 11, or take *STATIC', heatless)
       end do
    end subroutine drop_idle_heat
 

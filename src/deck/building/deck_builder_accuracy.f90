@@ -10,7 +10,7 @@ module deck_builder_accuracy
    use kinds, only: dp
    use model, only: model_type
    use quantity_types, only: find_quantity, quantity_type
-   use text, only: nearest_known, string_type, to_upper
+   use text, only: known_choices, string_type, to_upper
    implicit none
    private
    public :: build_accuracy
@@ -120,7 +120,7 @@ contains
          names(i)%value = trim(estimated(i)%name)
       end do
       call report%error(field_place(data, 1), 'no error of '//name//' is estimated'// &
-         nearest_known(name, names))
+         known_choices(name, names))
    end subroutine read_quantity
 
    subroutine read_bound(data, report, target)

@@ -8,7 +8,7 @@ module deck_builder_boundaries
    use load_requests, only: request_type
    use model, only: model_type
    use steps, only: dof_temperature
-   use text, only: is_slip, to_text, to_upper
+   use text, only: is_slip, read_real, to_text, to_upper
    implicit none
    private
    public :: build_boundary, dof_rotation
@@ -50,9 +50,11 @@ contains
       call check_name(data, report, valid)
       if (.not. valid) return
       first = 0
-      call need_field(data, 2, 'first degree of freedom', report, first, valid)
+      call need_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
+         report, first, valid)
+      if (.not. valid) return
       last = first
-      call take_field(data, 3, 'last degree of freedom', report, last, valid)
+      call take_field(data, 3, 'last degree of freedom'//value_advice(data), report, last, valid)
       call take_field(data, 4, 'value', report, request%value, valid)
       call check_extra(data, 4, 'node or set, first and last degree of freedom, value', report)
       if (.not. valid) return
@@ -76,6 +78,9 @@ contains
                return
             end if
             call context%note(out_of_plane)
+            if (first >= 3 .and. dof == last) call report%warning(field_place(data, 2), &
+               'degree of freedom '//to_text(first)//' does not exist in a plane model: '// &
+               'this support is ignored')
          case default
             call report%error(field_place(data, merge(2, 3, dof == first)), &
                'degree of freedom '//to_text(dof)//'; the plane has 1, 2 and 11')
@@ -83,6 +88,20 @@ contains
          end select
       end do
    end subroutine build_boundary
+
+   !> Shows where a value belongs that stands in the place of the last degree of freedom.
+   pure function value_advice(data) result(advice)
+      type(data_card_type), intent(in) :: data
+      character(:), allocatable :: advice
+      real(dp) :: value
+      logical :: is_number
+
+      advice = ''
+      call read_real(field_text(data, 3), value, is_number)
+      if (is_number .and. size(data%fields) == 3) advice = '; the value is the fourth field: '// &
+         field_text(data, 1)//', '//field_text(data, 2)//', '//field_text(data, 2)//', '// &
+         field_text(data, 3)
+   end function value_advice
 
    !> Reports a likely misspelling of the name of a support.
    subroutine check_name(data, report, valid)

@@ -12,7 +12,7 @@ module deck_builder_element_loads
    use model, only: model_type
    use steps, only: load_body_force, load_body_heat, load_face_heat, load_film_coefficient, &
       load_film_sink, load_pressure
-   use text, only: append, nearest_known, string_type, to_text, to_upper
+   use text, only: append, known_choices, string_type, to_text, to_upper
    implicit none
    private
    public :: build_element_load, build_on_faces, report_label
@@ -146,7 +146,7 @@ contains
          if (first > len(labels)) exit
       end do
       call report%error(field_place(data, 2), 'unknown load '//label//' of *'//keyword// &
-         nearest_known(label, names))
+         known_choices(label, names))
    end subroutine report_label
 
    !> Every element of the request has the side.

@@ -13,6 +13,9 @@ module deck_builder_friction
    private
    public :: build_friction
 
+   !> Group of warnings that explain bodies which friction should hold.
+   character(*), parameter, public :: frictionless = 'friction'
+
 contains
 
    !> Takes one card: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
@@ -60,7 +63,7 @@ contains
       end if
       if (size(data%fields) > 1) then
          call context%note('*FRICTION: the stick slope is ignored')
-         call check_unneeded(data, 2, 'a stick slope', report)
+         call check_unneeded(data, 2, 'a stick slope', report, frictionless)
       end if
    end subroutine read_coefficient
 

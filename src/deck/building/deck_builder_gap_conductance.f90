@@ -37,6 +37,7 @@ contains
       law%open_ends = .true.
       call read_temperatures(cards, card, context, report, temperature)
       call read_table(cards, card, 'gap', temperature, report, table)
+      if (report%error_count() == errors) call check_zero(card, name, table, report)
       if (allocated(table%temperature)) then
          if (report%error_count() == errors) call check_last_gaps(cards, card, temperature, report)
          if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
@@ -96,6 +97,7 @@ contains
       law%closed_kind = law_pressure
       call read_temperatures(cards, card, context, report, temperature)
       call read_table(cards, card, 'pressure', temperature, report, table)
+      if (report%error_count() == errors) call check_zero(card, name, table, report)
       if (allocated(table%temperature)) then
          call note_ends('*GAP CONDUCTANCE', name, 'mean temperatures', table%temperature, context)
          allocate (law%by_temperature)
@@ -111,6 +113,22 @@ contains
       call context%note('*GAP CONDUCTANCE: CalculiX switches NLGEOM on; here displacements and '// &
          'strains are small')
    end subroutine build_gap_conductance
+
+   !> Warns of a table that conducts nothing.
+   subroutine check_zero(card, name, table, report)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name
+      type(gap_table_type), intent(in) :: table
+      type(deck_report_type), intent(inout) :: report
+
+      if (allocated(table%columns)) then
+         if (any(table%columns > 0.0_dp)) return
+      else if (any(table%omega > 0.0_dp)) then
+         return
+      end if
+      call report%warning(card%place, 'all conductances of this table of '//name//' are 0: it '// &
+         'conducts no heat; the first column of *GAP CONDUCTANCE is the conductance')
+   end subroutine check_zero
 
    !> Gives a law the closed side of *GAP CONDUCTANCE, unless *GAP LAW gives it another: then the
    !> table is for CalculiX, which knows no *GAP LAW.

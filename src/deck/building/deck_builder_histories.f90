@@ -8,7 +8,7 @@ module deck_builder_histories
    use decimal_commas, only: decimal_comma, report_decimal_comma
    use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count
+   use deck_structure, only: card_count, report_twice
    use kinds, only: dp
    use load_requests, only: request_type
    use model, only: model_type
@@ -33,8 +33,7 @@ contains
          n = n + 1
          call build_amplitude(cards, cards%keywords(k), report, model%amplitudes(n))
          if (find_amplitude(model%amplitudes(:n - 1), model%amplitudes(n)%name) > 0) then
-            call report%error(parameter_place(cards%keywords(k), 'NAME'), &
-               'amplitude '//model%amplitudes(n)%name//' is defined twice')
+            call report_twice(cards, k, 'amplitude '//model%amplitudes(n)%name, report)
             call report%lose('amplitude')
          end if
       end do
@@ -206,6 +205,7 @@ contains
             if (kind /= 'TEMPERATURE') cycle
             do j = card%first_data, card%last_data
                valid = .true.
+               request%place = field_place(cards%data(j), 1)
                call read_target(cards%data(j), 1, 'node', context%node_index, &
                   model%mesh%node_sets, report, request%item, request%set, valid)
                call need_field(cards%data(j), 2, 'temperature', report, request%value, valid)

@@ -13,7 +13,7 @@ module deck_builder_interactions
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: card_count
+   use deck_structure, only: card_count, report_twice
    use kinds, only: dp
    use model, only: model_type, physical_constants_type
    use temperature_laws, only: face_temperatures_type, largest_jump, law_at, &
@@ -48,8 +48,8 @@ contains
                call need_parameter(card, 'NAME', report, model%interactions(n)%name)
                if (find_interaction(model%interactions(:n - 1), &
                   model%interactions(n)%name) > 0) then
-                  call report%error(parameter_place(card, 'NAME'), &
-                     'surface interaction '//model%interactions(n)%name//' is defined twice')
+                  call report_twice(cards, k, 'surface interaction '// &
+                     model%interactions(n)%name, report)
                   call report%lose('surface interaction')
                end if
                law_place = card%place
@@ -110,8 +110,9 @@ contains
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
       type(conductance_law_type) :: table
-      integer :: k
+      integer :: friction, k
 
+      friction = 0
       do k = place + 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
@@ -122,6 +123,10 @@ contains
             end if
             select case (card%name)
             case ('FRICTION')
+               if (friction > 0) call report%error(card%place, 'a second *FRICTION in one '// &
+                  'surface interaction; the first is on '// &
+                  report%source%words_of(cards%keywords(friction)%place)//': leave one of them out')
+               friction = k
                call build_friction(cards, card, context, report, interaction%friction)
             case ('GAP LAW')
                call build_gap_law(cards, card, interaction%name, constants, context, report, &

@@ -1,12 +1,12 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY.
 module deck_builder_materials
-   use card_parameters, only: need_parameter, parameter_place
+   use card_parameters, only: need_parameter
    use cards, only: cards_type, keyword_card_type
    use decimal_commas, only: check_unneeded
    use deck_builder_elasticity, only: build_elasticity
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count
+   use deck_structure, only: card_count, report_twice
    use kinds, only: dp
    use materials, only: material_type, set_constants
    use model, only: model_type
@@ -36,9 +36,11 @@ contains
                context%material_place(n) = card%place
                call need_parameter(card, 'NAME', report, model%materials(n)%name)
                if (find_material(model%materials(:n - 1), model%materials(n)%name) > 0) then
-                  call report%error(parameter_place(card, 'NAME'), &
-                     'material '//model%materials(n)%name//' is defined twice')
+                  call report_twice(cards, k, 'material '//model%materials(n)%name, report)
                   call report%lose('material')   ! another name may have been meant
+                  call report%lose('*ELASTIC')   ! the other one may have these
+                  call report%lose('*CONDUCTIVITY')
+                  call report%lose('*DENSITY')
                end if
             case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY')
                if (n == 0) then

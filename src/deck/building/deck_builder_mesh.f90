@@ -179,13 +179,14 @@ contains
       integer, intent(in) :: card(:), numbers(:)
       type(deck_report_type), intent(inout) :: report
       integer, allocatable, intent(out) :: places(:)   ! indexes into numbers
-      integer :: i
+      integer :: i, first
 
       places = repeated(numbers)
       places = pack(places, numbers(places) > 0)
       do i = 1, size(places)
-         call report%error(field_place(cards%data(card(places(i))), 1), &
-            noun//' '//to_text(numbers(places(i)))//' is defined twice')
+         first = findloc(numbers, numbers(places(i)), dim=1)
+         call report%twice(field_place(cards%data(card(places(i))), 1), &
+            noun//' '//to_text(numbers(places(i))), field_place(cards%data(card(first)), 1))
       end do
       if (size(places) > 0) call report%lose(noun)
    end subroutine check_repeated

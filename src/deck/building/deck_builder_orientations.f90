@@ -1,10 +1,10 @@
 !> *ORIENTATION -> axes of materials.
 module deck_builder_orientations
-   use card_parameters, only: choose, need_parameter, parameter_place
+   use card_parameters, only: choose, need_parameter
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count
+   use deck_structure, only: card_count, report_twice
    use kinds, only: dp
    use model, only: model_type
    use orientations, only: orientation_type
@@ -31,8 +31,7 @@ contains
          associate (card => cards%keywords(k), mine => model%orientations(n))
             call need_parameter(card, 'NAME', report, mine%name)
             if (find_orientation(model%orientations(:n - 1), mine%name) > 0) then
-               call report%error(parameter_place(card, 'NAME'), &
-                  'orientation '//mine%name//' is defined twice')
+               call report_twice(cards, k, 'orientation '//mine%name, report)
             end if
             if (card%last_data >= card%first_data) call build_axes(cards, card, mine, report)
          end associate

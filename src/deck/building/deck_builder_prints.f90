@@ -9,7 +9,7 @@ module deck_builder_prints
    use mesh, only: mesh_type, set_type
    use print_requests, only: append_request, print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
-   use text, only: append, nearest_known, string_type, to_upper
+   use text, only: append, known_choices, string_type, to_upper
    implicit none
    private
    public :: build_print, read_frequency
@@ -165,7 +165,7 @@ contains
          return
       end do
       call report%error(field_place(data, position), 'unknown quantity '//key//' of *'// &
-         card%name//nearest_known(key, known))
+         card%name//known_choices(key, known))
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.

@@ -55,7 +55,7 @@ contains
       type(step_type) :: before
       integer :: k, n
 
-      context%analyses_sound = .not. report%has_lost()
+      context%analyses_sound = .not. report%has_lost('*STEP')
       context%boundaries_sound = context%analyses_sound
       n = card_count(cards, 'STEP')
       allocate(model%steps(n), context%step_place(n))

@@ -7,7 +7,7 @@ module deck_builder_surfaces
    use deck_context, only: deck_context_type, find_set, place_list_type, read_target
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: card_count
+   use deck_structure, only: card_count, report_twice
    use element_kinds, only: element_corner_count
    use line_faces, only: find_line_faces
    use mesh, only: mesh_type, surface_type
@@ -36,8 +36,7 @@ contains
          call build_surface(cards, cards%keywords(k), context, mesh, report, mesh%surfaces(n), &
             context%face_places(n))
          if (is_new(mesh%surfaces(:n))) cycle
-         call report%error(parameter_place(cards%keywords(k), 'NAME'), 'surface '// &
-            mesh%surfaces(n)%name//' is defined twice')
+         call report_twice(cards, k, 'surface '//mesh%surfaces(n)%name, report)
          call report%lose('surface')
       end do
    end subroutine build_surfaces

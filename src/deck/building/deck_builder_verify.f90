@@ -19,6 +19,9 @@ module deck_builder_verify
    private
    public :: build_verifications, check_heat_quantities
 
+   !> Group of warnings that explain why a deck has no quantities of heat.
+   character(*), parameter, public :: heatless = 'heatless'
+
 contains
 
    !> Takes all checks.
@@ -57,6 +60,7 @@ contains
       type(model_type), intent(in) :: model                !! steps and checks
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: i, quantity
+      logical :: convicted
 
       if (size(model%steps) == 0 .or. any(model%steps%analysis /= analysis_static)) return
       do i = 1, size(model%verifications)
@@ -64,8 +68,12 @@ contains
             quantity = find_quantity(verifiable, check%quantity)
             if (quantity == 0) cycle
             if (all(verifiable(quantity)%needs /= [needs_heat, needs_coupling])) cycle
-            call report%error(place_type(check%line, check%columns(1)), &
-               'no step of this deck solves heat: there is no '//check%quantity)
+            call report%convict(heatless, convicted)
+            if (convicted) return
+            call report%error(place_type(check%line, check%columns(1)), 'no step of this deck '// &
+               'solves heat: there is no '//check%quantity//'; take *COUPLED '// &
+               'TEMPERATURE-DISPLACEMENT or *HEAT TRANSFER', 'quantities of heat')
+            call report%lose('heat')
          end associate
       end do
    end subroutine check_heat_quantities
@@ -115,7 +123,7 @@ contains
       type(quantity_type), intent(in) :: verifiable(:)
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: quantity
-      character(:), allocatable :: name
+      character(:), allocatable :: name, hint
       type(string_type) :: names(size(verifiable))
       logical :: valid
       integer :: i
@@ -129,7 +137,9 @@ contains
       do i = 1, size(names)
          names(i)%value = trim(verifiable(i)%name)
       end do
-      call report%error(field_place(data, 1), 'unknown quantity '//name//nearest_known(name, names))
+      hint = nearest_known(name, names)
+      if (len(hint) == 0) hint = '; docs/deck.md lists those that are known'
+      call report%error(field_place(data, 1), 'unknown quantity '//name//hint)
    end subroutine read_quantity
 
    integer function field_column(data, position)

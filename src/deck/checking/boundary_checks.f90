@@ -8,7 +8,7 @@ module boundary_checks
    use model, only: model_type
    use order_reduction, only: side_corners
    use steps, only: dof_temperature, solves_heat, solves_mechanics
-   use text, only: others, to_text
+   use text, only: counted, others, to_text
    implicit none
    private
    public :: check_boundaries
@@ -46,8 +46,10 @@ contains
 
       associate (analyses => model%steps(max(1, request%step):)%analysis)
          if (request%component == dof_temperature) then
-            if (.not. any(solves_heat(analyses))) call report%warning(request%place, &
-               'a temperature without effect: no step from here on solves heat')
+            if (.not. (any(solves_heat(analyses)) .or. report%has_lost('heat'))) call &
+               report%warning(request%place, 'a temperature without effect: no step from here '// &
+               'on solves heat; take *COUPLED TEMPERATURE-DISPLACEMENT', &
+               'temperature without effect')
          else if (abs(request%value) > 0.0_dp) then
             if (.not. any(solves_mechanics(analyses))) call report%warning(request%place, &
                'a displacement without effect: no step from here on solves mechanics')
@@ -137,7 +139,7 @@ contains
             if (n > 0) call report%warning(request%place, 'node '// &
                to_text(model%mesh%node_number(node))//': another card of this step gives '// &
                'degree of freedom '//to_text(request%component)// &
-               ' another value; the last one takes precedence'//others(n, '; nodes with two: '))
+               ' another value; the last value is used ('//counted(n, 'node')//')')
          end associate
       end do
    end subroutine check_conflicts

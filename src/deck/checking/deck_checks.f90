@@ -111,8 +111,8 @@ contains
          if (.not. any(model%sections%material == m)) cycle
          associate (material => model%materials(m))
             if (mechanics .and. .not. material%has_elasticity) call report%missing( &
-               context%material_place(m), 'material '//material%name//' has no *ELASTIC', &
-               '*ELASTIC')
+               context%material_place(m), 'material '//material%name// &
+               ' has no *ELASTIC, which a step with displacements needs', '*ELASTIC')
             if (heat .and. .not. material%has_conductivity) call report%missing( &
                context%material_place(m), 'material '//material%name// &
                ' has no *CONDUCTIVITY, which a step with heat needs', '*CONDUCTIVITY')

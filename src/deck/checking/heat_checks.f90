@@ -3,15 +3,16 @@
 module heat_checks
    use cards, only: cards_type
    use conductance_laws, only: law_none
+   use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp
    use model, only: model_type
    use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat
-   use text, only: to_text
+   use text, only: counted, to_text
    implicit none
    private
-   public :: check_heat_paths
+   public :: check_heat_paths, check_starts
 
    real(dp), parameter :: small_strain = 0.1_dp   !! largest for which small strains hold
 
@@ -38,6 +39,38 @@ contains
          end associate
       end do
    end subroutine check_heat_paths
+
+   !> Warns of nodes of bodies without an initial temperature where others have one. The mesh is not
+   !> refined yet.
+   subroutine check_starts(context, model, report)
+      type(deck_context_type), intent(in) :: context      !! initial temperatures
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report     !! receives the warning
+      logical :: starts_at_0(0:size(model%mesh%node_number))
+      integer :: i
+
+      associate (given => context%temperatures, mesh => model%mesh)
+         if (given%count == 0) return
+         if (.not. (any(solves_heat(model%steps%analysis)) .or. &
+            any(model%materials%has_expansion))) return
+         starts_at_0 = .false.
+         starts_at_0([mesh%element_nodes]) = .true.
+         starts_at_0(0) = .false.
+         where (context%dropped) starts_at_0(1:) = .false.
+         do i = 1, given%count
+            if (given%items(i)%set > 0) then
+               starts_at_0(mesh%node_sets(given%items(i)%set)%members) = .false.
+            else
+               starts_at_0(given%items(i)%item) = .false.
+            end if
+         end do
+         if (.not. any(starts_at_0)) return
+         call report%warning(given%items(1)%place, 'these cards give no initial temperature to '// &
+            counted(count(starts_at_0), 'node')//' of the bodies, such as '// &
+            to_text(mesh%node_number(findloc(starts_at_0(1:), .true., dim=1)))// &
+            ': they start at 0')
+      end associate
+   end subroutine check_starts
 
    !> Warns of the first *EXPANSION that is too large for small strains.
    subroutine check_expansion(cards, model, report)

@@ -5,7 +5,7 @@ module card_parameters
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp
-   use text, only: append, integer_fault, nearest_known, read_integer, read_real, real_fault, &
+   use text, only: append, integer_fault, known_choices, read_integer, read_real, real_fault, &
       string_type, to_upper, without_blanks
    implicit none
    private
@@ -134,7 +134,7 @@ contains
          return
       end do
       call report%error(parameter_place(card, name), 'unknown '//name//'='//wanted//' of *'// &
-         card%name//nearest_known(wanted, words))
+         card%name//known_choices(wanted, words))
    end subroutine choose
 
    pure function split_words(choices) result(words)

@@ -102,17 +102,18 @@ contains
 
    !> Warns of a field that is read and means nothing where it may be the decimals of the field
    !> before it.
-   subroutine check_unneeded(data, i, what, report)
+   subroutine check_unneeded(data, i, what, report, group)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                            !! position of the field, from 2
       character(*), intent(in) :: what                    !! what the field is, with its article
       type(deck_report_type), intent(inout) :: report     !! receives the warning
+      character(*), intent(in), optional :: group         !! by which it is convicted
 
       if (.not. may_be_decimals(data, i)) return
       associate (whole => data%fields(i - 1)%text, decimals => data%fields(i)%text)
-         call report%warning(field_place(data, i - 1), 'decimal comma? '//whole//','//decimals// &
+         call report%suspect(field_place(data, i - 1), 'decimal comma? '//whole//','//decimals// &
             ' is two fields: '//whole//', and '//what//', which is ignored; write '//whole// &
-            '.'//decimals//', or '//whole//'. if that is meant')
+            '.'//decimals//', or '//whole//'. if that is meant', group)
       end associate
    end subroutine check_unneeded
 

@@ -40,6 +40,9 @@ module deck_report
    contains
       procedure :: error
       procedure :: explain
+      procedure :: suspect
+      procedure :: convict
+      procedure :: twice
       procedure :: missing
       procedure :: warning
       procedure :: lose
@@ -62,18 +65,23 @@ contains
       character(*), intent(in), optional :: group     !! the group, such as node 6
       integer :: i
 
-      if (is_explained(self, place)) return
-      if (present(group)) then
-         do i = 1, min(self%count, most_errors)
-            if (self%diagnostics(i)%group /= group) cycle
-            self%diagnostics(i)%places = self%diagnostics(i)%places + 1
-            return
-         end do
+      i = explanation_of(self, place)
+      if (i > 0) then
+         call make_error(self, i)
+         return
       end if
-      call add(self, severity_error, place, message)
-      if (present(group)) self%diagnostics(self%count)%group = group
-      self%errors = self%errors + 1
+      call add(self, severity_error, place, message, group)
    end subroutine error
+
+   !> Reports what is defined a second time, and says where first.
+   subroutine twice(self, place, what, first)
+      class(deck_report_type), intent(inout) :: self
+      type(place_type), intent(in) :: place           !! where the second time
+      character(*), intent(in) :: what                !! such as material STEEL
+      type(place_type), intent(in) :: first           !! where the first time
+
+      call self%error(place, what//' is defined twice, first on '//self%source%words_of(first))
+   end subroutine twice
 
    !> Reports an error from which all others of its card image follow: it takes the place of the
    !> first one that is reported already, and those to come are dropped.
@@ -83,12 +91,16 @@ contains
       character(*), intent(in) :: message             !! what, in plain words
       integer :: i
 
-      if (is_explained(self, place)) return
-      do i = 1, self%count
-         if (self%diagnostics(i)%place%image /= place%image) cycle
-         if (self%diagnostics(i)%severity == severity_error) exit
-      end do
-      if (i > self%count) call self%error(place, message)
+      i = explanation_of(self, place)
+      if (i > 0) then
+         call make_error(self, i)
+         return
+      end if
+      i = first_error_of(self, place)
+      if (i == 0) then
+         call add(self, severity_error, place, message)
+         i = self%count
+      end if
       self%diagnostics(i)%place = place
       self%diagnostics(i)%message = message
       self%diagnostics(i)%group = ''
@@ -96,18 +108,74 @@ contains
       self%diagnostics(i)%explains = .true.
    end subroutine explain
 
-   !> Whether a reported error explains what is wrong at a place.
-   pure logical function is_explained(self, place)
+   !> Warns of what is hardly meant. An error that follows from it is replaced by this message: that
+   !> of its card image or, where it has a group, the one for which `convict` is called.
+   subroutine suspect(self, place, message, group)
+      class(deck_report_type), intent(inout) :: self
+      type(place_type), intent(in) :: place           !! where
+      character(*), intent(in) :: message             !! what, in plain words
+      character(*), intent(in), optional :: group     !! by which it is convicted
+
+      if (explanation_of(self, place) > 0) return
+      if (first_error_of(self, place) > 0 .and. .not. present(group)) then
+         call self%explain(place, message)
+      else if (present(group)) then
+         call add(self, severity_warning, place, message, group)
+      else
+         call add(self, severity_warning, place, message)
+         self%diagnostics(self%count)%explains = .true.
+      end if
+   end subroutine suspect
+
+   !> Makes the suspects of a group errors, in place of the one that follows from them.
+   subroutine convict(self, group, found)
+      class(deck_report_type), intent(inout) :: self
+      character(*), intent(in) :: group               !! the group, such as friction
+      logical, intent(out) :: found                   !! whether there are any
+      integer :: i
+
+      found = .false.
+      do i = 1, self%count
+         if (self%diagnostics(i)%group /= group) cycle
+         found = .true.
+         call make_error(self, i)
+      end do
+   end subroutine convict
+
+   subroutine make_error(self, i)
+      class(deck_report_type), intent(inout) :: self
+      integer, intent(in) :: i
+
+      if (self%diagnostics(i)%severity == severity_error) return
+      self%diagnostics(i)%severity = severity_error
+      self%errors = self%errors + 1
+   end subroutine make_error
+
+   !> Index of the message that explains what is wrong at a place; 0 where there is none.
+   pure integer function explanation_of(self, place)
+      class(deck_report_type), intent(in) :: self
+      type(place_type), intent(in) :: place
+
+      do explanation_of = self%count, 1, -1
+         if (self%diagnostics(explanation_of)%explains .and. &
+            self%diagnostics(explanation_of)%place%image == place%image) return
+      end do
+   end function explanation_of
+
+   !> Index of the first error of a card image; 0 where there is none.
+   pure integer function first_error_of(self, place)
       class(deck_report_type), intent(in) :: self
       type(place_type), intent(in) :: place
       integer :: i
 
-      is_explained = .false.
+      first_error_of = 0
       do i = 1, self%count
-         is_explained = is_explained .or. (self%diagnostics(i)%explains .and. &
-            self%diagnostics(i)%place%image == place%image)
+         if (self%diagnostics(i)%place%image /= place%image) cycle
+         if (self%diagnostics(i)%severity /= severity_error) cycle
+         first_error_of = i
+         return
       end do
-   end function is_explained
+   end function first_error_of
 
    !> Reports that something is not there, unless an error that is reported already explains it;
    !> one name is told once.
@@ -157,13 +225,14 @@ contains
       end do
    end function has_lost
 
-   !> Reports a warning.
-   subroutine warning(self, place, message)
+   !> Reports a warning. Warnings of one group are told once, with their number.
+   subroutine warning(self, place, message, group)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
+      character(*), intent(in), optional :: group     !! the group
 
-      call add(self, severity_warning, place, message)
+      call add(self, severity_warning, place, message, group)
    end subroutine warning
 
    !> Whether the deck has an error.
@@ -327,14 +396,23 @@ contains
       order = order(sort_order(keys))
    end function order_of
 
-   subroutine add(self, severity, place, message)
+   !> Adds a message, or counts a place more where there is one of its group.
+   subroutine add(self, severity, place, message, group)
       class(deck_report_type), intent(inout) :: self
       integer, intent(in) :: severity
       type(place_type), intent(in) :: place
       character(*), intent(in) :: message
+      character(*), intent(in), optional :: group
       type(diagnostic_type), allocatable :: more(:)
       integer :: i
 
+      if (present(group)) then
+         do i = 1, min(self%count, most_errors)
+            if (self%diagnostics(i)%group /= group) cycle
+            self%diagnostics(i)%places = self%diagnostics(i)%places + 1
+            return
+         end do
+      end if
       if (.not. allocated(self%diagnostics)) allocate(self%diagnostics(most_errors))
       if (self%count == size(self%diagnostics)) then
          allocate(more(2*self%count))
@@ -353,6 +431,8 @@ contains
       self%diagnostics(self%count)%place = place
       self%diagnostics(self%count)%message = message
       self%diagnostics(self%count)%group = ''
+      if (present(group)) self%diagnostics(self%count)%group = group
+      if (severity == severity_error) self%errors = self%errors + 1
    end subroutine add
 
 end module deck_report

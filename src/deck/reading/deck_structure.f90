@@ -1,14 +1,14 @@
 !> Whether the cards of a deck are where they may be, and whether those that every deck needs
 !> are there.
 module deck_structure
-   use card_parameters, only: has_parameter, parameter_text
+   use card_parameters, only: has_parameter, parameter_place, parameter_text
    use cards, only: cards_type, field_place, keyword_card_type
    use deck_report, only: deck_report_type
    use keywords, only: built, in_model, in_step, known_keyword_type, known_keywords, not_needed
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: check_structure, card_count, has_stand_in
+   public :: check_structure, card_count, has_stand_in, report_twice
 
 contains
 
@@ -23,6 +23,24 @@ contains
          if (cards%keywords(k)%name == name) card_count = card_count + 1
       end do
    end function card_count
+
+   !> Reports a card whose name another card of its keyword has before it.
+   subroutine report_twice(cards, k, what, report)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: k                            !! index of the card
+      character(*), intent(in) :: what                    !! such as material STEEL
+      type(deck_report_type), intent(inout) :: report     !! receives the error
+      integer :: first
+
+      associate (card => cards%keywords(k))
+         do first = 1, k - 1
+            if (cards%keywords(first)%name == card%name .and. &
+               to_upper(parameter_text(cards%keywords(first), 'NAME')) == &
+               to_upper(parameter_text(card, 'NAME'))) exit
+         end do
+         call report%twice(parameter_place(card, 'NAME'), what, cards%keywords(first)%place)
+      end associate
+   end subroutine report_twice
 
    !> Whether a misspelt or refused keyword stands for another one.
    pure logical function has_stand_in(cards, name)
@@ -41,18 +59,20 @@ contains
       type(cards_type), intent(in) :: cards
       type(deck_report_type), intent(inout) :: report     !! receives errors
       logical :: step_open, after_step, told
-      integer :: k
+      integer :: k, step
 
       do k = 1, size(cards%keywords)
          call lose_definitions(cards%keywords(k), report)
       end do
       if (report%has_lost()) return
+      call need_step(cards, report)
       step_open = .false.
       after_step = .false.
       told = .false.
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             call check_step_card(card, report, step_open)
+            if (card%name == 'STEP') step = k
             after_step = after_step .or. step_open
             if (card%known == 0) cycle
             if (.not. any(known_keywords(card%known)%status == [built, not_needed])) cycle
@@ -66,11 +86,10 @@ contains
             call check_data_count(cards, card, report)
          end associate
       end do
-      if (step_open) call report%error(cards%last, 'the last step has no *END STEP')
+      if (step_open) call report%error(cards%keywords(step)%place, 'this step has no *END STEP')
       call need_card(cards, 'NODE', report)
       call need_card(cards, 'ELEMENT', report)
       call need_card(cards, 'SOLID SECTION', report)
-      call need_card(cards, 'STEP', report)
    end subroutine check_structure
 
    !> What a card with an error in it defines may be missing elsewhere.
@@ -115,7 +134,7 @@ contains
          if (step_open) call report%error(card%place, 'the step before has no *END STEP')
          step_open = .true.
       else if (card%name == 'END STEP') then
-         if (.not. step_open) call report%error(card%place, 'this *END STEP has no *STEP')
+         if (.not. step_open) call report%missing(card%place, 'this *END STEP has no *STEP', '*STEP')
          step_open = .false.
       end if
    end subroutine check_step_card
@@ -158,8 +177,8 @@ contains
       case (in_model)
          continue
       case (in_step)
-         if (.not. step_open .and. card%name /= 'END STEP') call report%error(card%place, &
-            '*'//card%name//' must be between *STEP and *END STEP')
+         if (.not. step_open .and. card%name /= 'END STEP') call report%missing(card%place, &
+            '*'//card%name//' must be between *STEP and *END STEP', '*STEP')
       case default
          if (card%name == 'BOUNDARY' .and. after_step .and. .not. step_open) then
             call report%error(card%place, '*BOUNDARY must be in a step or before the first')
@@ -202,6 +221,25 @@ contains
       words = 'none'
       if (most > 0) words = 'at most '//to_text(most)
    end function most_cards
+
+   !> Reports a deck without *STEP at the first card that belongs in one.
+   subroutine need_step(cards, report)
+      type(cards_type), intent(in) :: cards
+      type(deck_report_type), intent(inout) :: report
+      integer :: k
+
+      do k = 1, size(cards%keywords)
+         associate (card => cards%keywords(k))
+            if (card_count(cards, 'STEP') > 0 .or. has_stand_in(cards, 'STEP')) return
+            if (card%known == 0 .or. len(card%meant) > 0) cycle
+            if (known_keywords(card%known)%section /= in_step) cycle
+            call report%lose('*STEP')
+            call report%error(card%place, 'the deck has no *STEP before this card')
+            return
+         end associate
+      end do
+      call need_card(cards, 'STEP', report)
+   end subroutine need_step
 
    !> Reports a card that no deck can do without, unless a refused one is in its place.
    subroutine need_card(cards, name, report)
