@@ -1,52 +1,68 @@
-"""The estimated errors against true ones: five decks on four meshes with three sizes of increments."""
+"""Bounds of errors against true ones: decks that are known and decks drawn at random, on three meshes
+with two sizes of increments; and the converged values of five decks, which other themes use."""
 
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import h5py
+import held_bounds
 import numpy as np
+from bound_decks import all_decks
 from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT, solve
+from instructions import profile
+from program_parts import PARTS
 from report import Table, check_parts, rows
 
-TITLE = "Estimated errors"
+TITLE = "Bounds of errors"
 TEXT = """
-Every run with contact estimates its errors and prints them at the end of each step: those of the
-mesh, of the increments and of the fixed point. `/errors/<pair>/<quantity>` of the result file holds
-one row for each step: value, error of the mesh, of the increments, of the iteration. The errors
-would have to be added to the value; for edges of zones they are bounds to either side.
+Every run with contact bounds its errors at the end of each step: how far normal and shear force, heat
+rate, peak pressure and the edges of contact and of stick may be from their exact values, to either
+side. There is one bound for each quantity, made in `src/accuracy`; listing, summary, report page and
+requests for an accuracy all use it. `/errors/<pair>/<quantity>` of the result file holds one row for
+each step: value, bound, and the parts of the bound by mesh, increments and iteration.
 
 - **Mesh.** The last increment of the step is corrected to what it would be if every element were
-  divided into four (`src/accuracy`), and the error is 1.25 of the change: errors that fall with h^4
-  are 1.07 of it, those that fall with h are twice the change. The finer mesh is never factored.
+  divided into four; the finer mesh is never factored. The bound takes twice that change, as for errors
+  that fall with h. The error at a single load is partly chance, because it changes its sign as the edge
+  of contact passes a node. So how much the quantity scatters about a smooth course over the last nine
+  increments is added, or over nine of every second one if that is more. In steps with fewer increments
+  it is three times the change alone.
+- **Friction.** The slip at which a node sticks as the contact grows over it is that of the present
+  mesh. To the shear force 0.6 of the largest sum of stuck shear forces so far is added, times the
+  spacing at the edge of contact over the length that is closed; to the peak pressure 0.15 of that, in
+  proportion.
+- **Edges.** 0.08 of the spacing of the contact points for the edge of contact and 0.9 for that of
+  stick, with its scatter; 0.15 where both are one, and 0.25 for an edge that lies at a node itself;
+  twice what halved elements move it by beyond that; and as large a part of the length that is closed as
+  the mesh's part of the bound is of the force.
 - **Increments.** Where friction or the scheme of (3.4) make the path matter, a companion run with
-  increments of twice the size is solved in parallel on the contact points alone. The error is 0.6
-  of the difference: errors of the second and the first order would be 1/3 and 1 of it.
-- **What they miss.** Just after a contact point has closed, an error or the change to the next mesh
-  can be small by chance: then the ratio is arbitrary, as on the cylinder and its twin once the mesh
-  is refined. On these two the slip left by friction is that of the present mesh, which shifts the
-  peak pressure by some 0.1 MPa; for the same reason no error of the mesh is given for the shear
-  force. Where several interfaces meet in a corner the estimate of forces can be far too large. A
-  minus, `-`, means that no estimate is possible, as for a single increment.
-- **Iteration.** Residual of the fixed point over the distance of the coupling gain from 1: a bound.
-- **Edges of zones.** The band is 2.5 of the change plus a part of the nodal spacing: 0.1 for the
-  edge of contact and 0.6 for that of stick.
+  increments of twice the size is solved in parallel on the contact points alone. The bound is the
+  difference.
+- **Iteration.** Residual of the fixed point over the distance of the coupling gain from 1.
+- **Uncertain.** No bound is given with ties, equations and faces whose nodes do not match, because the
+  finer mesh cannot be relaxed there, and for a single increment with friction. Listing and summary say
+  *uncertain*, the result file NaN. Where a pressure grows without limit as the mesh is refined, at the
+  corner of a punch, no error of it is finite; the bound is only large.
 
-Below, true errors are differences to a mesh one level finer than the finest in the table, with what
-is left there extrapolated, and to increments an eighth as long. A ratio is true error over
-estimate; 0.5 to 2 in magnitude is the goal. Errors of less than 1e-8 of the value are not judged:
-forces that the deck prescribes. Where a pressure grows without limit as the mesh is refined, at the
-corner of a punch, no error of it is finite, and the estimate only says that it is large; such decks
-are not among the five.
+The constants were chosen on one part of the decks below; the others are kept aside and judge them.
+Decks with a number have materials, friction, geometry and loads drawn at random
+(`tests/accuracy/bound_decks.py`); those from 16 on were run only after all constants were chosen. Each is solved on the mesh as it is and refined once and twice, with
+the increments as written and half as long. A true error is that to the converged value: on a mesh
+refined four times at the faces and twice elsewhere, with increments a quarter as long, and with what
+increments a sixteenth as long change on the mesh refined once. Errors below 1e-7 of the value (forces
+that the deck prescribes) and edges that are the ends of a face are not judged. The goals are 95 % that
+hold, a median of bound over error of at most 4, and at most 10 % uncertain.
+
+The recovered energy norm (`stress_error`, `heat_flux_error`) is no second estimate of these quantities:
+it only tells where a requested accuracy divides elements. `thercon trade` keeps the extrapolation of
+its rows, because its reference is uncertain in temperatures of all nodes and at times inside the steps,
+for which there is no bound.
 """
-LEVELS = (0, 1, 2, 3)
-PARTS = (1, 2, 4)
 QUANTITIES = {"normal_force": "normal force", "heat_rate": "heat rate",
               "peak_pressure": "peak pressure"}
 EDGES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
-LEAST = 1e-8
 MOST = 0.7  # ratio of changes from mesh to mesh above which nothing is extrapolated
-GOAL = 0.9
 FINEST_PARTS = 8
 ANALYSIS = re.compile(r"^(\*(?:STATIC|COUPLED|HEAT).*\n)\s*([0-9.eE+-]+)", re.M | re.I)
 
@@ -92,12 +108,6 @@ def solve_case(case, level, parts, folder, estimates):
     return solve(case_deck(case, level, parts, folder, estimates), seconds=900)
 
 
-def run_case(case, level, parts, folder):
-    """Return the rows of /errors at the end of a run, by quantity."""
-    with h5py.File(solve_case(case, level, parts, folder, True)) as file:
-        return {name: data[-1] for name, data in file[f"errors/{case.face}"].items()}
-
-
 def values_of(case, level, parts, folder):
     """Return the quantities at the end of a run that estimates nothing."""
     with h5py.File(solve_case(case, level, parts, folder, False)) as file:
@@ -124,73 +134,85 @@ def limits(case, folder):
     return found
 
 
-def judged(case, folder, levels=LEVELS, parts=PARTS, exact=None):
-    """Return, for each run, the ratios of true to estimated errors, or for edges whether the band
-    holds; NaN where there is nothing to judge."""
-    exact = exact or limits(case, folder)
-    found = []
-    for level in levels:
-        for part in parts:
-            run = run_case(case, level, part, folder)
-            figures = {}
-            for name in QUANTITIES:
-                value, mesh, increment, _ = run[name]
-                true = exact[name] - value
-                too_small = not abs(true) > LEAST * abs(exact[name])
-                figures[name] = np.nan if too_small else true / (mesh + increment)
-            for name in EDGES:
-                value, mesh, increment, _ = run[name]
-                figures[name] = np.nan if np.isnan(exact[name]) else float(
-                    abs(exact[name] - value) <= mesh + abs(increment))
-            found.append((level, part, figures))
-    return found
-
-
-def share(figures, good):
-    """Return how many of some figures are good, and how many there are."""
-    known = [figure for figure in figures if not np.isnan(figure)]
-    return sum(map(good, known)), len(known)
-
-
-def within(ratio):
-    """Return whether an estimate is within a factor of two of the error, whatever its sign."""
-    return 0.5 <= abs(ratio) <= 2.0
-
-
-def shares(everything):
-    """Return the table of how many estimates hold, from the figures of all runs."""
-    table = Table("How many hold", ["quantity", "runs", "hold", "%", "goal of 90 %"])
-    for names, good in ((QUANTITIES, within), (EDGES, bool)):
-        for name, title in names.items():
-            hold, of = share([run[name] for run in everything], good)
-            table.rows.append([title, of, hold, f"{100 * hold / of:.0f}",
-                               "met" if hold >= GOAL * of else "missed"])
+def five_decks(folder):
+    """Return the table of converged values of the five decks."""
+    table = Table("Converged values of the five decks", ["deck", *QUANTITIES.values(), *EDGES.values()])
+    for case in CASES:
+        exact = limits(case, folder)
+        table.rows.append([case.name, *map(told_value, (exact[name] for name in (*QUANTITIES, *EDGES)))])
     return table
 
 
-def cells_of(figures):
-    """Return the cells of a run's figures."""
-    ratios = ("-" if np.isnan(figures[name]) else f"{figures[name]:.2f}" for name in QUANTITIES)
-    bands = ("-" if np.isnan(figures[name]) else "yes" if figures[name] else "no" for name in EDGES)
-    return [*ratios, *bands]
+def told_value(value):
+    """Return a value as the document tells it."""
+    return "-" if np.isnan(value) else f"{value:.10g}"
 
 
-HEAD = ["deck", "refinements", "increments", *QUANTITIES.values(), *EDGES.values()]
+def shares(cases):
+    """Return the table of how many bounds hold."""
+    table = Table("Bounds that hold", ["quantity", "decks", "cases", "uncertain", "hold", "% hold",
+                                       "median of bound/error"])
+    for name, title in held_bounds.QUANTITIES.items():
+        for decks, chosen in (("chosen on", (True,)), ("kept aside", (False,)), ("all", (True, False))):
+            some = [case for case in cases if case.quantity == name and case.is_fitted in chosen]
+            known = [case for case in some if not case.is_uncertain]
+            held = sum(case.is_held for case in known)
+            median = np.median([case.bound / abs(case.error) for case in known])
+            table.rows.append([title, decks, len(some), len(some) - len(known), held,
+                               f"{100 * held / len(known):.0f}", f"{median:.1f}"])
+    return table
+
+
+def misses(cases):
+    """Return the table of the bounds that do not hold."""
+    table = Table("Bounds that do not hold", ["deck", "refinements", "increments", "step", "quantity",
+                                              "true error, %", "bound, %"])
+    for case in cases:
+        if case.is_held or case.is_uncertain:
+            continue
+        scale = 100 / abs(case.converged)
+        table.rows.append([case.deck, case.level, increments_of(case.part), case.step,
+                           held_bounds.QUANTITIES[case.quantity], f"{scale * abs(case.error):.3g}",
+                           f"{scale * case.bound:.3g}"])
+    return table
+
+
+def converged_table(decks, folder):
+    """Return the converged values at the ends of the steps of decks."""
+    table = Table("Converged values of all decks",
+                  ["deck", "decks", "step", *held_bounds.QUANTITIES.values()])
+    for deck in decks:
+        with h5py.File(held_bounds.run(deck, 0, 1, folder)) as file:
+            times = file["errors/time"][:]
+        exact = held_bounds.converged_values(deck, times, folder)
+        for step in range(len(times)):
+            values = [exact[q][step] if q in exact else np.nan for q in held_bounds.QUANTITIES]
+            table.rows.append([deck.name, "chosen on" if deck.is_fitted else "kept aside", step + 1,
+                               *map(told_value, values)])
+    return table
+
+
+def costs(folder):
+    """Return the table of what the bounds cost."""
+    table = Table("Cost of the bounds", ["deck", "million instructions of the run", "of the bounds",
+                                         "% of the rest"], text="""The meshes as they are, with fields of
+the last increment only. The aim of a third is missed by a little with 45 increments; Hertz has four
+and no heat, so that assembling the finer mesh counts for more.""")
+    for case in CASES[:3]:
+        deck = case_deck(case, 0, 1, folder, True)
+        spent = profile("run", "--quiet", deck, "--out", folder, path=folder / "profile.out")
+        share = spent.share(PARTS["estimated errors"])
+        table.rows.append([case.name, f"{spent.total / 1e6:.0f}", f"{share * spent.total / 1e6:.0f}",
+                           f"{100 * share / (1 - share):.0f}"])
+    return table
 
 
 def tables(folder):
-    """Run all cases; return the shares, the ratios and the converged values."""
-    runs = Table("True error over estimate", HEAD, text="For edges, whether the band holds the converged value.")
-    values = Table("Converged values of the five decks", ["deck", *QUANTITIES.values(), *EDGES.values()])
-    everything = []
-    for case in CASES:
-        exact = limits(case, folder)
-        values.rows.append([case.name, *("-" if np.isnan(exact[name]) else f"{exact[name]:.10g}"
-                                         for name in (*QUANTITIES, *EDGES))])
-        for level, part, figures in judged(case, folder, exact=exact):
-            everything.append(figures)
-            runs.rows.append([case.name, level, increments_of(part), *cells_of(figures)])
-    return [shares(everything), runs, values]
+    """Run all decks; return shares, misses, costs and converged values."""
+    decks = all_decks()
+    cases = [case for deck in decks for case in held_bounds.judged(deck, folder)]
+    return [shares(cases), misses(cases), costs(folder), converged_table(decks, folder),
+            five_decks(folder)]
 
 
 def increments_of(part):
@@ -198,32 +220,31 @@ def increments_of(part):
     return "as written" if part == 1 else f"1/{part}"
 
 
-def figure(cell):
-    """Return the figure that a cell of the table tells."""
-    return {"-": np.nan, "yes": 1.0, "no": 0.0}.get(cell) if cell in ("-", "yes", "no") else float(cell)
-
-
-def test_cheap_runs_have_the_errors_that_the_document_tells(tmp_path):
-    """The meshes as written and refined once, against the converged values that are told."""
+def test_bounds_of_decks_kept_aside_hold_as_the_document_tells(tmp_path):
+    """Three decks on their two coarser meshes, against the converged values that are told."""
     check_parts([TEXT])
-    told = {(row["deck"], row["refinements"], row["increments"]): row
-            for row in rows("True error over estimate")}
-    values = {row["deck"]: row for row in rows("Converged values of the five decks")}
-    titles = QUANTITIES | EDGES
-    for case in CASES:
-        exact = {name: figure(values[case.name][title]) for name, title in titles.items()}
-        for level, part, figures in judged(case, tmp_path, (0, 1), (1,), exact):
-            row = told[case.name, str(level), increments_of(part)]
-            for name, title in titles.items():
-                np.testing.assert_allclose(figures[name], figure(row[title]), rtol=0.1, atol=0.02,
-                                           err_msg=f"{case.name} {level} {name}")
+    told, missed = rows("Converged values of all decks"), rows("Bounds that do not hold")
+    chosen = {"cylinder, mu = 0.3, aluminium", "Hertz", "plane 4"}
+    for deck in all_decks():
+        if deck.name not in chosen:
+            continue
+        steps = [row for row in told if row["deck"] == deck.name]
+        assert steps[0]["decks"] == "kept aside"
+        exact = {q: [np.nan if row[title] == "-" else float(row[title]) for row in steps]
+                 for q, title in held_bounds.QUANTITIES.items()}
+        cases = held_bounds.judged(deck, tmp_path, (0, 1), told=exact)
+        assert len(cases) > 7 and not any(case.is_uncertain for case in cases)
+        known = [row for row in missed if row["deck"] == deck.name and row["refinements"] != "2"]
+        found = [[str(cell) for cell in row[:5]] for row in misses(cases).rows]
+        assert found == [list(row.values())[:5] for row in known]
 
 
 def test_the_document_counts_right():
-    """The shares are those of the rows."""
-    everything = [{name: figure(row[title]) for name, title in (QUANTITIES | EDGES).items()}
-                  for row in rows("True error over estimate")]
-    assert len(everything) == len(CASES) * len(LEVELS) * len(PARTS)
-    told = [[row[head] for head in ("quantity", "runs", "hold", "%", "goal of 90 %")]
-            for row in rows("How many hold")]
-    assert told == [[str(cell) for cell in row] for row in shares(everything).rows]
+    """Of each quantity as many are missed as are listed."""
+    missed = [row["quantity"] for row in rows("Bounds that do not hold")]
+    table = rows("Bounds that hold")
+    assert len(table) == 3 * len(held_bounds.QUANTITIES)
+    for row in table:
+        if row["decks"] == "all":
+            judged = int(row["cases"]) - int(row["uncertain"])
+            assert judged - int(row["hold"]) == missed.count(row["quantity"])

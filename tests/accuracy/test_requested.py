@@ -14,9 +14,8 @@ bound over its target. True errors are those to the converged values above; of t
 faces do not match, no converged value is told. CPU seconds are those of all rounds together, with
 estimates and results.
 
-- **Bounds.** The estimate at one load is partly chance, so that the bound takes the error of the
-  mesh as one that falls with h (1.6 of the estimate), adds how much the quantity scatters over the
-  last nine increments, and from the second round on is at least half of what the round changed.
+- **Bounds** are those above; from the second round on that of the mesh is at least half of what the
+  round changed.
 - **Where elements are divided.** At the edges of zones, as often as an edge must be resolved, and
   by the recovered energy norm, weighted for the peak pressure with the distance from the peak.
 - **What it costs.** Every round is solved from the start, with all of its increments. At 0.3 % the

@@ -60,9 +60,9 @@ def test_error_of_hertz_peak_pressure(tmp_path):
 
 @pytest.mark.parametrize("friction", ["*FRICTION\n0.155, 1.E5\n", ""])
 def test_mesh_of_a_coupled_run(tmp_path, friction):
-    """The bound of the mesh is three times what the next one changes, without factoring it: to
-    the tenth that three corrections leave, for which the bound has room. In one increment, before which nothing has
-    slipped: what friction left on the finer mesh is not known."""
+    """The bound of the mesh is three times what the next one changes, without factoring it: to the
+    tenth that three corrections leave, for which the bound has room. In one increment, before which
+    nothing has slipped: what friction left on the finer mesh is not known."""
     changes = {"20., 900.": "900., 900.", "*FRICTION\n0.155, 1.E5\n": friction}
     coarse = errors(solve(bare(CYLINDER, tmp_path, "coarse.inp", changes=changes)), "FACE")
     fine = errors(solve(bare(CYLINDER, tmp_path, "fine.inp", ["*REFINE, LEVELS=1"], changes)),
