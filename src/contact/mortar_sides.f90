@@ -95,16 +95,35 @@ contains
       end associate
    end function hats
 
-   !> Outward unit normals at the nodes of a line; at a corner midway between those of its sides.
+   !> Outward unit normals at the nodes of a line; at a corner midway between those of its sides. A
+   !> line of sides without midside nodes goes on beyond its ends as it comes: the normal there
+   !> leans from that of the last side as the one before does, to the other way. With the normal of
+   !> the side pressures at the ends of arcs would err by h, not h^2.
    pure function outward_normals(line) result(normal)
       type(face_line_type), intent(in) :: line
       real(dp) :: normal(2, size(line%x, 2))  !! (2, nodes)
       real(dp) :: tangent(2, size(line%x, 2))
+      integer :: n
 
       tangent = chain_tangents(line%x, line%side_nodes, line%closed)
+      n = size(tangent, 2)
+      if (line%side_nodes == 2 .and. .not. line%closed .and. n > 2) then
+         tangent(:, [1, n]) = mirrored(tangent(:, [2, n - 1]), tangent(:, [1, n]))
+      end if
       normal(1, :) = line%outward*tangent(2, :)
       normal(2, :) = -line%outward*tangent(1, :)
    end function outward_normals
+
+   !> Vectors mirrored in axes.
+   pure function mirrored(vectors, axes)
+      real(dp), intent(in) :: vectors(:, :), axes(:, :)   ! (2, n); axes are unit vectors
+      real(dp) :: mirrored(2, size(vectors, 2))
+      integer :: k
+
+      do k = 1, size(vectors, 2)
+         mirrored(:, k) = 2*dot_product(vectors(:, k), axes(:, k))*axes(:, k) - vectors(:, k)
+      end do
+   end function mirrored
 
    !> Finds where the segments of a slave's side end, its own ends and where corners of the master
    !> lie opposite, and what lies opposite them.
