@@ -7,6 +7,7 @@ from physics import judge, material, mesh, verify
 
 CARDS = mesh("UP", [0.0, 1.0], [0.0, 0.5]) + mesh("LOW", [0.0, 1.0], [-1.0, 0.0], first=101)
 PAIR = "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE"
+SECTION = next(card for card in material("UP", (1000.0, 0.0)) if card.startswith("*SOLID"))
 
 
 def deck():
@@ -37,6 +38,9 @@ CHANGES = {
     "SOLVER": ("*STATIC", "*STATIC, SOLVER=SPOOLES", "SOLVER"),
     "stick slope": ("0.3", "0.3, 1.E5", "stick slope"),
     "thickness": ("*FRICTION", "1.,\n*FRICTION", "*SURFACE INTERACTION"),
+    "section controls": (SECTION, "*SECTION CONTROLS, NAME=EC, HOURGLASS=ENHANCED\n1., 1., 1.\n"
+                         + SECTION + ", CONTROLS=EC", "SECTION CONTROLS"),
+    "controls of a section": (SECTION, SECTION + ", CONTROLS=EC", "CONTROLS is ignored"),
     "slip tolerance": ("*FRICTION", "*FRICTION, SLIP TOLERANCE=0.005", "SLIP TOLERANCE"),
     "name of a step": ("*STEP", "*STEP, NAME=PRESS, UNSYMM=YES, EXTRAPOLATION=NO",
                        "EXTRAPOLATION"),

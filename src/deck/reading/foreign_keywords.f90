@@ -35,13 +35,15 @@ module foreign_keywords
    character(*), parameter :: general = 'it belongs to *CONTACT'
    character(*), parameter :: fluid = 'there are no fluids'
 
-   type(foreign_keyword_type), parameter :: ignored(17) = [ &
+   type(foreign_keyword_type), parameter :: ignored(18) = [ &
       foreign_keyword_type('CONTACT INCLUSIONS', passed_over, '', general), &
       foreign_keyword_type('CONTACT EXCLUSIONS', passed_over, '', general), &
       foreign_keyword_type('CONTACT PROPERTY ASSIGNMENT', passed_over, '', general), &
       foreign_keyword_type('CONTACT INITIALIZATION ASSIGNMENT', passed_over, '', general), &
       foreign_keyword_type('CONTACT FORMULATION', passed_over, '', general), &
       foreign_keyword_type('CONTACT CONTROLS', passed_over, '', 'contact is exact'), &
+      foreign_keyword_type('SECTION CONTROLS', passed_over, '', &
+      'elements have no hourglass modes'), &
       foreign_keyword_type('OUTPUT', passed_over, '', 'fields are written at every increment'), &
       foreign_keyword_type('DAMPING', passed_over, '', 'loads are slow'), &
       foreign_keyword_type('CONTACT DAMPING', passed_over, '', 'loads are slow'), &
@@ -114,7 +116,7 @@ module foreign_keywords
       foreign_keyword_type('TIME POINTS', refused_always, '', &
       'FREQUENCY= selects the increments that are printed; increments end at the times of *VERIFY')]
 
-   type(foreign_keyword_type), parameter :: all_foreign(64) = &
+   type(foreign_keyword_type), parameter :: all_foreign(65) = &
       [ignored, properties, connections, procedures]
 
 contains

@@ -69,7 +69,7 @@ module keywords
       known_keyword_type('SPECIFIC HEAT', not_needed, in_model, 0, many, ''), &
       known_keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
       known_keyword_type('SOLID SECTION', built, in_model, 0, 1, &
-      'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET='), &
+      'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
       known_keyword_type('AMPLITUDE', built, in_model, 1, many, &
       'NAME=/TIME=/DEFINITION=/FIXED INTERVAL=/BEGIN=/VALUE=/~SMOOTH=/!USER/!SHIFTX=/!SHIFTY='), &
       known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
