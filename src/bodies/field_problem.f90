@@ -57,7 +57,6 @@ contains
       !> (nodes) ranks in nested dissection, where they are known
       integer, allocatable, intent(in) :: node_rank(:)
       type(error_type), allocatable, intent(out) :: error
-      integer, allocatable :: rank(:)
 
       call self%release()
       self%reduction = self%reduction + 1
@@ -70,8 +69,8 @@ contains
       if (allocated(error)) return
       self%largest_entry = maxval(abs(self%matrix%value))
       call self%map%stiffen_links(self%matrix)
-      if (allocated(node_rank)) rank = node_rank(self%leading_nodes())
-      call self%solver%factor(self%matrix_of_unknowns(), self%map%tail, error, rank)
+      if (allocated(node_rank)) self%solver%rank = node_rank(self%leading_nodes())
+      call self%solver%factor(self%matrix_of_unknowns(), self%map%tail, error)
       if (allocated(error)) return
       call check_finite([self%solver%schur], 'factors of the bodies', status_deck, error)
    end subroutine reduce

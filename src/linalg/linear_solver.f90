@@ -13,6 +13,8 @@ module linear_solver
    type, abstract :: linear_solver_type
       integer :: order = 0               !! unknowns
       integer :: tail = 0                !! tail unknowns, the last ones
+      !> (leading) ranks in nested dissection, those of a node alike, if they are known before.
+      integer, allocatable :: rank(:)
       integer(long) :: full_flops = 0    !! operations of a factorisation of the leading block
       integer(long) :: factor_bytes = 0  !! memory of the factors [byte]
       !> Smallest pivot of the leading block over its diagonal entry, at most 1; MUMPS: over the
@@ -32,14 +34,12 @@ module linear_solver
       !> tail.
       !> Error: the matrix is not positive definite (the message begins with "singular"), or the
       !> solver failed.
-      subroutine factor_interface(self, lower, tail, error, rank)
+      subroutine factor_interface(self, lower, tail, error)
          import :: linear_solver_type, sparse_matrix_type, error_type
          class(linear_solver_type), intent(inout) :: self
          type(sparse_matrix_type), intent(in) :: lower      !! lower triangle by rows
          integer, intent(in) :: tail                        !! number of tail unknowns
          type(error_type), allocatable, intent(out) :: error !! failure
-         !> (leading) ranks in nested dissection, those of a node alike, where they are known.
-         integer, intent(in), optional :: rank(:)
       end subroutine factor_interface
 
       !> Right-hand sides condensed on the tail: f_tail - K_tail,lead K_lead^-1 f_lead. The

@@ -50,18 +50,17 @@ module mumps_solver
 contains
 
    !> As factor_interface of linear_solver says.
-   subroutine factor(self, lower, tail, error, rank)
+   subroutine factor(self, lower, tail, error)
       class(mumps_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       integer, intent(in) :: tail
       type(error_type), allocatable, intent(out) :: error
-      integer, intent(in), optional :: rank(:)
       integer, allocatable :: group(:), position(:)
       integer :: i
 
       call start(self, lower%row_count, tail)
-      if (present(rank)) then
-         call hand_over_order(self, rank)
+      if (allocated(self%rank)) then
+         call hand_over_order(self, self%rank)
       else
          group = alike_unknowns(lower, self%order - tail)
          call nested_dissection(adjacency(lower, group), position, error)

@@ -26,9 +26,8 @@ contains
             below(lower%column(k)) = below(lower%column(k)) + 1
          end do
       end do
-      do i = 1, leading
-         group(i) = i
-         if (i == 1) cycle
+      group(:min(leading, 1)) = 1
+      do i = 2, leading
          group(i) = group(i - 1) + 1
          if (below(i) /= below(i - 1) - 1) cycle
          associate (before => lower%row_start(i - 1), first => lower%row_start(i))
@@ -47,13 +46,13 @@ contains
       integer, intent(in) :: group(:)               !! (leading) as from alike_unknowns
       type(sparse_matrix_type) :: graph             !! pattern; the values mean nothing
       type(triplet_list_type) :: list
-      integer :: i, k, last
+      integer :: before, i, k, last
 
       call list%reserve(2*(lower%row_start(size(group) + 1) - 1))
+      before = 0
       do i = 1, size(group)
-         if (i > 1) then
-            if (group(i) == group(i - 1)) cycle
-         end if
+         if (group(i) == before) cycle
+         before = group(i)
          last = group(i)
          do k = lower%row_start(i), lower%row_start(i + 1) - 1
             associate (other => group(lower%column(k)))

@@ -26,12 +26,11 @@ module skyline_solver
 contains
 
    !> As factor_interface of linear_solver says; nested dissection would ruin the profile.
-   subroutine factor(self, lower, tail, error, rank)
+   subroutine factor(self, lower, tail, error)
       class(skyline_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       integer, intent(in) :: tail
       type(error_type), allocatable, intent(out) :: error
-      integer, intent(in), optional :: rank(:)
       integer :: bad_column, i, leading
       integer, allocatable :: group(:)
 
