@@ -58,7 +58,7 @@ contains
    end subroutine unconstrained_in_step
 
    !> Bodies that the supports and the contact points in these states leave free, to be added to a
-   !> message, such as '; body 2 (...) slides along x'; empty where all are constrained.
+   !> message, such as '; body 2 (...) is free to slide along x'; empty where all are constrained.
    function unconstrained_now(model, points, held, contact_state) result(words)
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points !! all contact points
@@ -79,13 +79,13 @@ contains
          if (motions(i)%body == last .and. last > 0) then
             words = words//', '
          else
-            words = words//'; '//mover(model, motions(i))//' '
+            words = words//'; '//mover(model, motions(i))//' is free to '
          end if
          last = motions(i)%body
          if (motions(i)%turns) then
-            words = words//'turns'
+            words = words//'turn'
          else
-            words = words//trim(merge('moves ', 'slides', size(welded) > 0))
+            words = words//trim(merge('move ', 'slide', size(welded) > 0))
          end if
          words = words//' '//motions(i)%way//motions(i)%company
       end do

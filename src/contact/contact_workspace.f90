@@ -257,7 +257,7 @@ contains
       self%driven = is_driven(self%unconstrained, self%drive, terms(self%rows%free), &
          least(self%rows%free))
       if (self%driven) call set_error(error, status_no_convergence, &
-         'the bodies are not held by their supports and the points that are in contact')
+         'the supports and the closed contact points do not hold what the loads drive')
    end subroutine check_balance
 
    !> Moves unconstrained bodies so that contact points slip least, and open ones stay at the

@@ -17,6 +17,9 @@ module interface_checks
    !> far from the contact may be at right angles there.
    real(dp), parameter :: same_way = 0.1_dp
 
+   !> Rounding of a mean cosine.
+   real(dp), parameter :: no_cosine = 1.0e-9_dp
+
    !> Part of the model's extent within which two nodes coincide.
    real(dp), parameter :: same_position = 1.0e-9_dp
 
@@ -137,7 +140,8 @@ contains
       if (inner == 0) message = 'both surfaces consist of the same nodes'
    end function shared_node
 
-   !> Refuses faces that look the same way.
+   !> Refuses faces that look the same way somewhere, and those that do not face each other on the
+   !> average: their normals are at 90 degrees or less.
    subroutine check_sides(mesh, definition, slave, master, compared, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition   !! the *CONTACT PAIR
@@ -145,16 +149,18 @@ contains
       type(surface_chain_type), intent(in) :: master      !! line of the master
       integer, intent(in) :: compared(2)                  !! first and last contact point looked at
       type(error_type), allocatable, intent(out) :: error !! the first such contact point
-      real(dp) :: cosine, outward(2)
+      real(dp) :: cosine, total, outward(2)
       integer :: k
 
       associate (slave_tangent => chain_tangents(mesh%coordinates(:, slave%nodes), &
          slave%side_nodes, slave%closed), &
          master_tangent => chain_tangents(mesh%coordinates(:, master%nodes), &
          master%side_nodes, master%closed))
+         total = 0.0_dp
          do k = compared(1), compared(2)
             cosine = dot_product(slave_tangent(:, k), master_tangent(:, k))
             if (slave%turned .neqv. master%turned) cosine = -cosine
+            total = total + cosine
             if (cosine <= same_way) cycle
             call set_error(error, status_deck, definition%title()// &
                ': at slave node '//to_text(mesh%node_number(slave%nodes(k)))// &
@@ -167,6 +173,11 @@ contains
             return
          end do
       end associate
+      if (total < -no_cosine*(compared(2) - compared(1) + 1)) return
+      call set_error(error, status_deck, definition%title()//': surfaces '// &
+         mesh%surfaces(definition%slave)%name//' and '//mesh%surfaces(definition%master)%name// &
+         ' do not face each other: their outward normals are at 90 degrees or less on the '// &
+         'average; name the faces opposite each other')
    end subroutine check_sides
 
    !> Puts the blame on the surface that looks away from the other one, if one does.

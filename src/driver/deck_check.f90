@@ -13,7 +13,7 @@ module deck_check
       open_words, pairing_words, points_words, section_words
    use run_description, only: describe_run
    use run_summaries, only: run_summary_type
-   use text, only: string_type, to_text
+   use text, only: counted, string_type, to_text
    use utf8, only: character_count
    implicit none
    private
@@ -50,7 +50,8 @@ contains
       type(string_type), allocatable :: sections(:)
       integer :: i
 
-      call print_line(output_unit, run%deck_path//': the deck is sound')
+      call print_line(output_unit, run%deck_path//': no errors, '// &
+         counted(size(model%warnings), 'warning'))
       call line('modelled', run%modelled)
       call line('bodies', to_text(model%mesh%body_count))
       call line('nodes', to_text(size(model%mesh%node_number)))

@@ -44,6 +44,7 @@ module model
       real(dp) :: tolerance = 0.0_dp          !! allowed deviation
       logical :: relative = .true.            !! REL, else ABS
       integer :: line = 0                     !! card number in the deck
+      character(:), allocatable :: address    !! file and line, such as deck.inp:36
       integer :: columns(2) = 1               !! columns of quantity and where on that card
    end type verify_type
 

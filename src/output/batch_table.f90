@@ -33,14 +33,14 @@ contains
       do i = 1, size(outcomes)
          width = max(width, character_count(printable(outcomes(i)%path)))
       end do
-      write (line, '(2x, a18, 2a12, 2a8, 2a10, a9)') 'outcome', 'increments', 'iterations', &
+      write (line, '(2x, a20, 2a12, 2a8, 2a10, a9)') 'outcome', 'increments', 'iterations', &
          'passed', 'failed', 'seconds', 'CPU s', 'peak MB'
       call print_line(unit, '')
       call print_line(unit, 'deck'//repeat(' ', width - 4)//trim(line))
       do i = 1, size(outcomes)
          associate (deck => outcomes(i))
-            write (line, '(2x, a18)') deck%words()
-            if (deck%has_run) write (line(21:), '(2i12, 2i8, 2f10.2, f9.1)') deck%increments, &
+            write (line, '(2x, a20)') deck%words()
+            if (deck%has_run) write (line(23:), '(2i12, 2i8, 2f10.2, f9.1)') deck%increments, &
                deck%iterations, deck%verify_passed, deck%verify_failed, deck%seconds, &
                deck%cpu_seconds, deck%peak_bytes/megabyte
             call print_line(unit, deck%path//repeat(' ', width - &

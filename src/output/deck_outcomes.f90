@@ -1,11 +1,11 @@
 !> How the run of a deck ended, and the short summary of it.
 module deck_outcomes
    use, intrinsic :: iso_c_binding, only: c_int
-   use, intrinsic :: iso_fortran_env, only: output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use errors, only: error_type, status_deck, status_internal, status_interrupted, &
       status_no_convergence, status_ok, status_verify
    use kinds, only: dp
-   use messages, only: print_error, print_line
+   use messages, only: print_line
    use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
    use text, only: counted, string_type, to_text
@@ -136,7 +136,7 @@ contains
       self%lacks_memory = error%lacks_memory
    end subroutine fail
 
-   !> The outcome in words, of at most 18 characters.
+   !> The outcome in words, of at most 20 characters.
    pure function words(self) result(string)
       class(deck_outcome_type), intent(in) :: self   !! the run
       character(:), allocatable :: string            !! such as 'not converged'
@@ -157,6 +157,7 @@ contains
          string = 'internal/I-O error'
       case (status_verify)
          string = 'check failed'
+         if (self%verify_failed == 0) string = 'accuracy not reached'
       case (status_interrupted)
          string = 'interrupted'
       case default
@@ -200,7 +201,7 @@ contains
 
       if (.not. allocated(self%failed_checks)) return
       do i = 1, size(self%failed_checks)
-         call print_error(self%path, self%failed_checks(i)%value)
+         call print_line(error_unit, self%failed_checks(i)%value)
       end do
    end subroutine print_failed_checks
 

@@ -3,7 +3,7 @@
 !>
 !> The summary is known at the end only: its lines are blank until then, and written over.
 module listing
-   use accuracy_lines, only: add_accuracy
+   use accuracy_lines, only: add_accuracy, add_missed
    use contact_points, only: contact_points_type, never_approached
    use due_output, only: table_is_due
    use errors, only: error_type
@@ -200,7 +200,7 @@ contains
       type(verifier_type), intent(in) :: verifier         !! what came of the *VERIFY cards
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(string_type), allocatable :: accuracy(:), lines(:), warnings(:)
+      type(string_type), allocatable :: accuracy(:), lines(:), missed(:), warnings(:)
       character(:), allocatable :: block
       integer :: i
 
@@ -223,8 +223,10 @@ contains
       call print_deck(self%text%unit, cards)
       call write_text(self, error)
       if (allocated(error)) return
-      allocate (lines(0))
-      call append(lines, ending(allocated(self%failure), self%summary%increment))
+      allocate (lines(0), missed(0))
+      call add_missed(run%accuracy, interfaces, missed)
+      call append(lines, ending(allocated(self%failure), self%summary%increment, verifier, &
+         size(missed)))
       call append(lines, checks(verifier))
       call append(lines, warnings_below(size(warnings)))
       call self%summary%add_lines(model, interfaces, lines)

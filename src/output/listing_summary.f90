@@ -13,12 +13,17 @@ module listing_summary
 contains
 
    !> How the run ended.
-   pure function ending(has_failed, increments) result(line)
+   pure function ending(has_failed, increments, verifier, missed) result(line)
       logical, intent(in) :: has_failed          !! whether it ended early
       integer, intent(in) :: increments          !! accepted ones
+      type(verifier_type), intent(in) :: verifier
+      integer, intent(in) :: missed              !! targets of accuracy that are not met
       character(:), allocatable :: line
 
-      line = 'solved, '//counted(increments, 'increment')
+      line = 'solved'
+      if (missed > 0) line = 'accuracy not reached'
+      if (verifier%failed_count() > 0) line = 'check failed'
+      line = line//', '//counted(increments, 'increment')
       if (has_failed) line = 'ended early after '//counted(increments, 'increment')// &
          ', see ENDED EARLY below'
    end function ending

@@ -17,7 +17,7 @@ module run_output
    use clock, only: wall_seconds
    use solution_report, only: iteration_record_type
    use text, only: append, counted, string_type, to_text
-   use verification, only: verifier_type
+   use verification, only: failure_words, verifier_type
    implicit none
    private
    public :: run_output_type, kept_words
@@ -205,27 +205,14 @@ contains
       do i = 1, size(model%verifications)
          associate (check => model%verifications(i), outcome => self%verifier%outcomes(i))
             if (outcome%passed .or. .not. outcome%judged) cycle
-            call append(lines, '*VERIFY on card '//to_text(check%line)//' failed: '// &
-               trim(check%quantity//' '//check%where)//', expected '//to_text(check%value)// &
-               finding(outcome%reason, ', found '//to_text(outcome%found)))
+            call append(lines, failure_words(check, outcome))
          end associate
       end do
       unjudged = self%verifier%unjudged_count()
-      if (unjudged > 0) call append(lines, counted(unjudged, '*VERIFY check')// &
-         ' could not be judged: the run ended before '//merge('its time   ', 'their times', &
-         unjudged == 1))
+      if (unjudged > 0) call append(lines, self%run%deck_path//': error: '// &
+         counted(unjudged, '*VERIFY check')//' could not be judged: the run ended before '// &
+         trim(merge('its time   ', 'their times', unjudged == 1)))
    end function failed_checks
-
-   !> What a check found: a value, or the reason why there is none.
-   pure function finding(reason, value) result(string)
-      character(:), allocatable, intent(in) :: reason
-      character(*), intent(in) :: value
-      character(:), allocatable :: string
-
-      string = value
-      if (.not. allocated(reason)) return
-      if (len(reason) > 0) string = ', but '//reason
-   end function finding
 
    !> Whether the listing holds anything of this run.
    pure logical function is_begun(self)

@@ -6,15 +6,17 @@ module verification
    use kinds, only: dp
    use model, only: model_type, verify_type
    use records, only: increment_record_type
+   use text, only: to_text
    use verify_values, only: values_asked_for
    implicit none
    private
-   public :: verifier_type, outcome_type
+   public :: verifier_type, outcome_type, failure_words
 
    !> What came of one check.
    type :: outcome_type
       logical :: judged = .false.               !! whether its time was reached
       logical :: passed = .false.               !! the verdict
+      real(dp) :: time = 0.0_dp                 !! total time at which it was judged [time]
       real(dp) :: found = 0.0_dp                !! value found, the worst of a set
       real(dp) :: deviation = 0.0_dp            !! magnitude of its deviation, relative for REL
       character(:), allocatable :: reason       !! why there is no value; else empty
@@ -61,6 +63,7 @@ contains
          call values_asked_for(model%verifications(i), record, model%mesh, interfaces, point_node, &
             values, reason)
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
+         self%outcomes(i)%time = record%time
       end do
    end subroutine judge
 
@@ -87,6 +90,28 @@ contains
 
       number = count(.not. self%outcomes%judged)
    end function unjudged_count
+
+   !> What is said of a check that failed, such as `deck.inp:36: check failed: heat_rate JOINT at time
+   !> 1: 3.6, expected 3.7 (off by 2.7027 %, allowed 1 %)`.
+   pure function failure_words(check, outcome) result(words)
+      type(verify_type), intent(in) :: check
+      type(outcome_type), intent(in) :: outcome
+      character(:), allocatable :: words
+
+      words = check%address//': check failed: '//trim(check%quantity//' '//check%where)// &
+         ' at time '//to_text(outcome%time)//': '
+      if (len(outcome%reason) > 0) then
+         words = words//'expected '//to_text(check%value)//', but '//outcome%reason
+      else if (check%relative .and. abs(check%value) > 0.0_dp) then
+         words = words//to_text(outcome%found)//', expected '//to_text(check%value)// &
+            ' (off by '//to_text(100*outcome%deviation)//' %, allowed '// &
+            to_text(100*check%tolerance)//' %)'
+      else
+         words = words//to_text(outcome%found)//', expected '//to_text(check%value)// &
+            ' (off by '//to_text(outcome%deviation)//', allowed '// &
+            to_text(merge(0.0_dp, check%tolerance, check%relative))//')'
+      end if
+   end function failure_words
 
    pure function outcome_of(check, values, reason) result(outcome)
       type(verify_type), intent(in) :: check

@@ -137,7 +137,7 @@ contains
          if (index(word, '-') == 1) then
             call set_error(error, status_deck, 'unknown option '//word//'; see thercon --help')
          else
-            call append(command%decks, word)
+            call append(command%decks, deck_file(word))
          end if
          return
       end select
@@ -150,6 +150,19 @@ contains
       end if
       call take_value(command, word, value, error)
    end subroutine read_argument
+
+   !> The file of a deck that is named with or without its ending, as with CalculiX.
+   function deck_file(name) result(path)
+      character(*), intent(in) :: name
+      character(:), allocatable :: path   !! name, or name.inp where only that is there
+      logical :: exists
+
+      path = name
+      inquire (file=name, exist=exists)
+      if (exists) return
+      inquire (file=name//'.inp', exist=exists)
+      if (exists) path = name//'.inp'
+   end function deck_file
 
    subroutine take_value(command, word, value, error)
       type(command_type), intent(inout) :: command

@@ -25,7 +25,7 @@ module deck_run
    use round_indicators, only: round_indicators_type
    use run_description, only: describe_run
    use run_output, only: kept_words, run_output_type
-   use text, only: string_type, to_text
+   use text, only: append, string_type, to_text
    use utf8, only: printable
    use variations, only: variation_type
    implicit none
@@ -357,13 +357,19 @@ contains
    subroutine take_checks(self, outcome)
       type(run_type), intent(in) :: self
       type(deck_outcome_type), intent(inout) :: outcome
+      type(string_type), allocatable :: missed(:)
+      integer :: i
 
       associate (output => self%output)
          outcome%failed_checks = [outcome%failed_checks, output%failed_checks(self%model)]
          outcome%verify_passed = outcome%verify_passed + output%run%verify_passed
          outcome%verify_failed = outcome%verify_failed + output%run%verify_failed
-         if (outcome%status == status_ok) call add_missed(output%run%accuracy, &
-            self%simulation%bodies%interfaces, outcome%failed_checks)
+         if (outcome%status /= status_ok) return
+         allocate (missed(0))
+         call add_missed(output%run%accuracy, self%simulation%bodies%interfaces, missed)
+         do i = 1, size(missed)
+            call append(outcome%failed_checks, self%path//': error: '//missed(i)%value)
+         end do
       end associate
    end subroutine take_checks
 
@@ -376,7 +382,7 @@ contains
       call outcome%fail(error)
       call self%output%progress%clear()
       if (error%status == status_no_convergence) then
-         call print_error(self%path, error%message//'; the listing shows the iterations')
+         call print_error(self%path, error%message//'; the listing shows the passes')
       else
          call print_error(self%path, error%message)
       end if

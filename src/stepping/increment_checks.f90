@@ -127,7 +127,7 @@ contains
          free = unconstrained_now(model, bodies%points, loads%displacement%active, &
             merge(contact_open, next%contact%contact_state, next%idle .or. next%resting))
          if (len(free) > 0) words = &
-            'the smallest motion is taken where nothing drives or holds a body'//free
+            free(3:)//'; no load drives it: the smallest movement is used'
       end if
       if (words /= undecided .and. len(words) > 0) call record%warn(words)
       undecided = words

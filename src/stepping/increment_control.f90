@@ -6,7 +6,7 @@ module increment_control
    use load_histories, only: step_clock_type
    use model, only: model_type
    use steps, only: increment_growth, planned_increments, step_type
-   use text, only: to_text
+   use text, only: counted, to_text
    implicit none
    private
    public :: increment_control_type
@@ -171,8 +171,8 @@ contains
       if (model%steps(self%step)%direct) then
          words = words//', which DIRECT does not allow to be cut back'
       else
-         words = words//', the smallest one'
-         if (self%cut_backs > 0) words = words//' (cut-backs: '//to_text(self%cut_backs)//')'
+         words = words//', the smallest that the step allows'
+         if (self%cut_backs > 0) words = words//', after '//counted(self%cut_backs, 'cut-back')
       end if
    end function why_not_again
 

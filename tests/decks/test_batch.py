@@ -109,7 +109,8 @@ def test_decks_that_fail_leave_the_others_alone(tmp_path, single, jobs):
     assert (rows["checked"]["checks_passed"], rows["checked"]["checks_failed"]) == ("0", "1")
     assert "*NONSENSE" in rows["refused"]["reason"]
     assert "no such file" in rows["nowhere"]["reason"]
-    assert "*VERIFY" in rows["checked"]["reason"]
+    assert "checked.inp:" in rows["checked"]["reason"]
+    assert ": check failed: " in rows["checked"]["reason"]
     assert all(rows[name]["reason"] for name in said if said[name][0] != "0")
     # On the terminal the same decks in the same order.
     lines = process.stdout[process.stdout.rindex("outcome"):].splitlines()[1:]

@@ -90,6 +90,7 @@ contains
 
       valid = .true.
       check%line = data%end%image
+      check%address = report%source%address_of(data%end)
       check%quantity = ''
       check%where = field_text(data, 2)
       check%columns = [field_column(data, 1), field_column(data, 2)]

@@ -31,6 +31,7 @@ contains
       type(string_type), allocatable :: none(:)
       character(:), allocatable :: fault
       integer :: i
+      logical :: exists
 
       cards%path = path
       report%path = path
@@ -44,6 +45,9 @@ contains
       call flatten_cards(cards, report)
       call generate_cards(cards, report)
       if (len(fault) > 0) then
+         inquire (file=path, exist=exists)
+         if (.not. exists .and. index(path, '.inp', back=.true.) /= len(path) - 3) &
+            fault = fault//', and no '//path//'.inp'
          call report%error(place_type(), 'the deck cannot be read: '//fault)
       else if (size(cards%keywords) == 0 .and. .not. report%has_errors()) then
          call report%error(place_type(), 'the deck is empty')

@@ -27,6 +27,7 @@ module deck_source
    contains
       procedure :: add_image
       procedure :: words_of
+      procedure :: address_of
    end type deck_source_type
 
 contains
@@ -60,6 +61,15 @@ contains
       if (self%file(place%image) > 1) words = words//' of '// &
          self%paths(self%file(place%image))%value
    end function words_of
+
+   !> A place as messages begin, such as 'deck.inp:12'.
+   pure function address_of(self, place) result(address)
+      class(deck_source_type), intent(in) :: self
+      type(place_type), intent(in) :: place           !! with an image
+      character(:), allocatable :: address
+
+      address = self%paths(self%file(place%image))%value//':'//to_text(self%line(place%image))
+   end function address_of
 
    !> Doubles the capacity.
    subroutine grow(self)
