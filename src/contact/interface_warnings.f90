@@ -8,7 +8,7 @@ module interface_warnings
    use text, only: to_text
    implicit none
    private
-   public :: mismatch_of_pairs, offset_warning, overlap_warning
+   public :: gap_range, mismatch_of_pairs, offset_warning, overlap_warning
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
 
@@ -106,6 +106,16 @@ contains
          ', where the element edge is '//to_text(points%edge(k))//'; they are pressed apart in '// &
          'the first increment: check the positions of the bodies, or give the overlap by *CLEARANCE'
    end function overlap_warning
+
+   !> Smallest and largest initial gap; one within the rounding of coordinates is 0.
+   pure function gap_range(mesh, points) result(range)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points    !! contact points of one interface
+      real(dp) :: range(2)                               !! [length]
+
+      range = [minval(points%initial_gap), maxval(points%initial_gap)]
+      where (abs(range) <= rounding*extent_of(mesh%coordinates)) range = 0.0_dp
+   end function gap_range
 
    pure function nodes_of(mesh, points, k) result(words)
       type(mesh_type), intent(in) :: mesh

@@ -299,8 +299,8 @@ contains
          names(nearest)%value
    end function nearest_known
 
-   !> The end of a message on a word that is none of a fixed list: what it is like, or the whole list
-   !> where that is short.
+   !> The end of a message on a word that is none of a fixed list: the one it is like, or the list
+   !> itself where that is short.
    pure function known_choices(name, names) result(hint)
       character(*), intent(in) :: name             !! what was written
       type(string_type), intent(in) :: names(:)    !! the list

@@ -6,6 +6,7 @@ module deck_check
    use deck_preparation, only: prepare_deck
    use errors, only: error_type
    use increments, only: simulation_type
+   use interface_warnings, only: gap_range
    use kinds, only: dp
    use messages, only: print_line
    use model, only: model_type
@@ -48,6 +49,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(run_summary_type), intent(in) :: run
       type(string_type), allocatable :: sections(:)
+      real(dp) :: gaps(2)
       integer :: i
 
       call print_line(output_unit, run%deck_path//': no errors, '// &
@@ -77,9 +79,10 @@ contains
       end do
       do i = 1, size(simulation%bodies%interfaces)
          associate (points => simulation%bodies%interfaces(i))
+            gaps = gap_range(model%mesh, points)
             call line('contact pair '//points%name, to_text(size(points%slave_node))// &
-               ' '//points_words(points)//', initial gaps '// &
-               to_text(minval(points%initial_gap))//' to '//to_text(maxval(points%initial_gap)))
+               ' '//points_words(points)//', initial gaps '//to_text(gaps(1))//' to '// &
+               to_text(gaps(2)))
             call line('pairing of '//points%name, pairing_words(model%contacts(i)%pairing, points))
             if (len(open_words(points)) > 0) call line('note on '//points%name, open_words(points))
          end associate

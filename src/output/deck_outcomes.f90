@@ -13,9 +13,10 @@ module deck_outcomes
    private
    public :: deck_outcome_type
 
-   !> Files that a run has written by how far it came: none, listing, passes that failed, all.
-   character(*), parameter :: extensions(0:3) = [character(25) :: '', '.lst', '.lst, .cvg', &
-      '.vtkhdf, .lst, .sta, .cvg']
+   !> Files that a run has written by how far it came: none, listing, passes that failed, all
+   !> without and with contact.
+   character(*), parameter :: extensions(0:4) = [character(42) :: '', '.lst', '.lst, .cvg', &
+      '.vtkhdf, .lst, .sta, .cvg', '.vtkhdf, .contact.vtkhdf, .lst, .sta, .cvg']
 
    !> How a deck ended.
    type :: deck_outcome_type

@@ -8,6 +8,7 @@ module listing_errors
    use listing_text, only: column
    use quantity_types, only: of_bodies, quantity_type
    use records, only: increment_record_type, interface_errors_type
+   use summary, only: words_of
    use reported_quantities, only: quantities
    implicit none
    private
@@ -53,7 +54,7 @@ contains
       type(interface_errors_type), intent(in) :: errors
       integer :: q, width
 
-      width = maxval(len_trim(estimated%name))
+      width = maxval([(len(words_of(estimated(q)%name)), q=1, size(estimated))])
       write (unit, '(/, 3a)') '   BOUNDS OF THE ERRORS OF ', name, &
          ': how far values may be off to either side, with the parts of each bound'
       write (unit, '(4x, a, a14, a13, a11, a12, 2a14, a14)') repeat(' ', width), 'value', &
@@ -62,12 +63,20 @@ contains
          associate (value => errors%value(q), bound => errors%bound(q))
             if (.not. is_worth_telling(value, bound)) cycle
             write (unit, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
-               spaced(estimated(q)%name(:width)), column(value, 14, 6), bound_word(bound), &
+               name_of(q, width), column(value, 14, 6), bound_word(bound), &
                percent(bound, value), shown(errors%mesh(q), 12), shown(errors%increment(q), 14), &
                shown(errors%iteration(q), 14), largest_part(errors, q)
          end associate
       end do
    end subroutine print_interface_errors
+
+   !> The name of an estimated quantity in words.
+   pure function name_of(q, width) result(name)
+      integer, intent(in) :: q, width
+      character(width) :: name
+
+      name = words_of(estimated(q)%name)
+   end function name_of
 
    !> Whether a quantity has a value and a part in the deck.
    pure logical function is_worth_telling(value, bound)
@@ -79,18 +88,6 @@ contains
       if (is_worth_telling .or. ieee_is_nan(bound)) return
       is_worth_telling = bound > 0.0_dp
    end function is_worth_telling
-
-   !> A name with blanks for its underlines.
-   pure function spaced(name) result(words)
-      character(*), intent(in) :: name
-      character(len(name)) :: words
-      integer :: i
-
-      words = name
-      do i = 1, len(name)
-         if (name(i:i) == '_') words(i:i) = ' '
-      end do
-   end function spaced
 
    !> A bound, or the word where there is none.
    function bound_word(bound) result(string)

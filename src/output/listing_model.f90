@@ -2,6 +2,7 @@
 module listing_model
    use contact_points, only: contact_points_type
    use hanging_nodes, only: hanging_count
+   use interface_warnings, only: gap_range
    use kinds, only: dp
    use listing_text, only: print_title, print_wrapped
    use model, only: model_type
@@ -75,7 +76,7 @@ contains
             open_words(interfaces(i)))
          call print_entry(unit, 'length', to_text(maxval(interfaces(i)%arc_length)))
          call print_entry(unit, 'initial gaps', &
-            from_to([minval(interfaces(i)%initial_gap), maxval(interfaces(i)%initial_gap)]))
+            from_to(gap_range(model%mesh, interfaces(i))))
          associate (interaction => model%interactions(model%contacts(i)%interaction))
             call print_entry(unit, 'coefficient of friction', friction_words(interaction%friction))
             if (.not. has_heat) cycle

@@ -50,7 +50,7 @@ module results
       type(error_results_type) :: errors                      !! `/errors`
       type(working_file_type) :: contact_file                 !! `NAME.contact.vtkhdf`
       type(contact_grid_type) :: contact_grid                 !! its contents
-      logical :: has_contact = .false.                        !! whether there is such a file
+      logical, public :: has_contact = .false.                !! whether there is such a file
       integer, allocatable :: element_points(:, :)            !! (8, elements)
       type(string_type), allocatable :: cards(:)              !! card images
       logical :: is_broken = .false.                          !! whether writing has failed

@@ -3,6 +3,7 @@
 module run_judgement
    use contact_points, only: contact_points_type, past_end
    use contact_states, only: contact_open
+   use interface_warnings, only: gap_range
    use kinds, only: dp
    use mesh, only: extent_of
    use model, only: model_type
@@ -54,7 +55,7 @@ contains
       if (.not. allocated(self%closes)) then
          allocate (self%closes(size(interfaces)), source=.false.)
          allocate (self%past(2, size(interfaces)), source=0.0_dp)
-         self%smallest_gap = [(minval(interfaces(i)%initial_gap), i=1, size(interfaces))]
+         self%smallest_gap = [(minval(gap_range(model%mesh, interfaces(i))), i=1, size(interfaces))]
       end if
       if (allocated(record%warnings)) call self%repeated%take(record%increment, record%warnings)
       associate (analysis => model%steps(record%step)%analysis, fields => record%fields)

@@ -251,7 +251,7 @@ contains
 
       written = merge(1, 0, self%is_begun())
       if (self%is_finished) written = 2
-      if (self%published() > 0) written = 3
+      if (self%published() > 0) written = merge(4, 3, self%results%has_contact)
    end function written
 
    !> What the results of a run hold.

@@ -18,6 +18,11 @@ module summary
    integer, parameter :: name_width = 17    !! columns of the name of a quantity
    integer, parameter :: value_width = 13   !! of its value
    integer, parameter :: bound_width = 25   !! and of its bound
+   integer, parameter :: field_width = 20   !! of the name of a field's range
+   character(*), parameter :: heat_names(4) = [character(field_width) :: 'lowest temperature', &
+      'highest temperature', 'heat in', 'heat out']
+   character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
+      'power', 'power']
 
    !> What the last accepted increment leaves.
    type :: summary_type
@@ -27,6 +32,10 @@ module summary
       real(dp) :: load = 0.0_dp                                    !! value on the load axis
       type(contact_record_type), allocatable, public :: contacts(:)   !! (interfaces)
       type(interface_errors_type), allocatable :: errors(:)        !! (interfaces) or unallocated
+      !> Without an interface: smallest and largest temperature, heat in and out
+      real(dp), allocatable :: heat(:)
+      !> Likewise: the largest magnitude of a displacement [length]
+      real(dp), allocatable :: displacement
    contains
       procedure :: take
       procedure :: add_lines
@@ -46,6 +55,13 @@ contains
       self%contacts = record%contacts
       if (allocated(self%errors)) deallocate (self%errors)
       if (allocated(record%errors)) self%errors = record%errors
+      if (allocated(self%heat)) deallocate (self%heat)
+      if (allocated(self%displacement)) deallocate (self%displacement)
+      associate (fields => record%fields)
+         if (allocated(fields%reaction_heat)) self%heat = [minval(fields%temperature), &
+            maxval(fields%temperature), record%heat_in, record%heat_out]
+         if (allocated(fields%stress)) self%displacement = maxval(norm2(fields%displacement, dim=1))
+      end associate
    end subroutine take
 
    !> Most lines that there can be.
@@ -53,10 +69,11 @@ contains
       integer, intent(in) :: interfaces   !! number of interfaces
 
       most_lines = 1 + interfaces*(1 + size(estimated))
+      if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
    end function most_lines
 
    !> Adds when that increment was, then each interface with a line for each quantity that it has;
-   !> none before the first increment and without an interface.
+   !> none before the first increment. Without an interface the ranges of the fields stand there.
    subroutine add_lines(self, model, interfaces, lines)
       class(summary_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -64,13 +81,41 @@ contains
       type(string_type), allocatable, intent(inout) :: lines(:)
       integer :: i
 
-      if (self%increment == 0 .or. size(interfaces) == 0) return
+      if (self%increment == 0) return
       call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
       do i = 1, size(interfaces)
          call append(lines, interfaces(i)%name)
          call add_quantities(self, model, interfaces(i), i, lines)
       end do
+      if (size(interfaces) == 0) call add_fields(self, model, lines)
    end subroutine add_lines
+
+   !> The temperatures, the heat and the displacement of a deck without contact.
+   subroutine add_fields(self, model, lines)
+      class(summary_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      integer :: i
+
+      if (allocated(self%heat)) then
+         do i = 1, size(heat_names)
+            call add_value(heat_names(i), self%heat(i), trim(heat_units(i)))
+         end do
+      end if
+      if (allocated(self%displacement)) call add_value('displacement up to', self%displacement, &
+         'length')
+   contains
+      subroutine add_value(name, number, unit)
+         character(*), intent(in) :: name, unit
+         real(dp), intent(in) :: number
+         character(field_width) :: label
+         character(value_width) :: value
+
+         label = name
+         value = to_text(number)
+         call append(lines, trim('  '//label//adjustr(value)//' '//unit_label(unit, model%units)))
+      end subroutine add_value
+   end subroutine add_fields
 
    pure function when(self, load_label) result(words)
       class(summary_type), intent(in) :: self
@@ -143,7 +188,7 @@ contains
       real(dp), intent(in) :: number
       character(:), allocatable :: words
       character(16) :: buffer
-      integer :: decimals
+      integer :: decimals, k
 
       write (buffer, '(es16.1e3)') number
       if (number >= 9.5e-5_dp .and. number < 9.95e5_dp) then
@@ -151,6 +196,9 @@ contains
          write (buffer, '(f16.'//to_text(decimals)//')') number
       end if
       words = trim(adjustl(buffer))
+      k = scan(words, '+-')
+      if (k > 1 .and. words(k + 1:k + 1) == '0') words = words(:k)//words(k + 2:)
+      if (.not. number > 0.0_dp) words = '0'
       if (words(:1) == '.') words = '0'//words
       if (words(len(words):) == '.') words = words(:len(words) - 1)
    end function two_digits

@@ -91,8 +91,8 @@ contains
       number = count(.not. self%outcomes%judged)
    end function unjudged_count
 
-   !> What is said of a check that failed, such as `deck.inp:36: check failed: heat_rate JOINT at time
-   !> 1: 3.6, expected 3.7 (off by 2.7027 %, allowed 1 %)`.
+   !> What is said of a check that failed, such as `deck.inp:36: check failed: heat_rate JOINT at
+   !> time 1: 3.6, expected 3.7 (off by 2.7027 %, allowed 1 %)`.
    pure function failure_words(check, outcome) result(words)
       type(verify_type), intent(in) :: check
       type(outcome_type), intent(in) :: outcome

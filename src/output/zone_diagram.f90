@@ -1,4 +1,4 @@
-!> The line-printer zone diagram: one row an increment, one column a contact point, I (gap), II
+!> The line-printer zone diagram: one row an increment, one column a contact point, I (open), II
 !> (slip), III (stick).
 module zone_diagram
    use contact_points, only: contact_points_type
@@ -93,7 +93,7 @@ contains
       m = size(points%slave_node)
       write (unit, '(/, 3a, i0, 2a, /, a)') 'ZONE DIAGRAM OF ', points%name, ': ', m, &
          ' contact points in columns, from s = 0 to s = ', to_text(points%arc_length(m)), &
-         'I gap, II slip, III stick'
+         'I open, II slip, III stick'
       panels = (m + panel_columns - 1)/panel_columns
       width = (m + panels - 1)/panels
       do first = 1, m, width

@@ -25,7 +25,7 @@ contains
       write (unit, '(3a)') name, ': speed against accuracy; errors in %, those of the reference', &
          ' included'
       write (unit, '(/, a)', advance='no') &
-         ' row  mesh       incr.   steps  varied           CPU s      MB'
+         ' row  mesh          incr.  number  varied           CPU s      MB'
       do q = 1, quantity_count
          write (unit, '(a9)', advance='no') trim(traded(q)%head)
       end do
@@ -33,7 +33,7 @@ contains
       do i = 1, trade%count
          call print_row(unit, i, trade%rows(i))
       end do
-      write (unit, '(a, t63)', advance='no') '      reference uncertain by'
+      write (unit, '(a, t66)', advance='no') '      reference uncertain by'
       do q = 1, quantity_count
          write (unit, '(a9)', advance='no') percent(trade%uncertainty(q))
       end do
@@ -79,7 +79,7 @@ contains
       type(trade_row_type), intent(in) :: row
       integer :: q
 
-      write (unit, '(i4, 2a, 2x, a9, 2x, a6)', advance='no') number, &
+      write (unit, '(i4, 2a, 2x, a12, 2x, a6)', advance='no') number, &
          merge('*', ' ', row%is_optimal), merge('=', ' ', row%is_default), &
          padded(mesh_of(row)), factor_text(row%variation%increments)
       if (row%status == 0) then
@@ -101,7 +101,7 @@ contains
 
    pure function padded(words) result(field)
       character(*), intent(in) :: words
-      character(9) :: field
+      character(12) :: field
 
       field = words
    end function padded

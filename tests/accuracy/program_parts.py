@@ -10,7 +10,7 @@ CONTACT_FOLDER = {
 COUPLING = {
     "accelerators", "anderson", "conductance_graph", "contact_operator:contact_operator_pass",
     "contact_operator:residual_floor", "contact_tangent", "coupled_increment", "coupling_gains",
-    "fixed_point", "increment_iteration", "reduced_bodies:form_jump_load", "newton",
+    "fixed_point", "increment_iteration", "jump_loads", "newton",
     "opening_derivatives", "resting_points",
 }
 PARTS = {

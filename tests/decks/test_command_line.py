@@ -228,6 +228,7 @@ def test_a_summary_tells_the_interface_then_the_results_then_what_failed(tmp_pat
         assert line.endswith(" " + unit)
         assert float(line.split("+-")[1].split()[0]) == pytest.approx(bound, rel=0.05)
     assert lines[9].startswith("  results: ")
+    assert lines[9].endswith("cylinder.vtkhdf, .contact.vtkhdf, .lst, .sta, .cvg")
     assert lines[10] == "  37 checks passed, 1 failed"
     assert re.search(r"^\S*cylinder\.inp:\d+: check failed: .* at time \S+: \S+, expected \S+ "
                      r"\(off by \S+ %, allowed \S+ %\)$", process.stderr, re.M)
@@ -270,3 +271,23 @@ def test_a_deck_without_its_ending(tmp_path, command):
     missing = tmp_path / "nowhere"
     assert run(command, missing).stderr == (
         f"{missing}: error: the deck cannot be read: there is no such file, and no {missing}.inp\n")
+
+
+def test_a_run_without_contact_says_what_came_of_it(tmp_path):
+    """A bar of length 2 conducts from 400 to 100; at conductivity 50 and width 1 the heat is 7500."""
+    deck = tmp_path / "bar.inp"
+    deck.write_text("\n".join([
+        "*NODE", "1, 0., 0.", "2, 2., 0.", "3, 2., 1.", "4, 0., 1.", "*ELEMENT, TYPE=CPE4, ELSET=BAR",
+        "1, 1, 2, 3, 4", "*MATERIAL, NAME=STEEL", "*CONDUCTIVITY", "50.",
+        "*SOLID SECTION, ELSET=BAR, MATERIAL=STEEL", "*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.",
+        "*BOUNDARY", "1, 11, 11, 400.", "4, 11, 11, 400.", "2, 11, 11, 100.", "3, 11, 11, 100.",
+        "*END STEP", ""]))
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    lines = [" ".join(line.split()) for line in process.stdout.splitlines()]
+    told = ["at time 1 (increment 1):", "lowest temperature 100", "highest temperature 400",
+            "heat in 7500", "heat out 7500"]
+    assert lines[1:6] == told
+    assert lines[6].endswith("bar.vtkhdf, .lst, .sta, .cvg")
+    listing = [" ".join(line.split()) for line in (tmp_path / "bar.lst").read_text().splitlines()]
+    assert listing[listing.index("solved, 1 increment") + 3:][:5] == told

@@ -40,8 +40,8 @@ contains
       end do
    end subroutine check_heat_paths
 
-   !> Warns of nodes of bodies without an initial temperature where others have one. The mesh is not
-   !> refined yet.
+   !> Warns of nodes of bodies without an initial temperature where others have one that is not 0.
+   !> The mesh is not refined yet.
    subroutine check_starts(context, model, report)
       type(deck_context_type), intent(in) :: context      !! initial temperatures
       type(model_type), intent(in) :: model
@@ -50,7 +50,7 @@ contains
       integer :: i
 
       associate (given => context%temperatures, mesh => model%mesh)
-         if (given%count == 0) return
+         if (.not. any(abs(given%items(:given%count)%value) > 0.0_dp)) return
          if (.not. (any(solves_heat(model%steps%analysis)) .or. &
             any(model%materials%has_expansion))) return
          starts_at_0 = .false.

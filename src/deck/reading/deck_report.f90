@@ -365,7 +365,8 @@ contains
          if (place%image == 0) then
             line = self%path//': '//severity//diagnostic%message
          else
-            line = source%address_of(place)//':'//to_text(column_of(source%images(place%image)%value, place%column))// &
+            line = source%address_of(place)//':'// &
+               to_text(column_of(source%images(place%image)%value, place%column))// &
                ': '//severity//diagnostic%message
          end if
       end associate

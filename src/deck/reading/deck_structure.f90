@@ -134,7 +134,8 @@ contains
          if (step_open) call report%error(card%place, 'the step before has no *END STEP')
          step_open = .true.
       else if (card%name == 'END STEP') then
-         if (.not. step_open) call report%missing(card%place, 'this *END STEP has no *STEP', '*STEP')
+         if (.not. step_open) call report%missing(card%place, 'this *END STEP has no *STEP', &
+            '*STEP')
          step_open = .false.
       end if
    end subroutine check_step_card
