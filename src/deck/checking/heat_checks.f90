@@ -50,6 +50,7 @@ contains
       integer :: i
 
       associate (given => context%temperatures, mesh => model%mesh)
+         if (given%count == 0) return
          if (.not. any(abs(given%items(:given%count)%value) > 0.0_dp)) return
          if (.not. (any(solves_heat(model%steps%analysis)) .or. &
             any(model%materials%has_expansion))) return
