@@ -60,6 +60,9 @@ def test_targets_that_are_missed_are_told_with_status_4(tmp_path):
     process = run("run", deck, "--out", tmp_path)
     assert process.returncode == 4
     assert "the requested accuracy is not reached: FACE edge of contact" in process.stderr
+    assert f"{deck}: accuracy not reached, " in process.stdout
+    assert "check failed" not in process.stdout + process.stderr
+    assert "   accuracy not reached, " in deck.with_suffix(".lst").read_text()
     assert "(of the mesh)" in process.stderr and "FACE normal force" not in process.stderr
     costs, bounds, reached = rounds_of(tmp_path / "one.vtkhdf")
     assert reached == 0 and costs["elements"].tolist() == [92]

@@ -101,6 +101,7 @@ def test_the_tables_hold_summary_checks_and_deck(cylinder):
     assert text.count('class="pass"') == 37 and text.count('class="fail"') == 1
     assert text.index('class="fail"') < text.index('class="pass"')
     assert "ANALYTIC: a &amp; b" in text and "37 passed, 1 failed" in text
+    assert "<dt>outcome</dt><dd>check failed, 45 increments</dd>" in text
     assert "No warnings." in text and "*GAP LAW" in text
 
 
