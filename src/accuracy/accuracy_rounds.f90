@@ -2,7 +2,9 @@
 !>
 !> The bounds are those of the error estimator. Only the change from one round to the next is
 !> added: a round that divides elements leaves less than a part of the error (`left_by_round`), so
-!> that this part of the change bounds what is left; alone where nothing else is known of the mesh.
+!> that this part of the change bounds what is left. Where nothing else is known of the mesh, every
+!> round divides both faces (`round_indicators`), and the larger one of the last two changes is the
+!> bound: one change can be small by chance, also of a pressure that grows without limit.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type
@@ -16,10 +18,10 @@ module accuracy_rounds
    private
    public :: accuracy_rounds_type, accuracy_round_type, finding_type
 
-   real(dp), parameter :: early = 0.25_dp     !! part of the largest value so far: least scale
-   !> Part of the change from round to round: what is left where estimates of the mesh agree, and
-   !> where there are none.
-   real(dp), parameter :: left_by_round = 0.5_dp, left_without_estimate = 1.0_dp
+   !> Least scale of a value: parts of the largest one so far, and of those of other interfaces.
+   real(dp), parameter :: early = 0.25_dp, beside_others = 0.01_dp
+   !> Part of the change from round to round that is left where the mesh has an estimate.
+   real(dp), parameter :: left_by_round = 0.5_dp
 
    !> Two rounds that leave more than this part of the excess are the last, from this round on.
    real(dp), parameter :: nearer = 0.7_dp
@@ -38,6 +40,7 @@ module accuracy_rounds
    type :: finding_type
       logical :: is_there = .false.        !! whether the quantity has a value and an error
       real(dp) :: value = 0.0_dp           !! of the quantity
+      real(dp) :: change = 0.0_dp          !! what the round changed it by
       real(dp) :: mesh = 0.0_dp            !! bound of the error of the mesh; NaN: uncertain
       real(dp) :: increment = 0.0_dp       !! of increments and iteration; NaN: uncertain
       real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: uncertain
@@ -66,7 +69,7 @@ module accuracy_rounds
       logical :: has_checks = .false.                        !! whether round 1 judged *VERIFY cards
       type(demand_type), allocatable :: demands(:)
       type(accuracy_round_type), allocatable :: rounds(:)    !! the last is the present one
-      real(dp), allocatable :: largest(:)                    !! (demands) scale so far in the round
+      real(dp), allocatable :: largest(:)                    !! (demands) largest scale so far
    contains
       procedure :: begin_round
       procedure :: follow
@@ -100,7 +103,7 @@ contains
       rounds(:n) = self%rounds
       allocate (rounds(n + 1)%findings(size(self%demands), steps))
       call move_alloc(rounds, self%rounds)
-      self%largest = [(0.0_dp, i=1, size(self%demands))]
+      if (.not. allocated(self%largest)) allocate (self%largest(size(self%demands)), source=0.0_dp)
    end subroutine begin_round
 
    !> Adds the target of one interface or of all.
@@ -146,7 +149,8 @@ contains
             if (.not. ieee_is_nan(scale)) self%largest(d) = max(self%largest(d), scale)
             if (.not. allocated(record%errors)) cycle
             if (ieee_is_nan(scale)) scale = 0.0_dp
-            scale = max(scale, early*self%largest(d))
+            scale = max(scale, early*self%largest(d), beside_others*maxval(self%largest, &
+               mask=self%demands%quantity == self%demands(d)%quantity))
             self%rounds(n)%findings(d, record%step) = found(self%demands(d), points, &
                record%errors(self%demands(d)%interface), scale)
             call add_change(self%rounds, d, record%step)
@@ -194,7 +198,7 @@ contains
       end associate
    end function found
 
-   !> Lets the change from the round before count.
+   !> Lets the changes from the rounds before count.
    subroutine add_change(rounds, d, step)
       type(accuracy_round_type), intent(inout) :: rounds(:)
       integer, intent(in) :: d, step
@@ -205,11 +209,12 @@ contains
       if (n == 1) return
       associate (now => rounds(n)%findings(d, step), before => rounds(n - 1)%findings(d, step))
          if (.not. (now%is_there .and. before%is_there)) return
-         change = abs(now%value - before%value)
-         if (ieee_is_nan(now%mesh)) then
-            now%mesh = left_without_estimate*change
-         else
-            now%mesh = max(now%mesh, left_by_round*change)
+         now%change = abs(now%value - before%value)
+         change = max(now%change, before%change)
+         if (.not. ieee_is_nan(now%mesh)) then
+            now%mesh = max(now%mesh, left_by_round*now%change)
+         else if (n > 2) then
+            now%mesh = change
          end if
          now%bound = now%mesh + now%increment
       end associate

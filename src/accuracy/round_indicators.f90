@@ -74,6 +74,7 @@ contains
          levels = levels_for(finding)
          if (levels == 0) cycle
          associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity)
+            if (ieee_is_nan(record%errors(i)%mesh(q))) call mark_faces(self, model, i)
             at_edges = levels_of_edges(interfaces(i), record, i, q, finding%allowed)
             call mark_edges(self, model%mesh, interfaces(i), edges_for(q, record%contacts(i)), &
                max(levels, at_edges))
@@ -159,6 +160,21 @@ contains
          weight(e) = (1.0_dp + norm2(middle - points%position(:, peak))/length)**(-8)
       end do
    end function influence
+
+   !> Marks the elements along both faces of an interface: where no error of the mesh is known, the
+   !> change by sides of half the size tells it.
+   subroutine mark_faces(self, model, i)
+      class(round_indicators_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: i
+
+      associate (contact => model%contacts(i), surfaces => model%mesh%surfaces)
+         associate (elements => [surfaces(contact%slave)%faces(1, :), &
+            surfaces(contact%master)%faces(1, :)])
+            self%levels(elements) = max(self%levels(elements), 1)
+         end associate
+      end associate
+   end subroutine mark_faces
 
    !> Marks the elements at contact points near the edges of zones, on both faces.
    subroutine mark_edges(self, mesh, points, edges, levels)

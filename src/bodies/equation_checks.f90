@@ -128,7 +128,6 @@ contains
       supported = .false.
       origins = origins_of(rows, constraint)
       do i = 1, size(origins)
-         name = ''
          associate (number => origins(i)%number)
             select case (origins(i)%kind)
             case (of_tie)
@@ -138,6 +137,8 @@ contains
                name = support_name(model, supports, number)
             case (of_equation)
                name = points%equations(number)%title
+            case default
+               name = ''
             end select
          end associate
          call join_name(names, name)

@@ -54,7 +54,7 @@ contains
          if (error%status /= status_no_convergence) return
          deallocate (error)
          call append(workspace%record%notes, 'the position of the edge of contact in its '// &
-            'element side does not converge; in this increment the side is not divided for the heat')
+            'element side does not converge; in this increment heat crosses the undivided side')
          next = start
          workspace%cuts_hats = .false.
          workspace%cut = cut_hats_type()

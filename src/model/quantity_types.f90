@@ -40,7 +40,7 @@ module quantity_types
       character(30) :: label = ''
       !> Head of its column in tables: the passes, the contact points, the rows of a trade; blank:
       !> no column.
-      character(13) :: head = ''
+      character(14) :: head = ''
       integer :: width = 0                     !! characters of that column; in a trade it is fixed
       logical :: is_plain = .false.            !! no exponent there
       logical :: is_integer = .false.          !! has no values between two contact points either

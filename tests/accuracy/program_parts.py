@@ -15,7 +15,8 @@ COUPLING = {
 }
 PARTS = {
     "heat": {
-        "balances:heat_residual", "balances:scheme_contact_heat", "element_conduction",
+        "balances:heat_residual", "balances:scheme_contact_heat", "cut_hats:supplied_heat",
+        "element_conduction",
         "element_fields:element_heat_flux",
         "field_recovery:recover_heat_flux", "films", "heat_balance",
         "increment_checks:check_heat", "increment_solution:conduct",
@@ -26,8 +27,7 @@ PARTS = {
     },
     "strain by heat": {
         "contact_operator:unstrained_forces", "element_elasticity:element_thermal_load",
-        "reduced_bodies:condense_thermal_load", "point_properties:thermal_modulus_in",
-        "stiffness_matrix:assemble_thermal_load",
+        "point_properties:thermal_modulus_in", "stiffness_matrix:assemble_thermal_load",
     },
     "mechanics": CONTACT_FOLDER - {
         # Pairs conduct, whether bodies move or not: these make them and their results.

@@ -6,8 +6,10 @@ import sys
 import h5py
 import numpy as np
 import pytest
+from blocks import without_unused_surfaces, write
 from changes import note_changes
 from deck_runs import COUPLED, CYLINDER, DECKS, HERTZ, INPUT, copy_deck, run, solve
+from physics import material, mesh
 
 sys.path.insert(0, str(DECKS.parent / "documents"))
 from document import Document  # noqa: E402
@@ -129,3 +131,24 @@ def test_a_deck_without_contact_has_nothing_to_request(tmp_path):
     assert run("run", deck, "--out", tmp_path).returncode == 0
     process = run("run", deck, "--out", tmp_path, "--accuracy", "1%")
     assert process.returncode == 1 and "no *CONTACT PAIR" in process.stderr
+
+
+@pytest.mark.parametrize("target", [10, 3])
+def test_a_pressure_without_limit_is_never_reached_where_only_changes_tell(tmp_path, target):
+    """The pressure at the edge of a punch grows with every division. Faces that do not match have no
+    error of the mesh: what a round that divides them changes is all that is known."""
+    cards = [
+        *mesh("A", np.linspace(0.0, 1.0, 5), [1.0, 1.5, 2.0], "CPE4"),
+        *material("A", (200.0, 0.3)),
+        *mesh("B", np.linspace(0.0, 3.0, 9), [0.0, 0.5, 1.0], "CPE4", first=101),
+        *material("B", (100.0, 0.3)),
+        "*SURFACE INTERACTION, NAME=I", "*CONTACT PAIR, INTERACTION=I, NAME=P", "A.BOTTOM, B.TOP"]
+    deck = write(tmp_path / "punch.inp", without_unused_surfaces(cards), [
+        "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "B.BOTTOM, 1, 2", "A.LEFT, 1", "B.LEFT, 1",
+        "A.TOP, 2, 2, -0.01", "*END STEP"])
+    process = run("run", deck, "--out", tmp_path, "--accuracy", f"{target}%")
+    assert process.returncode == 4, process.stderr
+    _, bounds, reached = rounds_of(tmp_path / "punch.vtkhdf", "P")
+    peak = bounds["peak_pressure"]
+    assert not reached and peak[-1, 2] > peak[-1, 3]
+    assert np.all(np.diff(peak[:, 1]) > 0)
