@@ -81,13 +81,14 @@ contains
       real(dp), intent(in) :: edge, part, change
       real(dp) :: spacing
 
+      ! Where there is no edge, or none on the finer mesh, nothing is known.
+      bound = change + edge
+      if (ieee_is_nan(bound)) return
       spacing = edge_spacing(points, edge)
       bound = part*spacing
       if (any(abs(points%arc_length - edge) <= same_place*spacing)) bound = max(part, at_node)* &
          spacing
       bound = bound + of_change*max(0.0_dp, abs(change) - max(part, at_node)*spacing)
-      ! On the finer mesh there is no such edge.
-      if (ieee_is_nan(change)) bound = change
    end function edge_bound
 
    !> Whether all that is closed up to its outer edge sticks.
@@ -95,8 +96,9 @@ contains
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
 
-      ends_with_contact = abs(contact%edge_stick - contact%edge_contact) <= &
-         same_place*edge_spacing(points, contact%edge_contact)
+      ends_with_contact = .not. ieee_is_nan(contact%edge_stick + contact%edge_contact)
+      if (ends_with_contact) ends_with_contact = abs(contact%edge_stick - contact%edge_contact) &
+         <= same_place*edge_spacing(points, contact%edge_contact)
    end function ends_with_contact
 
    !> Sum of the shear forces of stuck contact points, without their signs [force].

@@ -2,7 +2,7 @@
 
 import pytest
 from blocks import write
-from deck_runs import run
+from deck_runs import CYLINDER, copy_deck, run
 from physics import judge, material, mesh, verify
 
 CARDS = mesh("UP", [0.0, 1.0], [0.0, 0.5]) + mesh("LOW", [0.0, 1.0], [-1.0, 0.0], first=101)
@@ -74,3 +74,13 @@ def test_a_third_coordinate_of_zero_is_passed_over(tmp_path):
     process = run("run", "--quiet", write(tmp_path / "deck.inp", nodes, verify(*checks)), "--out",
                   tmp_path)
     assert process.returncode == 0, process.stderr
+
+
+def test_creep_none_is_what_happens(tmp_path):
+    card = "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT"
+    deck = copy_deck(CYLINDER, tmp_path / "creep.inp", changes={card: card + ", CREEP=NONE"})
+    plain = run("check", CYLINDER)
+    process = run("check", deck)
+    assert process.returncode == plain.returncode == 0
+    assert process.stderr == plain.stderr
+    assert process.stdout.removeprefix(str(deck)) == plain.stdout.removeprefix(str(CYLINDER))
