@@ -16,7 +16,7 @@ module increment_quantities
       quantity_type('load', of_history, 'load', &
       description='value on the load axis, which the attribute label names'), &
       quantity_type('iterations', of_history, '-', is_integer=.true., &
-      description='passes of the fixed point'), &
+      description='iterations of the fixed point'), &
       quantity_type('cut_backs', of_history, '-', is_integer=.true., is_published=.false.), &
       quantity_type('residual', of_history, '-', is_published=.false.), &
       quantity_type('residual_floor', of_history, '-', is_published=.false.), &
@@ -43,11 +43,11 @@ module increment_quantities
       quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux', &
       description='estimated error of the heat flux by the mesh, relative; one column per body'), &
       quantity_type('increment', of_passes, '-', head='increment', width=12, is_integer=.true., &
-      description='increment of the pass'), &
+      description='increment of the iteration'), &
       quantity_type('iteration', of_passes, '-', head='iteration', width=11, is_integer=.true., &
-      description='number of the pass in its increment'), &
+      description='number of the iteration in its increment'), &
       quantity_type('residual', of_passes, '-', head='residual', width=12, &
-      description='largest change of a conductance by the pass, relative'), &
+      description='largest change of a conductance by the iteration, relative'), &
       quantity_type('g_min', of_passes, '-', head='g min', width=11, is_plain=.true., &
       description='smallest factor g of eq. (4.2)'), &
       quantity_type('g_max', of_passes, '-', head='g max', width=11, is_plain=.true., &
@@ -57,7 +57,7 @@ module increment_quantities
       quantity_type('pairs_changed', of_passes, '-', head='points changed', width=15, &
       is_integer=.true., description='contact points whose contact state changed'), &
       quantity_type('cut_backs', of_passes, '-', head='cut-backs', width=11, is_integer=.true., &
-      description='cut-backs of the increment before the pass')]
+      description='cut-backs of the increment before the iteration')]
 
 contains
 
