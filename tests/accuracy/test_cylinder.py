@@ -148,7 +148,7 @@ def changes_table(found, best):
         text="""Root mean square over the loads of what halving the elements, or the increments, changes. Order: by least squares from
 the last three. Cosine: between the last two changes over the loads; 1 if all loads converge in the same way,
 negative if errors change sign. Above 0.7 the value is extrapolated by Richardson's formula, with the order but at most 2,
-and the band is the grid convergence index: that correction times 3, or times 1.25 where the order is 1.8 to 2.2. Else the finest grid has the value. Errors of random sign fall by 2^-p, so the last
+and the band is the grid convergence index: that correction times 3, or 1.25 times it where the order is 1.8 to 2.2. Else the finest grid has the value. Errors of random sign fall by 2^-p, so the last
 change is sqrt(1 + 4^p) times the rms error left, and the band is three times that error, from the loads within 80 C; with an order
 below 0.5, three times the largest change. The bands of mesh and increments are added.""")
     for quantity in QUANTITIES:

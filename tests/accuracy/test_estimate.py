@@ -63,6 +63,9 @@ for which there is no bound.
 QUANTITIES = {"normal_force": "normal force", "heat_rate": "heat rate",
               "peak_pressure": "peak pressure"}
 EDGES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
+UNITS = """Forces, heat rates, pressures and edges in MPa cm^2, W, MPa and cm for the cylinders, in MPa
+mm^2, W, MPa and mm for Hertz, press fit and cracked plate; decks with a number have no
+units. `-`: the deck does not have the quantity."""
 MOST = 0.7  # ratio of changes from mesh to mesh above which nothing is extrapolated
 FINEST_PARTS = 8
 LATE = {drawn_deck(seed).name for seed in SEEDS if seed not in FITTED}
@@ -140,9 +143,11 @@ def limits(case, folder):
 
 def five_decks(folder):
     """Return the table of converged values of the five decks."""
-    table = Table("Converged values of the five decks", ["deck", *QUANTITIES.values(), *EDGES.values()])
+    table = Table("Converged values of the five decks", ["deck", *QUANTITIES.values(), *EDGES.values()],
+                  text=UNITS)
     for case in CASES:
         exact = limits(case, folder)
+        exact["heat_rate"] = exact["heat_rate"] or np.nan  # no step of the deck has heat
         table.rows.append([case.name, *map(told_value, (exact[name] for name in (*QUANTITIES, *EDGES)))])
     return table
 
@@ -184,7 +189,7 @@ def misses(cases):
 def converged_table(decks, folder):
     """Return the converged values at the ends of the steps of decks."""
     table = Table("Converged values of all decks",
-                  ["deck", "decks", "step", *held_bounds.QUANTITIES.values()])
+                  ["deck", "decks", "step", *held_bounds.QUANTITIES.values()], text=UNITS)
     for deck in decks:
         with h5py.File(held_bounds.run(deck, 0, 1, folder)) as file:
             times = file["errors/time"][:]

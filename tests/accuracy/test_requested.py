@@ -11,7 +11,7 @@ TEXT = """
 pressure and edge of contact are inside P per cent ([deck.md](deck.md), `*ACCURACY`). Below, the
 largest true error over its target, which must stay below 1 where the status is 0, and the largest
 bound over its target. True errors are those to the converged values above; of the roller, whose
-faces do not match, no converged value is told. CPU seconds are those of all rounds together, with
+faces do not match, no converged value is given. CPU seconds are those of all rounds together, with
 estimates and results.
 
 - **Bounds** are those above; from the second round on that of the mesh is at least half of what the
@@ -36,7 +36,8 @@ TITLES = {"normal_force": "normal force", "heat_rate": "heat rate", "peak_pressu
 def converged(name):
     """Return the converged values of a deck that the document tells."""
     told = {row["deck"]: row for row in rows("Converged values of the five decks")}
-    return {q: float(told[name][title]) for q, title in TITLES.items()} if name in told else {}
+    return {q: float(told[name][title]) for q, title in TITLES.items()
+            if told.get(name, {}).get(title, "-") != "-"}
 
 
 def measured(name, percent, folder):

@@ -16,9 +16,10 @@ from document import Document  # noqa: E402
 
 QUANTITIES = {"normal_force": "normal force", "heat_rate": "heat rate",
               "peak_pressure": "peak pressure", "edge_contact": "edge of contact"}
-TOLD = {row["deck"]: {name: float(row[head]) for name, head in QUANTITIES.items()}
-        for row in Document("accuracy.md", DECKS, (), "").rows("Converged values of the five decks")}
-CONVERGED = {CYLINDER: TOLD["cylinder"], COUPLED: TOLD["coupled twin"]}
+TOLD = {row["deck"]: row for row in Document("accuracy.md", DECKS, (), "").rows(
+    "Converged values of the five decks")}
+CONVERGED = {deck: {quantity: float(TOLD[name][head]) for quantity, head in QUANTITIES.items()}
+             for deck, name in ((CYLINDER, "cylinder"), (COUPLED, "coupled twin"))}
 PRESS_FIT = INPUT / "examples" / "press_fit.inp"
 
 

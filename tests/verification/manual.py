@@ -46,7 +46,7 @@ How to read the tables:
   reference is 0, and for edges of zones, it is absolute.
 - `order` is log2 of the ratio of the errors of this mesh and of the one before, which is half as
   fine. It is left out where errors are rounding, for edges of zones, whose errors change sign as
-  an edge moves between two nodes, and for forces that the loads give on any mesh.
+  an edge moves between two nodes, and for forces fixed by equilibrium.
 - `allowed` is the tolerance on the `*VERIFY` card. It does not come from the program's own results:
   each case gives its reason.
 """

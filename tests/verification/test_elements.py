@@ -117,13 +117,14 @@ def cases():
     return [
         Manufactured(
             "Manufactured solutions",
-            """Temperatures and displacements of entire functions are prescribed on the outline of a
-            unit square (axisymmetric: radii 1 to 2), and all nodes inside are judged. Plane: T = Re
-            e^(1.5 z), and Kolosov and Muskhelishvili's displacements of phi = e^(1.5 z)/100, psi =
-            (e^(1.5 z) + z^4)/100. Axisymmetric: T = z^3 - 3/2 z r^2, and Papkovich's displacements
-            of B = T and b = z^4 - 3 z^2 r^2 + 3/8 r^4. Both satisfy the equations without sources
-            and body forces. The inner corners of a mesh of 4 x 4 are moved by up to a quarter of a
-            cell; each finer mesh divides every cell of it in four. E = 1000, nu = 0.3.""",
+            """Temperatures and displacements given by smooth closed-form fields are prescribed on
+            the outline of a unit square (axisymmetric: radii 1 to 2), and all nodes inside are
+            judged. Plane: T = Re e^(1.5 z), and Kolosov and Muskhelishvili's displacements of phi =
+            e^(1.5 z)/100, psi = (e^(1.5 z) + z^4)/100. Axisymmetric: T = z^3 - 3/2 z r^2, and
+            Papkovich's displacements of B = T and b = z^4 - 3 z^2 r^2 + 3/8 r^4. Both satisfy the
+            equations without sources and body forces. The inner corners of a mesh of 4 x 4 are
+            moved by up to a quarter of a cell; each finer mesh divides every cell of it in four. E
+            = 1000, nu = 0.3.""",
             """The fields themselves. N. I. Muskhelishvili, Some Basic Problems of the Mathematical
             Theory of Elasticity, 1953; S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 1970.
             Orders: O. C. Zienkiewicz, The Finite Element Method, 1977.""",
@@ -137,7 +138,7 @@ def cases():
         Case(
             "Thick cylinder",
             """A tube of radii 1 and 2 in plane strain under an internal pressure of 1, E = 1000, nu
-            = 0.3, CAX8, n elements through the wall.""",
+            = 0.3, in any consistent units; CAX8, n elements through the wall.""",
             "G. Lamé; Timoshenko and Goodier, section 28.",
             """Of the displacement 0.2 % with two elements, falling with h^3, the order of
             displacements (nodes do better); of the stress, which is extrapolated from inside the
@@ -148,7 +149,7 @@ def cases():
         Incompressible(
             "Thick cylinder, nearly incompressible",
             """The same tube with six elements through the wall, for Poisson's ratios up to 1/2. The
-            table has the error of the radial displacement of the bore.""",
+            table has the relative error of the radial displacement of the bore.""",
             "As above.",
             """Elements that do not lock: 0.5 % at every ratio, of CAX3 15 % up to 0.49. CAX8 and
             CAX3 lock: no error is promised above 0.49, and the program warns.""",

@@ -147,7 +147,7 @@ def cases():
         Case("LE1, elliptic membrane",
              """A quarter of a membrane between the ellipses (x/2)^2 + y^2 = 1 and (x/3.25)^2 +
              (y/2.75)^2 = 1 m, pulled by 10 MPa on the outer one; plane stress, E = 210 GPa, nu =
-             0.3. Elements along the ellipses x between them.""",
+             0.3. Meshes: elements along x across. Stresses in MPa.""",
              "Target 92.7 MPa at D (2, 0).",
              """10 % on the coarsest mesh, halved on each finer one: stress at a boundary is
              extrapolated from inside the elements. Abaqus is 9 % off with CPS8 on the coarse mesh
