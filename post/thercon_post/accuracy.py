@@ -7,7 +7,7 @@ from .errors import UserError
 from .style import plt
 from .tables import stack_tables
 
-SMALLEST = 1e-3  # of a target: bounds below it are drawn here
+SMALLEST = 1e-3  # of a target: bounds below it are marked at the foot
 
 
 def draw(result, options):
@@ -22,16 +22,25 @@ def draw(result, options):
     figure, axes = plt.subplots(
         figsize=(style.DOUBLE_COLUMN * 0.62, 3.2), layout="constrained"
     )
-    tables = []
+    tables, any_below = [], False
     for number, (name, rows) in enumerate(series):
         value, bound, allowed = rows[:, 1], rows[:, 2], rows[:, 3]
-        ratio = np.maximum(bound / allowed, SMALLEST)
+        ratio = bound / allowed
+        label = name + uncertain_words(ratio)
+        is_below = ratio < SMALLEST
+        any_below = any_below or is_below.any()
         look = style.SERIES[number % len(style.SERIES)], style.MARKERS[number % len(style.MARKERS)]
-        axes.plot(cost, ratio, color=look[0], marker=look[1], ms=3.5, lw=0.9, label=name)
+        shown = np.where(is_below, np.nan, ratio)
+        axes.plot(cost, shown, color=look[0], marker=look[1], ms=3.5, lw=0.9, label=label)
+        if is_below.any():
+            foot = np.full(is_below.sum(), SMALLEST)
+            axes.plot(cost[is_below], foot, "v", color=look[0], ms=4 + 2 * number, mfc="none")
         table = {"target": np.full(len(cost), name, dtype=object), "cpu_seconds": cost}
         table |= {"unknowns": rounds["unknowns"][:], "value": value, "bound": bound}
         tables.append(table | {"allowed": allowed})
     axes.axhline(1.0, color=style.GREY, lw=0.8, ls="--")
+    if any_below:
+        axes.plot([], [], "v", color=style.GREY, ms=4, mfc="none", label="below the scale")
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel("CPU time of all rounds, s")
@@ -39,6 +48,16 @@ def draw(result, options):
     figure.legend(loc="outside lower center", ncols=2, fontsize=7)
     name = style.file_name(result, "accuracy")
     return style.write(figure, stack_tables(tables), options.out, name)
+
+
+def uncertain_words(ratio):
+    """Return in which rounds there is no bound, in words."""
+    rounds = np.flatnonzero(np.isnan(ratio)) + 1
+    if len(rounds) == 0:
+        return ""
+    if len(rounds) == len(ratio):
+        return " (uncertain)"
+    return f" (uncertain in round {', '.join(map(str, rounds))})"
 
 
 def targets(rounds):

@@ -15,22 +15,26 @@ QUANTITY_LINES = {
     "heat_flux": "solid",
 }
 
+COLUMNS = 2  # of the legend
+LEGEND_LINE = 0.16  # height of a line of the legend, in inches
+
 
 def add(picture, panels, kinds, overlays):
     """Name curves, loads, zone edges and digitised figures on the panels of a picture."""
     several = len(picture.rows) > 1
+    handles = []
     for axes, quantities, letter in zip(panels, kinds, "abc"):
-        handles = quantity_handles(picture, quantities) if len(quantities) > 1 else []
-        if axes is panels[0]:
-            handles += load_handles(picture) if several else []
-            handles += [overlay.handle() for overlay in overlays]
-        if axes is panels[-1] and several:
-            handles += edge_handles(picture)
-        if handles:
-            axes.legend(handles=handles, loc="best", frameon=True, edgecolor="none")
+        handles += quantity_handles(picture, quantities) if len(quantities) > 1 else []
         if len(kinds) > 1:
             place = {"xytext": (-30, 4), "textcoords": "offset points"}
             axes.annotate(f"({letter})", (0, 1), xycoords="axes fraction", **place)
+    handles += load_handles(picture) if several else []
+    handles += edge_handles(picture)
+    handles += [overlay.handle() for overlay in overlays]
+    if handles:  # outside: within the panels it would lie on curves
+        figure = panels[0].figure
+        figure.set_figheight(figure.get_figheight() + LEGEND_LINE * -(-len(handles) // COLUMNS))
+        figure.legend(handles=handles, loc="outside upper center", ncols=COLUMNS)
     if not several:
         name_zones(picture, panels[0])
 
@@ -38,7 +42,8 @@ def add(picture, panels, kinds, overlays):
 def quantity_handles(picture, quantities):
     """Return the legend's entries for the quantities of one panel."""
     tau = r"$\tau$" if picture.sign > 0.0 else r"$-\tau$"
-    names = {"pressure": "pressure $p$", "shear": f"friction {tau}", "mu_p": r"$\mu p$"}
+    bound = r"$\pm\mu p$" if picture.two_signs() else r"$\mu p$"
+    names = {"pressure": "pressure $p$", "shear": f"friction {tau}", "mu_p": bound}
     markers = {"pressure": "o", "shear": "s"} if len(picture.rows) == 1 else {}
     return [
         Line2D(
@@ -72,12 +77,18 @@ def load_texts(picture):
 
 
 def edge_handles(picture):
-    """Return the legend's entries for the marks at the foot of the panels."""
+    """Return the legend's entries for the marks of zone edges."""
+    colour, width = edge_looks(picture)
     return [
-        Line2D([], [], color="black", lw=0.8, ls=line, label=name)
+        Line2D([], [], color=colour, lw=width, ls=line, label=name)
         for key, (name, line) in EDGES.items()
         if any(picture.edges(key, row).size for row in picture.rows)
     ]
+
+
+def edge_looks(picture):
+    """Return colour and line width of zone edges: thin through the panels, or at their foot."""
+    return ("#606060", 0.5) if len(picture.rows) == 1 else ("black", 0.8)
 
 
 def name_zones(picture, axes):

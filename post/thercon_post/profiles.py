@@ -140,15 +140,15 @@ class Picture:
     def mark_edges(self, axes, row, colour):
         """Mark zone edges: through the panel for one load, at its foot for several."""
         single = len(self.rows) == 1
-        colour = "#606060" if single else colour
+        usual, width = profile_legends.edge_looks(self)
         for key, (_, line) in EDGES.items():
             for edge in self.edges(key, row):
                 axes.axvline(
                     edge,
                     ymax=1.0 if single else 0.09,
-                    color=colour,
+                    color=usual if single else colour,
                     linestyle=line,
-                    lw=0.5 if single else 0.8,
+                    lw=width,
                     zorder=1,
                 )
 

@@ -23,7 +23,7 @@ NEEDED = ["row", "default", "elements", "level", "contact_level", "increment_fac
 NEEDED += ["status", "pareto", "cpu_seconds", *PANELS]
 SHAPES = {"Q8": "o", "Q4": "s"}
 LOCAL = "D"  # meshes that are finer at the contact
-SMALLEST = 1e-6  # percent: errors below it are drawn here
+SMALLEST = 1e-6  # percent: errors below it are marked here
 BEYOND = 3.0
 COLUMNS = 3
 
@@ -97,11 +97,12 @@ def draw_panel(axes, trade, name):
         at = float(row["cpu_seconds"]), percent(row[name])
         if row["varied"]:
             mark, at = ("x", at) if at[1] <= high else ("^", (at[0], high))
+            mark = "v" if is_below(row[name]) else mark
             axes.plot(*at, mark, color=style.GREY, ms=3, zorder=2, clip_on=mark == "x")
             continue
         factor = float(row["increment_factor"])
         axes.plot(
-            *at, shape(row), color=colours[int(row["level"])],
+            *at, "v" if is_below(row[name]) else shape(row), color=colours[int(row["level"])],
             ms=3.2 - 0.5 * np.log2(factor), mfc="none" if factor > 1 else None, zorder=3,
         )  # fmt: skip
         if row["default"] == "1":
@@ -151,6 +152,11 @@ def is_beyond(trade, name):
     return any(row["varied"] and row[name] and percent(row[name]) > high for row in trade.rows)
 
 
+def is_below(text):
+    """Whether a relative error is below what is drawn."""
+    return 100 * float(text) < SMALLEST
+
+
 def shape(row):
     """Return the marker of a row of the grid."""
     return SHAPES.get(row["elements"], "o") if row["contact_level"] == "0" else LOCAL
@@ -182,6 +188,8 @@ def legend(trade):
         handles.append(handle("other method", marker="x", color=style.GREY))
         if any(is_beyond(trade, name) for name in trade.panels()):
             handles.append(handle("off the scale", marker="^", color=style.GREY))
+    if any(row[name] and is_below(row[name]) for row in trade.rows for name in trade.panels()):
+        handles.append(handle("below the scale", marker="v"))
     handles.append(handle("deck as written", marker="o", ms=8, mfc="none", color=style.VERMILION))
     handles.append(handle("Pareto-optimal", ls="-", color=style.BLUE))
     if trade.uncertainty:

@@ -18,8 +18,8 @@ PASSED_OVER = ("increment", "time", "s_edge_contact", "s_edge_stick")
 NAMES = {OPEN: ("I", "open"), SLIP: ("II", "slip"), STICK: ("III", "stick")}
 CURVE_NAMES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
 LINES = {"edge_contact": "solid", "edge_stick": (0, (5, 2))}
-FURTHER = {"color": style.GREY, "lw": 0.9, "marker": "d", "ms": 2.8, "mew": 0.6}
-FURTHER_FILLS = {"edge_contact": style.GREY, "edge_stick": "white"}
+FURTHER = {"color": style.BLACK, "lw": 0.9, "marker": "d", "ms": 3.4, "mew": 0.7}
+FURTHER_FILLS = {"edge_contact": style.BLACK, "edge_stick": "white"}
 TINTS = ("#FFFFFF", "#DCE8F2", "#FBE9C8")  # of open, slip, stick
 
 
@@ -157,7 +157,7 @@ class Picture:
                 if there.any():
                     line = bool(np.any(there[1:] & there[:-1]))
                     self.further[key] = self.further.get(key, False) or line
-                    axes.plot(self.abscissa[piece], column[piece], zorder=2, **looks)
+                    axes.plot(self.abscissa[piece], column[piece], zorder=4, **looks)
 
     def legend_handles(self, overlays):
         """Return the legend's entries: curves, pair states, digitised figures."""

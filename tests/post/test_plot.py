@@ -26,7 +26,7 @@ from synthetic import (  # noqa: E402
 )
 
 from thercon_post import element_fields, field_colours, fields, mesh  # noqa: E402
-from thercon_post import profiles, style, zones  # noqa: E402
+from thercon_post import profiles, style, trade, zones  # noqa: E402
 from thercon_post.cells import Cells  # noqa: E402
 from thercon_post.cli import main, parser, spread  # noqa: E402
 from thercon_post.fine_mesh import refine  # noqa: E402
@@ -387,8 +387,9 @@ def test_profiles_and_fields_name_load_and_time(kept, result):
     (figure,) = kept("fields", result, "--load", 540, "--quantity", "temperature")
     assert figure.get_supxlabel() == words
     (figure,) = kept("profiles", result, "--load", 180, 540)
-    legend = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert legend[-2:] == ["180 \N{DEGREE SIGN}C, time 1.8", "540 \N{DEGREE SIGN}C, time 5.4"]
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert legend[-2:] == ["edge of contact", "edge of stick"]
+    assert legend[-4:-2] == ["180 \N{DEGREE SIGN}C, time 1.8", "540 \N{DEGREE SIGN}C, time 5.4"]
 
 
 def test_magnified_displacements_name_their_factor_and_why_bodies_overlap(result):
@@ -792,6 +793,16 @@ def test_another_method_far_off_does_not_stretch_the_scale_of_a_trade(kept, tmp_
     assert "off the scale" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
+def test_errors_of_a_trade_below_the_scale_are_marked_as_such(kept, tmp_path):
+    def exact(rows):
+        return [changed(rows[0], error_normal_force=0.0), *rows[1:]]
+
+    (figure,) = kept("trade", write_trade(tmp_path / "deck.trade.csv", exact))
+    (marked,) = [line for line in figure.axes[1].lines if line.get_marker() == "v"]
+    assert marked.get_ydata()[0] == trade.SMALLEST
+    assert "below the scale" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
 def test_trade_leaves_its_table_alone(draw, tmp_path):
     table = write_trade(tmp_path / "deck.trade.csv")
     before = table.read_text()
@@ -824,3 +835,10 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
     np.testing.assert_allclose(line.get_xdata(), [0.1, 0.4])
     np.testing.assert_allclose(line.get_ydata(), [4.0, 0.5])
     assert list(limit.get_ydata()) == [1.0, 1.0]
+    with h5py.File(asked, "a") as file:
+        file["accuracy/bounds/FACE/normal_force"][...] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 1e-9, 0.1]]
+    (figure,) = kept("accuracy", asked)
+    (_, foot, *_) = figure.axes[0].get_lines()
+    assert (foot.get_marker(), list(foot.get_xdata())) == ("v", [0.4])
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        "FACE normal force (uncertain in round 1)", "below the scale"]

@@ -96,6 +96,8 @@ function legend(out, entries, width, left, top) {
 const square = r => (x, y) => `M${(x - r).toFixed(1)} ${(y - r).toFixed(1)}h${2 * r}v${2 * r}h${-2 * r}z`;
 const disc = r => (x, y) => `M${(x - r).toFixed(1)} ${y.toFixed(1)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
 
+const diamond = (x, y) => `M${(x - 3).toFixed(1)} ${y.toFixed(1)}l3 -4l3 4l-3 4z`;
+
 // ---- loads ----
 const times = data.load.times, count = times.length;
 const abscissa = data.load.rises ? data.load.values : times;
@@ -117,6 +119,14 @@ const contacts = data.contacts.map(each => {
 });
 const contact = () => contacts[$('interface') ? Number($('interface').value) : 0];
 const rowOf = (values, width, k = row) => values.subarray(k * width, (k + 1) * width);
+// Points of all edges of a kind beside the main one.
+function further(key) {
+   const c = contact(), found = [];
+   for (let k = 0; k < count; k++)
+      for (const edge of finite(rowOf(c.edges[key], 4, k)))
+         if (!(Math.abs(edge - c.main[key][k]) <= 1e-6 * Math.abs(edge))) found.push([abscissa[k], edge]);
+   return found;
+}
 function drawZones() {
    const c = contact(), m = c.at.length, states = [[], [], []];
    for (let k = 0; k < count; k++)
@@ -135,6 +145,8 @@ function drawZones() {
          {points: states[0], shape: disc(0.4 * small), fill: '#999', colour: '#999', name: 'open'},
          {points: states[1], shape: disc(small), fill: '#fff', colour: BLUE, name: frictionless ? 'closed' : 'slip'},
          {points: states[2], shape: square(0.9 * small), fill: '#e69f00', colour: '#e69f00', name: 'stick'},
+         {points: further('contact'), shape: diamond, fill: '#000', colour: '#000', name: 'further edge of contact'},
+         {points: further('stick'), shape: diamond, fill: '#fff', colour: '#000', name: 'further edge of stick'},
       ].filter(cloud => cloud.points.length),
       lines: [
          {x: abscissa, y: c.main.contact, colour: '#000', name: 'edge of contact'},
@@ -171,10 +183,15 @@ function profile(id, title, quantities, label, zero, caption) {
 function drawProfiles() {
    const c = contact(), said = loadWords(row), mu = c.friction;
    const shear = c.profiles.shear && c.profiles.shear.some(v => v !== 0);
-   const sign = shear && c.profiles.shear.reduce((a, b) => a + (b || 0), 0) < 0 ? -1 : 1;
+   // Friction of one sign at this load is drawn positive, as in the pictures of post/plot.
+   const values = shear ? rowOf(c.profiles.shear, c.at.length).filter(Number.isFinite) : [];
+   const low = values.reduce((a, b) => Math.max(a, -b), 0), high = values.reduce((a, b) => Math.max(a, b), 0);
+   const bothSigns = Math.min(low, high) > 0.02 * Math.max(low, high);
+   const sign = !bothSigns && values.reduce((a, b) => a + b, 0) < 0 ? -1 : 1;
    const tractions = [['pressure', 'pressure p', '#000', '']];
    if (shear) tractions.push(['shear', sign < 0 ? 'friction −τ' : 'friction τ', VERMILION, '', sign]);
-   if (shear && mu) tractions.push(['pressure', 'μp', GREY, '3 3', mu]);
+   if (shear && mu) tractions.push(['pressure', bothSigns ? '±μp' : 'μp', GREY, '3 3', mu]);
+   if (shear && mu && bothSigns) tractions.push(['pressure', '', GREY, '3 3', -mu]);
    profile('tractions', 'Contact tractions', tractions, withUnit('traction', unit('stress')), true,
       `Tractions, ${escaped(said)}. Dotted lines are the edges of contact and stick.`);
    profile('flux', 'Heat flux', [['heat_flux', 'heat flux q', '#000', '']], withUnit('heat flux q', unit('flux')), false,
@@ -206,7 +223,7 @@ function drawHistories() {
       box.innerHTML = data.history.map((_, k) => `<figure id="history-${k}"></figure>`).join('');
    data.history.forEach((each, k) => chart($(`history-${k}`), {
       width: 360, height: 200, title: `${each.label} over the load`,
-      xLabel: data.load.axis, xRange: [low - room, high + room],
+      xLabel: data.load.axis, xRange: [low - room, high + room], yLabel: each.unit,
       yRange: rangeOf(each.values.map(v => v === null ? NaN : v), true), uprights: [abscissa[row]],
       lines: [{x: abscissa, y: each.values.map(v => v === null ? NaN : v), colour: BLUE, mark: count <= 60}],
       caption: `${escaped(each.label)}: <b>${show(each.values[row] === null ? NaN : each.values[row])}</b> ${escaped(each.unit)}`,
