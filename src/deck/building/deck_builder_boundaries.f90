@@ -49,19 +49,8 @@ contains
       end if
       call check_name(data, report, valid)
       if (.not. valid) return
-      first = 0
-      call need_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
-         report, first, valid)
+      call read_degrees(data, report, first, last, request%value, valid)
       if (.not. valid) return
-      last = first
-      call take_field(data, 3, 'last degree of freedom'//value_advice(data), report, last, valid)
-      call take_field(data, 4, 'value', report, request%value, valid)
-      call check_extra(data, 4, 'node or set, first and last degree of freedom, value', report)
-      if (.not. valid) return
-      if (last < first) then
-         call report%error(field_place(data, 3), 'the last degree of freedom is below the first')
-         return
-      end if
       do dof = first, last
          select case (dof)
          case (1, 2, dof_temperature)
@@ -88,6 +77,27 @@ contains
          end select
       end do
    end subroutine build_boundary
+
+   !> First and last degree of freedom, and the value.
+   subroutine read_degrees(data, report, first, last, value, valid)
+      type(data_card_type), intent(in) :: data
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: first, last
+      real(dp), intent(inout) :: value
+      logical, intent(inout) :: valid
+
+      first = 0
+      call need_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
+         report, first, valid)
+      last = first
+      if (.not. valid) return
+      call take_field(data, 3, 'last degree of freedom'//value_advice(data), report, last, valid)
+      call take_field(data, 4, 'value', report, value, valid)
+      call check_extra(data, 4, 'node or set, first and last degree of freedom, value', report)
+      if (last >= first .or. .not. valid) return
+      call report%error(field_place(data, 3), 'the last degree of freedom is below the first')
+      valid = .false.
+   end subroutine read_degrees
 
    !> Shows where a value belongs that stands in the place of the last degree of freedom.
    pure function value_advice(data) result(advice)
