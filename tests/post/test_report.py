@@ -200,6 +200,32 @@ def test_bodies_whose_ranges_differ_tenfold_have_scales_of_their_own(synthetic, 
     assert "each has its own" in note
 
 
+def test_friction_edges_and_histories_are_drawn_as_in_the_pictures(synthetic, browser):
+    """Friction of both signs has a bound on either side; of one sign it is drawn positive."""
+
+    def turn(file):
+        contact = file["contact/CYLINDER"]
+        shear = contact["shear"][()]
+        shear[:14] = -np.abs(shear[:14])
+        shear[14] = np.abs(shear[14]) * np.where(np.arange(shear.shape[1]) < 3, 1.0, -1.0)
+        contact["shear"][...] = shear
+        contact["edges_stick"][5:, 1] = 0.5 * contact["edges_stick"][5:, 0]
+
+    browser.open(synthetic(turn))
+    look = "return document.getElementById(arguments[0]).textContent"
+    words = browser.run(look, "tractions")
+    assert "\N{PLUS-MINUS SIGN}\N{GREEK SMALL LETTER MU}p" in words
+    assert "friction \N{GREEK SMALL LETTER TAU}" in words
+    assert "further edge of stick" in browser.run(look, "zones")
+    axes = browser.run("return document.querySelector('#history-0 svg').textContent")
+    assert axes.endswith("MPa")
+    browser.press("#load", "home")
+    words = browser.run(look, "tractions")
+    assert "friction \N{MINUS SIGN}\N{GREEK SMALL LETTER TAU}" in words
+    assert "\N{PLUS-MINUS SIGN}" not in words
+    assert browser.messages() == []
+
+
 def test_a_listing_of_another_deck_is_not_taken(cylinder, tmp_path):
     for name in ("cylinder.vtkhdf", "cylinder.lst"):
         shutil.copy(cylinder / name, tmp_path)
