@@ -54,7 +54,7 @@ module command_line
       new_line('a')// &
       '  --accuracy P%      run: refine the mesh and shorten the increments until the error'// &
       new_line('a')// &
-      '                     bounds of force, heat rate, peak pressure and contact edge'// &
+      '                     bounds of force, heat rate, peak pressure, edge of contact'// &
       new_line('a')//'                     are within P per cent; replaces *ACCURACY'// &
       new_line('a')// &
       '  --limit SECONDS    trade: skip rows that would take more CPU time (30)'// &

@@ -34,7 +34,7 @@ CalculiX 2.20 of Debian against thercon on the published cylinder.
   off by 1.8 %.
 
 The error of a run is the largest relative one of normal force, heat rate, friction force and
-contact edge at 180, 360, 540, 720 and 900 C on top. For each error we sought the cheapest run of
+edge of contact at 180, 360, 540, 720 and 900 C on top. For each error we sought the cheapest run of
 each program over elements, meshes and increments, and over CalculiX's penalty and stick slope. Cost
 is CPU time, user and system, of one core, including reading and writing.
 
@@ -83,7 +83,7 @@ def what_errs(scored, limit):
                 rows.append([f"{100 * level:g} %", envelope.NAMES[program],
                              *(f"{100 * value:.2f} %" for value in off)])
     return Table("The errors of these runs", ["error", "program", "normal force", "heat rate",
-                 "friction force", "contact edge"], rows, "Largest errors over the five temperatures.")
+                 "friction force", "edge of contact"], rows, "Largest errors over the five temperatures.")
 
 
 def models(recorded):
@@ -100,7 +100,7 @@ def models(recorded):
                 cells[2:] = ["", ""]
             rows.append([words, envelope.NAMES[case.program], *cells])
     return Table("Effect of the two changes", ["restored", "program", "normal force",
-                 "heat rate", "friction force", "contact edge"], rows,
+                 "heat rate", "friction force", "edge of contact"], rows,
                  "The largest change over the five temperatures, on one mesh. Where the programs differ for one change, the "
                  "reason is that CalculiX takes gaps and areas at displaced positions. Its friction and edge come from horizontal reactions and gaps "
                  "between nodes, which have another meaning on an inclined contact.")

@@ -43,7 +43,7 @@ if they do not settle. Edges always take this second rule, because they lie betw
 scatter. The effect of TOL is added. Orders below one half that are hidden behind another term are
 not seen.
 
-**Rows that are finer at the contact** have 1, 2 or more levels at both faces of all contact pairs,
+**Rows that are finer at the contact** have 1, 2 or more levels at both faces of all interfaces,
 beyond those of the whole mesh, with the increments of the deck and those four times as long.
 `Q8 x 2:8` divides all sides by 2, and those at the contact faces by 8 (`*REFINE, LEVELS=1`, then
 `LEVELS=2, SURFACE=`). The reference does not use them. Refined elements keep the shape of the

@@ -18,7 +18,7 @@ TITLE = "Fixed point of the conductance"
 TEXT = f"""
 NEWTON, the default, finds a solution in every case of this section. The other methods fail in 5 to 13 % of them, where the coupling is strong.
 
-Every method solves omega = U(omega); "relaxed 0.5" is (4.2) with the constant g = 0.5. Only NEWTON must not give up; the others may, with a message, after {MAXITER} passes on the rods and 50 on the
+Every method solves omega = U(omega); "relaxed 0.5" is (4.2) with the constant g = 0.5. Only NEWTON must not give up; the others may, with a message, after {MAXITER} passes (iterations) on the rods and 50 on the
 cylinder. What a method finds must be a solution. (4.1) converges only if |U'| < 1, and with g = 0.5 only if |0.5 + 0.5 U'| < 1: on R2 both cycle without end, which counts as `pass`.
 
 All solutions of the rods are known in closed form, with 60 digits: roots of quadratics, and the state at rest where laws jump (`tests/reference/rods.py`). Where laws jump, contact points across one
