@@ -65,4 +65,5 @@ def targets(rounds):
     for face, quantities in rounds["bounds"].items():
         for quantity, rows in quantities.items():
             if np.any(rows[:, 0] > 0):
-                yield f"{style.plain(face)} {quantity.replace('_', ' ')}", rows[:]
+                words = quantity.replace("edge_", "edge of ").replace("_", " ")
+                yield f"{style.plain(face)} {words}", rows[:]

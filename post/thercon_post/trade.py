@@ -23,7 +23,7 @@ NEEDED = ["row", "default", "elements", "level", "contact_level", "increment_fac
 NEEDED += ["status", "pareto", "cpu_seconds", *PANELS]
 SHAPES = {"Q8": "o", "Q4": "s"}
 LOCAL = "D"  # meshes that are finer at the contact
-SMALLEST = 1e-6  # percent: errors below it are marked here
+SMALLEST = 1e-6  # percent: errors below it are marked at the foot
 BEYOND = 3.0
 COLUMNS = 3
 
@@ -94,15 +94,16 @@ def draw_panel(axes, trade, name):
     for row in trade.rows:
         if not row[name]:
             continue
-        at = float(row["cpu_seconds"]), percent(row[name])
+        below = is_below(row[name])
+        at = float(row["cpu_seconds"]), low if below else percent(row[name])
         if row["varied"]:
             mark, at = ("x", at) if at[1] <= high else ("^", (at[0], high))
-            mark = "v" if is_below(row[name]) else mark
+            mark = "v" if below else mark
             axes.plot(*at, mark, color=style.GREY, ms=3, zorder=2, clip_on=mark == "x")
             continue
         factor = float(row["increment_factor"])
         axes.plot(
-            *at, "v" if is_below(row[name]) else shape(row), color=colours[int(row["level"])],
+            *at, "v" if below else shape(row), clip_on=not below, color=colours[int(row["level"])],
             ms=3.2 - 0.5 * np.log2(factor), mfc="none" if factor > 1 else None, zorder=3,
         )  # fmt: skip
         if row["default"] == "1":
@@ -130,11 +131,11 @@ def ordinates(trade, name):
     """
     values = {True: [], False: []}
     for row in trade.rows:
-        if row[name]:
+        if row[name] and not is_below(row[name]):
             values[bool(row["varied"])].append(percent(row[name]))
-    usual = values[False] or values[True]
+    usual = values[False] or values[True] or [SMALLEST]
     shown = usual + [value for value in values[True] if value <= BEYOND * max(usual)]
-    if trade.uncertainty.get(name):
+    if trade.uncertainty.get(name) and not is_below(trade.uncertainty[name]):
         shown.append(percent(trade.uncertainty[name]))
     return decade(shown)
 
