@@ -21,7 +21,7 @@ How accurate results are, what more accuracy costs, and how another program comp
 
 | question | answer | section |
 |---|---|---|
-| How accurate is my run? | Its summary has an error bound for each force, heat rate, peak pressure and edge | [Estimated errors](#estimated-errors) |
+| How accurate is my run? | Its summary has an error bound for each force, heat rate, peak pressure and edge | [Bounds of errors](#bounds-of-errors) |
 | How do I get 1 %? | `thercon run DECK --accuracy 1%`; most decks take two to four rounds | [Accuracy on request](#accuracy-on-request) |
 | Node pairs or mortar points? | Keep the default, but use `PAIRING=SURFACES` on the faces of a crack | [Node pairs against mortar points](#node-pairs-against-mortar-points) |
 | Where is the mesh too coarse? | Where `stress_error` and `heat_flux_error` are large: both are true to about 20 % | [Estimated error of the mesh](#estimated-error-of-the-mesh) |
