@@ -33,9 +33,11 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class Extent:
-    """How much is run: random rods by methods that may give up, by NEWTON, and jumping ones by
-    NEWTON; refinements of the cylinder, also with a jump; and the most increments."""
+    """How much is run: each n-th of the steep laws and so many random rods by methods that may give
+    up; random rods by NEWTON, and jumping ones; refinements of the cylinder, also with a jump; and
+    the most increments."""
 
+    steep: int
     rods: int
     by_newton: int
     jumping: int
@@ -44,8 +46,8 @@ class Extent:
     increments: int
 
 
-WHOLE = Extent(COUNT, COUNT, JUMPING, (0, 1, 2), (0, 1), 450)
-TESTED = Extent(10, 40, 40, (0,), (0,), 90)
+WHOLE = Extent(1, COUNT, COUNT, JUMPING, (0, 1, 2), (0, 1), 450)
+TESTED = Extent(5, 10, 40, 40, (0,), (0,), 90)
 
 
 class Tally:
@@ -123,7 +125,7 @@ def group(folder, cases, method, tally):
             verdict(right and worst <= 1)]
 
 
-def steep_laws(folder, tally):
+def steep_laws(folder, tally, extent):
     """Return the table of ever steeper laws."""
     others = tuple(METHODS)[1:]
     table = Table("Ever steeper laws",
@@ -137,7 +139,8 @@ def steep_laws(folder, tally):
         for kept in ("A", "A/B"):
             cases = steep_cases(kept, factor)
             rows = {method: dict(zip(GROUP, group(
-                folder / f"steep-{factor:g}-{kept[-1]}-{method}", cases, method, tally),
+                folder / f"steep-{factor:g}-{kept[-1]}-{method}",
+                cases if method == "NEWTON" else cases[::extent.steep], method, tally),
                 strict=True)) for method in METHODS}
             newton = rows["NEWTON"]
             table.rows.append([
@@ -265,7 +268,7 @@ def summary(tally):
 def tables(folder, extent=WHOLE):
     """Run all cases; return their tables."""
     tally = Tally()
-    found = [known_rods(folder, tally), steep_laws(folder, tally),
+    found = [known_rods(folder, tally), steep_laws(folder, tally, extent),
              random_rods(folder, tally, extent)]
     found += cylinders(folder, tally, extent)
     return [*found, with_a_jump(folder, extent), summary(tally)]

@@ -152,7 +152,7 @@ function drawZones() {
          {x: abscissa, y: c.main.contact, colour: '#000', name: 'edge of contact'},
          {x: abscissa, y: c.main.stick, colour: '#000', dash: '6 3', name: 'edge of stick'},
       ].filter(line => finite(line.y).length),
-      caption: `Zones. Each symbol is a contact point at an increment.`,
+      caption: `Zones. Each symbol is a contact point at one increment, except diamonds.`,
    });
 }
 function profile(id, title, quantities, label, zero, caption) {
