@@ -162,13 +162,14 @@ def copied(source, folder):
 
 @pytest.mark.parametrize("case", KNOWN)
 def test_recommended_rows_have_the_accuracy_wished_for(case, tmp_path):
-    """Force, heat and peak pressure are known well enough for 1 % on all of these."""
+    """Force, heat and peak pressure are known well enough for 1 % on all of these; of the tubes only
+    longer rows are, so that 10 % is due."""
     source, *answer = KNOWN[case](tmp_path)
     deck = copied(source, tmp_path)
-    limit = "0.25" if case == "hot_tubes" else "0.1"   # what the rows due take
-    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", limit)
+    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.1")
     checked = check_recommendations(rows, deck, *answer)
-    due = {("recommended_1", key) for key in answer[1] if key != "edge_contact"}
+    target = "recommended_10" if case == "hot_tubes" else "recommended_1"
+    due = {(target, key) for key in answer[1] if key != "edge_contact"}
     assert checked >= due
 
 
