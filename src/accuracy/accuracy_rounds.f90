@@ -202,7 +202,6 @@ contains
    subroutine add_change(rounds, d, step)
       type(accuracy_round_type), intent(inout) :: rounds(:)
       integer, intent(in) :: d, step
-      real(dp) :: change
       integer :: n
 
       n = size(rounds)
@@ -210,11 +209,10 @@ contains
       associate (now => rounds(n)%findings(d, step), before => rounds(n - 1)%findings(d, step))
          if (.not. (now%is_there .and. before%is_there)) return
          now%change = abs(now%value - before%value)
-         change = max(now%change, before%change)
          if (.not. ieee_is_nan(now%mesh)) then
             now%mesh = max(now%mesh, left_by_round*now%change)
          else if (n > 2) then
-            now%mesh = change
+            now%mesh = max(now%change, before%change)
          end if
          now%bound = now%mesh + now%increment
       end associate

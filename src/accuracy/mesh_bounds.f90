@@ -7,7 +7,7 @@
 !> shear forces that falls with the spacing. An edge lies anywhere within a part of the spacing, and
 !> moves by as large a part of the contact as the force is uncertain by.
 !>
-!> The constants were chosen on decks other than those that judge them (docs/accuracy.md).
+!> docs/accuracy.md says on which decks the constants were chosen and which judge them.
 module mesh_bounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
@@ -15,6 +15,7 @@ module mesh_bounds
    use contact_states, only: contact_stick
    use interface_quantities, only: closed_length, edge_spacing
    use kinds, only: dp
+   use quantity_types, only: find_quantity
    use records, only: contact_record_type
    implicit none
    private
@@ -49,10 +50,10 @@ contains
       locked = 0.0_dp
       if (length > 0.0_dp) locked = stuck*edge_spacing(points, contact%edge_contact)/length
       shift = 0.0_dp
+      if (contact%normal_force > 0.0_dp) shift = length/contact%normal_force* &
+         bounds(find_quantity(estimated, 'normal_force'))
       do q = 1, size(bounds)
          select case (estimated(q)%name)
-         case ('normal_force')
-            if (contact%normal_force > 0.0_dp) shift = length*bounds(q)/contact%normal_force
          case ('shear_force')
             bounds(q) = bounds(q) + of_locked*locked
          case ('peak_pressure')

@@ -41,7 +41,7 @@ module refinement_error
    public :: find_change_by_refinement
 
    integer, parameter :: corrections = 3            !! solutions of the increment
-   integer, parameter :: smoothing_steps = 8       !! steps of conjugate gradients before each
+   integer, parameter :: smoothing_steps = 8        !! steps of conjugate gradients before each
 
    !> The fields of both meshes as they are corrected.
    type :: corrected_type

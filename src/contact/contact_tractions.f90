@@ -64,7 +64,7 @@ contains
          if (.not. closed(k) .or. points%weight(k) > 0.0_dp) cycle
          pressure(k) = limit(points, pressure, k)
          pressure(k) = pressure(k) + &
-            alone(points, force(k) - profile_force(points, pressure, k), k)
+            lone_pressure(points, force(k) - profile_force(points, pressure, k), k)
       end do
    end function pressures
 
@@ -72,7 +72,7 @@ contains
    !> over the integral of the line that falls from 1 to 0 at the next contact points, half of the
    !> area between on the axis and a third at a tip. The one in the middle of a side has two thirds
    !> of the side.
-   pure real(dp) function alone(points, force, k)
+   pure real(dp) function lone_pressure(points, force, k)
       type(contact_points_type), intent(in) :: points
       real(dp), intent(in) :: force
       integer, intent(in) :: k
@@ -90,9 +90,9 @@ contains
          end if
          area = area + 1.5_dp*points%weight(k + way)*part
       end do
-      alone = 0.0_dp
-      if (area > 0.0_dp) alone = max(force, 0.0_dp)/area
-   end function alone
+      lone_pressure = 0.0_dp
+      if (area > 0.0_dp) lone_pressure = max(force, 0.0_dp)/area
+   end function lone_pressure
 
    !> Nodal force of the profile at a contact point of weight 0 (area_beside), if that presses.
    pure real(dp) function profile_force(points, pressure, k)

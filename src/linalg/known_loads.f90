@@ -46,7 +46,9 @@ contains
    !> many.
    pure subroutine keep(self, rhs, condensed, solution)
       class(known_loads_type), intent(inout) :: self
-      real(dp), intent(in) :: rhs(:), condensed(:), solution(:)
+      real(dp), intent(in) :: rhs(:)            !! (equations), not zero
+      real(dp), intent(in) :: condensed(:)      !! (tail)
+      real(dp), intent(in) :: solution(:)       !! (equations), or none
       real(dp) :: length
 
       length = norm2(rhs)
