@@ -118,7 +118,7 @@ contains
       logical, intent(in) :: is_beside(:)                ! (m)
       type(cut_hat_type), intent(inout) :: hats(:)       ! (count of them) with numbers in points
       real(dp) :: weights(support, 2)
-      integer :: i, k, n
+      integer :: i, k, n, side
       logical :: crossed
 
       hats%point = pack([(k, k=1, size(is_beside))], is_beside)
@@ -131,16 +131,17 @@ contains
          do i = 1, size(points%hats(k)%segment)
             associate (segment => points%segments(points%hats(k)%segment(i)), &
                end => points%hats(k)%end(i))
-               crossed = segment%side() > 0
-               if (crossed) crossed = allocated(edges(segment%side())%along)
+               side = segment%side()
+               crossed = side > 0
+               if (crossed) crossed = allocated(edges(side)%along)
                if (.not. crossed) then
                   weights = segment%hat_weights()
                   call add(segment, weights(:, end), 1, hats(n))
-               else if (segment%side() == k .or. .not. is_beside(segment%side())) then
+               else if (side == k .or. .not. is_beside(side)) then
                   ! Both hats of the side take their integrals at once.
-                  weights = segment%hat_weights(edges(segment%side())%along)
+                  weights = segment%hat_weights(edges(side)%along)
                   call add(segment, weights(:, end), 2, hats(n))
-                  if (segment%side() < k) cycle
+                  if (side < k) cycle
                   if (is_beside(k + 1)) call add(segment, weights(:, 3 - end), 2, hats(n + 1))
                end if
             end associate

@@ -73,7 +73,7 @@ contains
    end function most_lines
 
    !> Adds when that increment was, then each interface with a line for each quantity that it has;
-   !> none before the first increment. Without an interface the ranges of the fields stand there.
+   !> none before the first increment. Without an interface the ranges of the fields are there.
    subroutine add_lines(self, model, interfaces, lines)
       class(summary_type), intent(in) :: self
       type(model_type), intent(in) :: model
