@@ -8,42 +8,41 @@ module contact_tangent
    use contact_states, only: contact_state_type, contact_open, contact_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
+   use dense, only: product_of
    use kinds, only: dp
    implicit none
    private
-   public :: contact_response
+   public :: contact_response, make_tangent
 
 contains
 
    !> Changes of gaps and normal forces with the condensed load, one column a change of load.
-   pure subroutine contact_response(system, work, state, load, gap, force, sound)
+   pure subroutine contact_response(system, tangent, state, load, gap, force)
       type(contact_system_type), intent(in) :: system !! the reduced system
-      type(contact_workspace_type), intent(in) :: work !! as its last solution left it
-      type(contact_state_type), intent(in) :: state   !! that solution
+      type(contact_workspace_type), intent(in) :: tangent !! of the state, as make_tangent left it
+      type(contact_state_type), intent(in) :: state   !! a solution
       real(dp), intent(in) :: load(:, :)              !! (tail, n) changes of c [force]
       real(dp), intent(out) :: gap(:, :)              !! (m, n) changes of the gaps [length]
       real(dp), intent(out) :: force(:, :) !! (m, n) changes of the compressive forces [force]
-      logical, intent(out) :: sound                   !! whether the derivative exists
-      real(dp) :: motion(size(load, 1), size(load, 2))
-      integer, allocatable :: closed(:)
+      real(dp), dimension(size(load, 1), size(load, 2)) :: taken_up, motion
       integer :: k
 
-      motion = load
-      sound = .true.
-      if (any(closes(system, work, state))) then
-         call move_with_instants(system, work, state, motion, sound)
-      else
-         call work%solve_free(motion)
-      end if
-      closed = pack([(k, k=1, size(state%contact_state))], state%contact_state /= contact_open)
+      taken_up = load
+      call tangent%solve_free(taken_up)
+      motion = 0.0_dp
+      motion(tangent%rows%free, :) = taken_up(tangent%rows%free, :)
+      taken_up = load - product_of(system%schur, motion)
       gap = 0.0_dp
-      do k = 1, size(state%contact_state)
-         if (state%contact_state(k) == contact_open) gap(k, :) = -motion(system%normal(k), :)
-      end do
       force = 0.0_dp
-      associate (rows => system%normal(closed), free => work%rows%free)
-         force(closed, :) = load(rows, :) - matmul(system%schur(rows, free), motion(free, :))
-      end associate
+      do k = 1, size(state%contact_state)
+         associate (row => system%normal(k))
+            if (state%contact_state(k) == contact_open) then
+               gap(k, :) = -motion(row, :)
+            else
+               force(k, :) = taken_up(row, :)
+            end if
+         end associate
+      end do
    end subroutine contact_response
 
    !> Contact points whose position of sticking depends on their forces.
@@ -56,20 +55,21 @@ contains
       closes = work%closing%acts .and. state%contact_state == contact_stick .and. system%tangent > 0
    end function closes
 
-   !> Motion under changes of load, the instants of closing following.
-   pure subroutine move_with_instants(system, work, state, motion, sound)
-      type(contact_system_type), intent(in) :: system
-      type(contact_workspace_type), intent(in) :: work
-      type(contact_state_type), intent(in) :: state
-      real(dp), intent(inout) :: motion(:, :)   !! loads in; displacements in the free rows out
-      logical, intent(out) :: sound
-      type(contact_workspace_type) :: tangent
+   !> The factors of a solution, the instants of closing following its load.
+   pure subroutine make_tangent(system, work, state, tangent, sound)
+      type(contact_system_type), intent(in) :: system !! the reduced system
+      type(contact_workspace_type), intent(in) :: work !! as its last solution left it
+      type(contact_state_type), intent(in) :: state   !! that solution
+      type(contact_workspace_type), intent(out) :: tangent
+      logical, intent(out) :: sound                   !! whether the derivative exists
       logical :: moves(size(state%contact_state)), singular
       real(dp) :: arm
       integer :: k
 
       tangent = work
+      sound = .true.
       moves = closes(system, work, state)
+      if (.not. any(moves)) return
       do k = 1, size(moves)
          if (.not. moves(k)) cycle
          associate (law => work%closing(k), row => system%tangent(k))
@@ -81,7 +81,6 @@ contains
       end do
       call tangent%factor_rows(system, singular)
       sound = .not. singular
-      if (sound) call tangent%solve_free(motion)
-   end subroutine move_with_instants
+   end subroutine make_tangent
 
 end module contact_tangent

@@ -8,7 +8,7 @@ module contact_heat
    use thermal_matrix, only: contact_diagonal, contact_history
    implicit none
    private
-   public :: jump_derivatives_type, temperature_jumps, jump_derivatives
+   public :: jump_derivatives_type, temperature_jumps, jump_derivatives, heat_by_omega
 
    !> How the unknowns of the tail follow the conductance of each contact point that carries heat.
    type :: jump_derivatives_type
@@ -115,23 +115,33 @@ contains
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
       type(jump_derivatives_type), intent(out) :: by_omega
-      real(dp) :: of_point(size(jump))
+      real(dp) :: heat(size(jump))
       integer :: k
 
-      associate (weight => bodies%points%weight, tail_index => bodies%jump_index, &
-         a => data%scheme%a)
-         of_point = -weight/a(1)*(a(3)*jump + data%scheme%b(3)*data%jump_old)
-         if (allocated(workspace%cut%point)) of_point(workspace%cut%point) = &
-            of_point(workspace%cut%point)*workspace%cut%own
-         by_omega%active = pack([(k, k=1, size(jump))], tail_index > 0 .and. &
-            abs(of_point) > 0.0_dp)
-         by_omega%heat = of_point(by_omega%active)
-         allocate (by_omega%of_tail(bodies%thermal%map%tail, size(by_omega%active)), source=0.0_dp)
-         do k = 1, size(by_omega%active)
-            by_omega%of_tail(tail_index(by_omega%active(k)), k) = by_omega%heat(k)
-         end do
-         call workspace%tail%solve_columns(by_omega%of_tail)
-      end associate
+      heat = heat_by_omega(bodies, data, workspace, jump)
+      by_omega%active = pack([(k, k=1, size(jump))], abs(heat) > 0.0_dp)
+      by_omega%heat = heat(by_omega%active)
+      allocate (by_omega%of_tail(bodies%thermal%map%tail, size(by_omega%active)), source=0.0_dp)
+      do k = 1, size(by_omega%active)
+         by_omega%of_tail(bodies%jump_index(by_omega%active(k)), k) = by_omega%heat(k)
+      end do
+      call workspace%tail%solve_columns(by_omega%of_tail)
    end subroutine jump_derivatives
+
+   !> Load of the tail per conductance of each contact point, 0 where it has no jump.
+   pure function heat_by_omega(bodies, data, workspace, jump) result(heat)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
+      real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
+      real(dp) :: heat(size(jump))                            !! (m)
+
+      associate (a => data%scheme%a, b => data%scheme%b)
+         heat = -bodies%points%weight/a(1)*(a(3)*jump + b(3)*data%jump_old)
+      end associate
+      if (allocated(workspace%cut%point)) heat(workspace%cut%point) = heat(workspace%cut%point)* &
+         workspace%cut%own
+      where (bodies%jump_index == 0) heat = 0.0_dp
+   end function heat_by_omega
 
 end module contact_heat

@@ -2,10 +2,11 @@
 !> what is said of the solution.
 module coupled_increment
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use arnoldi, only: arnoldi_type
    use contact_heat, only: jump_derivatives, jump_derivatives_type
    use controls, only: method_picard, start_both, start_closed, start_given, start_open, &
       start_previous
-   use coupling_gains, only: coupling_gain_type, find_gain
+   use coupling_gains, only: find_gains, is_one_of_several
    use errors, only: error_type
    use fixed_point, only: predicted_conductance
    use gap_temperatures, only: derivative_by_temperature
@@ -158,10 +159,7 @@ contains
       type(solution_state_type), intent(in) :: next
       logical, intent(in) :: is_plain                            !! whether the iteration is (4.1)
       type(increment_workspace_type), intent(inout) :: workspace
-      real(dp), allocatable :: derivative(:, :), body(:), by_temperature(:, :)
-      type(jump_derivatives_type) :: by_omega
-      type(coupling_gain_type) :: gain
-      logical :: found
+      type(arnoldi_type) :: gains
 
       workspace%record%coupling_gain = 0.0_dp
       workspace%record%coupling_gain_max = 0.0_dp
@@ -169,31 +167,50 @@ contains
          if (.not. (any(abs(graph%derivative(graph%coordinate_of_opening(opening))) > 0.0_dp) .or. &
             any(next%resting) .or. bodies%points%vary_with_temperature())) return
       end associate
-      workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
-      workspace%record%coupling_gain_max = workspace%record%coupling_gain
+      if (.not. all(next%resting)) then
+         workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
+         workspace%record%coupling_gain_max = workspace%record%coupling_gain
+         call find_gains(bodies, data, workspace, next%jump, next%contact, next%resting, gains)
+         if (.not. gains%found) return
+         workspace%record%coupling_gain = real(gains%largest, dp)
+         if (gains%largest_real > -huge(1.0_dp)) workspace%record%coupling_gain_max = &
+            gains%largest_real
+      end if
+      associate (record => workspace%record)
+         if (record%coupling_gain < -1.0_dp .and. is_plain) call record%warn( &
+            'the coupling gain is ', record%coupling_gain, &
+            ', below -1: plain iteration (4.1) would diverge')
+         if (abs(record%coupling_gain_max - 1.0_dp) <= near_turning_point) call record%warn( &
+            'the largest real gain is ', record%coupling_gain_max, ', near 1: a turning point, '// &
+            'where solutions meet and small changes of the load have large effects', &
+            severity=-abs(record%coupling_gain_max - 1.0_dp))
+         ! Where all gains are below 1 in modulus, det(I - U') is positive.
+         if (any(next%resting) .or. abs(gains%largest) >= 1.0_dp) then
+            if (is_unstable(bodies, data, workspace, next)) call record%warn( &
+               'det(I - U'') is negative: the branch is unstable, and there are at least two '// &
+               'other solutions')
+         end if
+      end associate
+   end subroutine judge
+
+   !> Whether det(I - U') < 0.
+   logical function is_unstable(bodies, data, workspace, next)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
+      type(solution_state_type), intent(in) :: next
+      real(dp), allocatable :: derivative(:, :), body(:), by_temperature(:, :)
+      type(jump_derivatives_type) :: by_omega
+
+      is_unstable = .false.
       call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
       call opening_derivative(bodies, workspace, by_omega, next%contact, derivative, body)
       if (.not. allocated(derivative)) return
-      if (bodies%points%vary_with_temperature()) by_temperature = &
-         derivative_by_temperature(bodies, workspace, &
-         workspace%pass%graph%coordinate_of_opening(workspace%pass%opening), by_omega)
-      call find_gain(workspace%pass%graph, workspace%pass%opening, derivative, next%resting, gain, &
-         found, by_temperature)
-      if (.not. found) return
-      workspace%record%coupling_gain = gain%largest
-      workspace%record%coupling_gain_max = gain%largest_real
-      if (gain%largest_real <= -huge(1.0_dp)) workspace%record%coupling_gain_max = &
-         ieee_value(1.0_dp, ieee_quiet_nan)
-      associate (record => workspace%record)
-         if (gain%largest < -1.0_dp .and. is_plain) call record%warn('the coupling gain is ', &
-            gain%largest, ', below -1: plain iteration (4.1) would diverge')
-         if (abs(gain%largest_real - 1.0_dp) <= near_turning_point) call record%warn( &
-            'the largest real gain is ', gain%largest_real, ', near 1: a turning point, where '// &
-            'solutions meet and small changes of the load have large effects', &
-            severity=-abs(gain%largest_real - 1.0_dp))
-         if (gain%is_one_of_several) call record%warn('det(I - U'') is negative: '// &
-            'the branch is unstable, and there are at least two other solutions')
+      associate (graph => workspace%pass%graph, opening => workspace%pass%opening)
+         if (bodies%points%vary_with_temperature()) by_temperature = derivative_by_temperature( &
+            bodies, workspace, graph%coordinate_of_opening(opening), by_omega)
+         is_unstable = is_one_of_several(graph, opening, derivative, next%resting, by_temperature)
       end associate
-   end subroutine judge
+   end function is_unstable
 
 end module coupled_increment

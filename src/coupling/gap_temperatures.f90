@@ -10,7 +10,7 @@ module gap_temperatures
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance
    use contact_heat, only: jump_derivatives, jump_derivatives_type, temperature_jumps
-   use dense, only: lu_type
+   use dense, only: lu_type, product_of
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use increment_data, only: increment_data_type, increment_workspace_type
@@ -20,7 +20,8 @@ module gap_temperatures
    use text, only: to_text
    implicit none
    private
-   public :: take_temperatures, settle_conductance, derivative_by_temperature, at_own_temperatures
+   public :: take_temperatures, settle_conductance, at_own_temperatures
+   public :: derivative_by_temperature, changes_by_temperature
 
    integer, parameter :: most_steps = 100            !! solutions of (3.4)
    real(dp), parameter :: longest_step = 2.0_dp      !! of any log omega
@@ -138,18 +139,28 @@ contains
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
       type(jump_derivatives_type), intent(in) :: by_omega
       real(dp) :: derivative(size(coordinate), size(coordinate))   !! (m, m)
-      real(dp), allocatable :: of_mean(:, :)
+
+      derivative = 0.0_dp
+      derivative(:, by_omega%active) = changes_by_temperature(bodies, workspace, coordinate, &
+         by_omega%of_tail)
+   end function derivative_by_temperature
+
+   !> dW with the unknowns of the thermal tail.
+   function changes_by_temperature(bodies, workspace, coordinate, of_tail) result(change)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces
+      real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
+      real(dp), intent(in) :: of_tail(:, :)                    !! (thermal tail, n)
+      real(dp) :: change(size(coordinate), size(of_tail, 2))   !! (m, n)
       real(dp) :: by_faces(2)
       integer :: k
 
-      derivative = 0.0_dp
-      of_mean = matmul(bodies%jump_mean, by_omega%of_tail)
+      change = product_of(bodies%jump_mean, of_tail)
       do k = 1, size(coordinate)
          by_faces = graph_derivatives(workspace%pass%graph(k), coordinate(k))
-         derivative(k, by_omega%active) = by_faces(1)*of_mean(k, :)
-         if (bodies%jump_index(k) > 0) derivative(k, by_omega%active) = &
-            derivative(k, by_omega%active) + &
-            by_faces(2)*by_omega%of_tail(bodies%jump_index(k), :)
+         change(k, :) = by_faces(1)*change(k, :)
+         if (bodies%jump_index(k) > 0) change(k, :) = change(k, :) + &
+            by_faces(2)*of_tail(bodies%jump_index(k), :)
       end do
    contains
       !> Derivatives of omega by mean and jump at a coordinate.
@@ -172,7 +183,7 @@ contains
             end if
          end associate
       end function graph_derivatives
-   end function derivative_by_temperature
+   end function changes_by_temperature
 
    !> The derivative of the openings by the conductances that coordinates give, the temperatures
    !> following: of D domega with domega = dW + (dW/domega) domega.

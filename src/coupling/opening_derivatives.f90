@@ -9,14 +9,16 @@ module opening_derivatives
    use contact_heat, only: jump_derivatives_type
    use contact_operator, only: law_pressure
    use contact_states, only: contact_state_type, contact_open
-   use contact_tangent, only: contact_response
+   use contact_tangent, only: contact_response, make_tangent
+   use contact_workspace, only: contact_workspace_type
+   use dense, only: product_of
    use increment_data, only: increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use temperature_laws, only: law_jumps
    implicit none
    private
-   public :: make_graph, openings, opening_derivative
+   public :: make_graph, openings, opening_derivative, opening_changes
 
    !> Smallest stiffness of a contact point, of the largest one, that scales its overlap: a contact
    !> point alone that holds a body has none.
@@ -76,7 +78,8 @@ contains
       !> (m) conductance that the bodies put in series with each contact point, 1 where that means
       !> nothing
       real(dp), allocatable, intent(out) :: body(:)
-      real(dp), allocatable :: gap(:, :), force(:, :)
+      type(contact_workspace_type) :: tangent
+      real(dp), allocatable :: change(:, :)
       integer :: k, m, n
       logical :: sound
 
@@ -85,28 +88,50 @@ contains
       allocate (body(m), source=1.0_dp)
       n = size(by_omega%active)
       if (n == 0) return
-      associate (weight => bodies%points%weight, tail_index => bodies%jump_index, &
-         active => by_omega%active)
+      associate (tail_index => bodies%jump_index, active => by_omega%active)
          do k = 1, n
             associate (j => active(k))
                body(j) = (by_omega%heat(k)/by_omega%of_tail(tail_index(j), k) - &
-                  workspace%tail%diagonal(tail_index(j)))/weight(j)
+                  workspace%tail%diagonal(tail_index(j)))/bodies%points%weight(j)
             end associate
          end do
          where (body <= 0.0_dp) body = 1.0_dp
-         allocate (gap(m, n), force(m, n))
-         call contact_response(bodies%contact, workspace%contact, state, &
-            matmul(bodies%jump_load, by_omega%of_tail), gap, force, sound)
-         do k = 1, m
+         call make_tangent(bodies%contact, workspace%contact, state, tangent, sound)
+         if (sound) then
+            allocate (change(m, n))
+            call opening_changes(bodies, workspace%pass%graph, tangent, state, by_omega%of_tail, &
+               change)
+            derivative(:, active) = change
+         else
+            deallocate (derivative)
+         end if
+      end associate
+   end subroutine opening_derivative
+
+   !> Changes of the openings with the unknowns of the thermal tail.
+   pure subroutine opening_changes(bodies, graph, tangent, state, of_tail, change)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(conductance_graph_type), intent(in) :: graph(:)    !! (m) graphs of the conductance
+      type(contact_workspace_type), intent(in) :: tangent     !! of the state, by make_tangent
+      type(contact_state_type), intent(in) :: state
+      real(dp), intent(in) :: of_tail(:, :)                   !! (thermal tail, n)
+      real(dp), intent(out) :: change(:, :)                   !! (m, n) [length]
+      real(dp), dimension(size(change, 1), size(change, 2)) :: gap, force
+      integer :: k
+
+      call contact_response(bodies%contact, tangent, state, product_of(bodies%jump_load, of_tail), &
+         gap, force)
+      change = 0.0_dp
+      associate (weight => bodies%points%weight)
+         do k = 1, size(graph)
             if (weight(k) <= 0.0_dp) cycle
             if (state%contact_state(k) == contact_open) then
-               derivative(k, active) = gap(k, :)
+               change(k, :) = gap(k, :)
             else
-               derivative(k, active) = -force(k, :)/(weight(k)*workspace%pass%graph(k)%modulus)
+               change(k, :) = -force(k, :)/(weight(k)*graph(k)%modulus)
             end if
          end do
       end associate
-      if (.not. sound) deallocate (derivative)
-   end subroutine opening_derivative
+   end subroutine opening_changes
 
 end module opening_derivatives

@@ -3,7 +3,7 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgemm, dtrsm, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, ilaver
+   public :: ddot, daxpy, dgemm, dgemv, dtrsm, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, ilaver
 
    interface
       !> Scalar product x.y.
@@ -21,6 +21,15 @@ module blas_lapack
          real(dp), intent(in) :: a, x(*)
          real(dp), intent(inout) :: y(*)
       end subroutine daxpy
+
+      !> y = alpha A x + beta y, or with A^T.
+      pure subroutine dgemv(trans, m, n, alpha, a, lda, x, stride_x, beta, y, stride_y)
+         import :: dp
+         character, intent(in) :: trans
+         integer, intent(in) :: m, n, lda, stride_x, stride_y
+         real(dp), intent(in) :: alpha, a(lda, *), x(*), beta
+         real(dp), intent(inout) :: y(*)
+      end subroutine dgemv
 
       !> C = alpha A B + beta C, or with A^T or B^T.
       pure subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)

@@ -1,11 +1,11 @@
 !> The few dense solves of the interface problem, by LAPACK.
 module dense
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use blas_lapack, only: dgeev, dgelsy, dgesvd, dgetrf, dgetrs
+   use blas_lapack, only: dgeev, dgelsy, dgemm, dgemv, dgesvd, dgetrf, dgetrs
    use kinds, only: dp
    implicit none
    private
-   public :: lu_type, null_space, column_space, eigenvalues, least_squares
+   public :: lu_type, null_space, column_space, eigenvalues, least_squares, product_of
 
    !> Pivot, relative to its column, below which it is rounding.
    real(dp), parameter :: lost = 1.0e-14_dp
@@ -109,26 +109,57 @@ contains
    end function negative_determinant
 
    !> Eigenvalues of a general matrix.
-   subroutine eigenvalues(matrix, real_part, imaginary_part, found)
+   subroutine eigenvalues(matrix, real_part, imaginary_part, found, last)
       real(dp), intent(in) :: matrix(:, :)                      !! (n, n), n > 0
       real(dp), allocatable, intent(out) :: real_part(:)        !! (n)
       real(dp), allocatable, intent(out) :: imaginary_part(:)   !! (n)
       logical, intent(out) :: found !! LAPACK found them; not where the matrix overflowed
-      real(dp), allocatable :: copy(:, :), work(:)
-      real(dp) :: left(1, 1), right(1, 1), best(1)
-      integer :: info, n
+      !> (n) moduli of the last components of the eigenvectors, whose length is 1
+      real(dp), allocatable, intent(out), optional :: last(:)
+      real(dp), allocatable :: copy(:, :), right(:, :), work(:)
+      real(dp) :: left(1, 1), best(1)
+      character :: wanted
+      integer :: i, info, n
 
       n = size(matrix, 1)
       copy = matrix
       allocate (real_part(n), imaginary_part(n), source=0.0_dp)
       found = all(ieee_is_finite(matrix))
       if (.not. found) return
-      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, left, 1, right, 1, best, -1, info)
+      wanted = merge('V', 'N', present(last))
+      allocate (right(merge(n, 1, present(last)), merge(n, 1, present(last))))
+      call dgeev('N', wanted, n, copy, n, real_part, imaginary_part, left, 1, right, &
+         size(right, 1), best, -1, info)
       allocate (work(max(1, nint(best(1)))))
-      call dgeev('N', 'N', n, copy, n, real_part, imaginary_part, left, 1, right, 1, work, &
-         size(work), info)
+      call dgeev('N', wanted, n, copy, n, real_part, imaginary_part, left, 1, right, &
+         size(right, 1), work, size(work), info)
       found = info == 0
+      if (.not. present(last)) return
+      last = abs(right(n, :))
+      ! Columns i and i + 1 are real and imaginary part of the vectors of a pair.
+      do i = 1, n - 1
+         if (imaginary_part(i) > 0.0_dp) last(i:i + 1) = hypot(last(i), last(i + 1))
+      end do
    end subroutine eigenvalues
+
+   !> The product of a matrix and some columns.
+   pure function product_of(matrix, columns) result(product)
+      real(dp), intent(in) :: matrix(:, :)     !! (m, n)
+      real(dp), intent(in) :: columns(:, :)    !! (n, columns)
+      real(dp) :: product(size(matrix, 1), size(columns, 2))
+      integer :: m, n
+
+      m = size(matrix, 1)
+      n = size(matrix, 2)
+      product = 0.0_dp
+      if (size(product) == 0 .or. n == 0) return
+      if (size(columns, 2) == 1) then
+         call dgemv('N', m, n, 1.0_dp, matrix, m, columns, 1, 0.0_dp, product, 1)
+      else
+         call dgemm('N', 'N', m, size(columns, 2), n, 1.0_dp, matrix, m, columns, n, 0.0_dp, &
+            product, m)
+      end if
+   end function product_of
 
    !> The shortest x for which |matrix x - rhs| is least; columns that depend on others to rounding
    !> do not count. 0 where matrix or right-hand side overflowed.
