@@ -1,6 +1,7 @@
 """The result file of a run, as interfaces and pictures name its parts."""
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -36,6 +37,15 @@ FIELD_SOURCES = {
 }
 
 
+# Datasets of a contact that hold one value a contact point.
+GEOMETRY = ("slave_node", "master_node", "x", "y", "s", "weight")
+
+
+def words_of(name):
+    """Return the name of a quantity as one speaks it."""
+    return re.sub("^edge_", "edge of ", name).replace("_", " ")
+
+
 @dataclass
 class Contact:
     """One contact pair of the deck: arrays over its m contact points, states over n increments."""
@@ -44,6 +54,7 @@ class Contact:
     data: dict
     friction: float | None
     pairing: str = "NODES"
+    units: dict = field(default_factory=dict)
 
     def __getitem__(self, key):
         return self.data[key]
@@ -51,6 +62,20 @@ class Contact:
     def get(self, key):
         """Return the dataset `key`, or None where the deck does not model it."""
         return self.data.get(key)
+
+    def totals(self):
+        """Return the quantities of the whole contact by name, forces first: one value an
+        increment."""
+        peak = self.data["pressure"].max(axis=1)
+        found = self.data | {"peak_pressure": peak}
+        return {key: found[key] for key in sorted(found, key=lambda key: not key.endswith("_force"))
+                if found[key].shape == peak.shape and key not in GEOMETRY}
+
+    def unit(self, key):
+        """Return the unit of a quantity; empty where the deck names none."""
+        unit = self.units.get("pressure" if key == "peak_pressure" else key, "")
+        is_named = not re.search("length|stress|power|temperature", unit)
+        return unit.replace("^2", "\N{SUPERSCRIPT TWO}") if is_named else ""
 
     def axis(self, along):
         """Return (name, coordinate of the pairs): x where it grows along the face, else s.
@@ -150,9 +175,10 @@ class Result:
             raise UserError(f"{self.path}: no contact '{name}'{hint} (contacts: {known})")
         group = self.file["contact"][name]
         data = {key: item[()] for key, item in group.items()}
+        units = {key: text(item.attrs.get("unit", "")) for key, item in group.items()}
         friction = group.attrs.get("friction")
         pairing = text(group.attrs.get("pairing", "NODES"))
-        return Contact(name, data, None if friction is None else float(friction), pairing)
+        return Contact(name, data, None if friction is None else float(friction), pairing, units)
 
     def contacts(self, name=None):
         """Return the contact pairs asked for: the named one, or all."""

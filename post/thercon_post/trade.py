@@ -2,25 +2,18 @@
 
 import csv
 from pathlib import Path
+from string import ascii_lowercase
 
 import numpy as np
 from matplotlib.lines import Line2D
 
 from . import style
 from .errors import UserError
+from .result import words_of
 from .style import plt
 
-PANELS = {
-    "error_worst": "worst of all",
-    "error_normal_force": "normal force",
-    "error_heat_rate": "heat rate",
-    "error_peak_pressure": "peak pressure",
-    "error_edge_contact": "edge of contact",
-    "error_edge_stick": "edge of stick",
-    "error_temperature": "temperatures",
-}
 NEEDED = ["row", "default", "elements", "level", "contact_level", "increment_factor", "varied"]
-NEEDED += ["status", "pareto", "cpu_seconds", *PANELS]
+NEEDED += ["status", "pareto", "cpu_seconds", "error_worst"]
 SHAPES = {"Q8": "o", "Q4": "s"}
 LOCAL = "D"  # meshes that are finer at the contact
 SMALLEST = 1e-6  # percent: errors below it are marked at the foot
@@ -51,7 +44,9 @@ class Trade:
 
     def panels(self):
         """Return the columns that hold errors."""
-        return [name for name in PANELS if any(row[name] for row in self.rows)]
+        names = [name for name in self.rows[0] if name.startswith("error_")]
+        names.sort(key=lambda name: name != "error_worst")
+        return [name for name in names if any(row[name] for row in self.rows)]
 
 
 def draw(path, options):
@@ -70,7 +65,8 @@ def figure_of(trade):
     )  # fmt: skip
     for number, (name, panel) in enumerate(zip(panels, axes.flat, strict=False)):
         draw_panel(panel, trade, name)
-        style.panel_title(panel, PANELS[name], "abcdefg"[number])
+        words = "worst of all" if name == "error_worst" else words_of(name.removeprefix("error_"))
+        style.panel_title(panel, words, ascii_lowercase[number])
     for panel in axes.flat[len(panels) :]:
         panel.set_axis_off()
     times = decade([float(row["cpu_seconds"]) for row in trade.rows])

@@ -138,6 +138,7 @@ def write_contact(group, mesh, options):
         data[f"edges_{key}"] = np.column_stack((edge, np.full((len(edge), 3), np.nan)))
     for key, values in data.items():
         group[key] = values
+    group["pressure"].attrs["unit"] = (options.units.split() or ["", "stress"])[1]
 
 
 def write_convergence(file, options):

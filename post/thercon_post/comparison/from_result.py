@@ -45,14 +45,10 @@ def history(result):
             columns |= {f"{key}@body{k + 1}": values[:, k] for k in range(values.shape[1])}
     for contact in result.contacts() if result.contact_names else []:
         where = f"@{contact.name}" if len(result.contact_names) > 1 else ""
-        for key, values in contact.data.items():
-            if values.ndim == 1 and len(values) == result.increments and key in SUMS:
-                columns[key + where] = values
+        columns |= {key + where: values for key, values in contact.totals().items()
+                    if key in contact.data}
     names = [name for name in columns if name not in ("time", "load")]
     return Series(names, [columns], history=True)
-
-
-SUMS = ("normal_force", "shear_force", "heat_rate", "edge_contact", "edge_stick")
 
 
 def pairs(result):

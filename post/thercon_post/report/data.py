@@ -8,17 +8,11 @@ import numpy as np
 from .. import mesh
 from ..field_colours import SIGNED
 from ..fields import TITLES, touches_after_a_gap
-from ..result import CELL_FIELDS, FIELD_SOURCES, OPEN
+from ..result import CELL_FIELDS, FIELD_SOURCES, OPEN, words_of
 from ..style import matplotlib
 
 FIELD_NUMBERS = 700_000  # numbers of all fields together: 3.7 MB of text
 PROFILES = ("pressure", "shear", "heat_flux", "gap", "slip", "conductance")
-# dataset of /contact/<name> -> words, kind of unit
-TOTALS = (
-    ("normal_force", "normal force", "force"),
-    ("shear_force", "shear force", "force"),
-    ("heat_rate", "heat rate", "power"),
-)
 COLOURS = ("viridis", "inferno", "RdBu_r")
 SHADES = 64
 
@@ -94,10 +88,14 @@ def contact_data(result, contact):
             key: packed(contact.edge_on_axis(contact[f"edge_{key}"], coordinate))
             for key in ("contact", "stick")
         },
-        "totals": {
-            key: listed(contact[key]) for key, _, _ in TOTALS if contact.get(key) is not None
-        },
+        "totals": totals(contact),
     }
+
+
+def totals(contact):
+    """Return the quantities of a contact over the increments; its edges are drawn elsewhere."""
+    return [{"label": words_of(key), "unit": contact.unit(key), "values": listed(values)}
+            for key, values in contact.totals().items() if not key.startswith("edge_")]
 
 
 def listed(values):
@@ -110,29 +108,15 @@ def histories(result):
     found, contacts = [], contacts_of(result)
     for contact in contacts:
         of = f" of {contact.name}" if len(contacts) > 1 else ""
-        totals = [(contact.get(key), words, kind) for key, words, kind in TOTALS]
-        totals.insert(2, (contact["pressure"].max(axis=1), "peak pressure", "stress"))
-        for values, words, kind in totals:
-            if values is not None and np.isfinite(values).any() and np.any(values != 0.0):
-                found.append({"label": words[:1].upper() + words[1:] + of,
-                              "unit": unit_of(result, kind), "values": listed(values)})
+        for each in totals(contact):
+            if any(each["values"]):
+                found.append(each | {"label": each["label"].capitalize() + of})
     for key, values in result.history.items():
         if key in ("time", "load") or values.ndim > 1 or not np.nan_to_num(values).any():
             continue
-        words = key.replace("_", " ")
-        kind = "power" if key in ("heat_in", "heat_out") else ""
-        found.append({"label": words[:1].upper() + words[1:], "unit": unit_of(result, kind),
-                      "values": listed(values)})
+        unit = plain(result.units.names.get("power", "")) if key in ("heat_in", "heat_out") else ""
+        found.append({"label": words_of(key).capitalize(), "unit": unit, "values": listed(values)})
     return found
-
-
-def unit_of(result, kind):
-    """Return a unit in words; force is stress times length squared."""
-    units = result.units.names
-    if kind == "force":
-        there = {"stress", "length"} <= set(units)
-        return f"{units['stress']} {units['length']}\N{SUPERSCRIPT TWO}" if there else ""
-    return plain(units.get(kind, ""))
 
 
 def window(contact, coordinate):

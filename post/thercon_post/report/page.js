@@ -20,7 +20,6 @@ function show(value, digits = 5) {
 }
 const withUnit = (words, unit) => unit ? `${words} (${unit})` : words;
 const unit = name => data.units[name] || '';
-const force = () => unit('stress') && unit('length') ? `${unit('stress')} ${unit('length')}²` : '';
 
 // ---- one chart: axes, lines, marks ----
 function ticks(low, high, most) {
@@ -199,11 +198,9 @@ function drawProfiles() {
    profile('gap', 'Gap', [['gap', 'gap', BLUE, '']], withUnit('gap', unit('length')), false, `Gap, ${escaped(said)}.`);
 }
 function drawTotals() {
-   const c = contact(), m = c.at.length, words = [];
+   const c = contact(), words = [];
    const add = (name, value, of) => { if (Number.isFinite(value)) words.push(`<span>${name} <b>${show(value)}</b> ${escaped(of)}</span>`); };
-   for (const [key, name, of] of [['normal_force', 'normal force', force()], ['shear_force', 'shear force', force()], ['heat_rate', 'heat rate', unit('power')]])
-      if (c.totals[key]) add(name, c.totals[key][row], of);
-   add('peak pressure', Math.max(...rowOf(c.profiles.pressure, m)), unit('stress'));
+   for (const each of c.totals) add(each.label, each.values[row], each.unit);
    add(`edge of contact ${c.axis} =`, c.main.contact[row], unit('length'));
    add(`edge of stick ${c.axis} =`, c.main.stick[row], unit('length'));
    $('totals').innerHTML = words.join('');

@@ -4,8 +4,8 @@ from html import escape
 
 import numpy as np
 
-from ..result import text
-from .data import contacts_of, plain, unit_of
+from ..result import text, words_of
+from .data import contacts_of, plain
 
 FACTS = {  # attribute of /run -> words
     "modelled": "modelled",
@@ -13,15 +13,6 @@ FACTS = {  # attribute of /run -> words
     "equations_thermal": "unknown temperatures",
     "equations_mechanical": "unknown displacements",
     "contact_unknowns": "contact unknowns",
-}
-# name in /errors and /contact -> words, kind of unit
-BOUNDED = {
-    "normal_force": ("normal force", "force"),
-    "shear_force": ("shear force", "force"),
-    "heat_rate": ("heat rate", "power"),
-    "peak_pressure": ("peak pressure", "stress"),
-    "edge_contact": ("edge of contact, s", "length"),
-    "edge_stick": ("edge of stick, s", "length"),
 }
 
 
@@ -76,12 +67,12 @@ def bounds(result):
     found = []
     for contact in contacts_of(result):
         rows = []
-        for key, (words, kind) in BOUNDED.items():
-            values = contact["pressure"].max(axis=1) if key == "peak_pressure" else contact.get(key)
-            if values is None or np.isnan(values[-1]) or (key == "shear_force" and not values[-1]):
+        for key, values in contact.totals().items():
+            if np.isnan(values[-1]) or (key == "shear_force" and not values[-1]):
                 continue
             rows.append(bound_row(result, contact.name, key, float(values[-1])))
-            rows[-1][0], rows[-1][3] = words, unit_of(result, kind)
+            rows[-1][0] = words_of(key) + (", s" if key.startswith("edge_") else "")
+            rows[-1][3] = contact.unit(key)
         head = ["quantity", "value", "error bound", "unit", "by the mesh", "by increments",
                 "by iteration"]
         caption = f"Interface {escape(contact.name)} at the last increment"
