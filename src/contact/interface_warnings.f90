@@ -5,7 +5,7 @@ module interface_warnings
    use contact_points, only: contact_points_type, small_offset
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
-   use text, only: to_text
+   use text, only: percent, to_text
    implicit none
    private
    public :: gap_range, mismatch_of_pairs, offset_warning, overlap_warning
@@ -126,12 +126,5 @@ contains
       words = 'slave node '//to_text(mesh%node_number(points%slave_node(k)))// &
          ' and master node '//to_text(mesh%node_number(points%master_node(k)))
    end function nodes_of
-
-   pure function percent(part) result(words)
-      real(dp), intent(in) :: part
-      character(:), allocatable :: words
-
-      words = to_text(nint(100.0_dp*part))//' %'
-   end function percent
 
 end module interface_warnings

@@ -5,17 +5,13 @@ module text
    implicit none
    private
    public :: string_type
-   public :: others, counted, to_text, to_upper, without_blanks, is_same_name, read_integer
-   public :: read_real, append
+   public :: others, counted, to_text, few_digits, with_decimals, percent
+   public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
    public :: is_whole, integer_fault, real_fault, largest_magnitude
-   public :: nearest_name, nearest_known, known_choices, edit_distance, is_slip
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
    real(dp), parameter :: smallest_magnitude = 1.0e-100_dp, largest_magnitude = 1.0e100_dp
-   integer, parameter :: most_listed = 16         !! choices that a message lists
-   integer, parameter :: most_slips = 2           !! letters that differ in a misspelt name,
-   integer, parameter :: letters_per_slip = 3     !! and letters for each of them
 
    !> A string in a list.
    type :: string_type
@@ -62,22 +58,69 @@ contains
    !> A real with six significant digits, plain where that is short, else with an exponent.
    pure function real_to_text(number) result(string)
       real(dp), intent(in) :: number         !! the number
-      character(:), allocatable :: string    !! such as 540 or 0.155 or 1.2E-05
+      character(:), allocatable :: string    !! such as 540 or 0.155 or 1.2E-5
       character(24) :: buffer
-      integer :: exponent, last
 
       write (buffer, '(1p,g0.6)') number
-      buffer = adjustl(buffer)
-      exponent = index(buffer, 'E')
-      if (exponent == 0) exponent = len_trim(buffer) + 1
-      last = exponent - 1
-      if (index(buffer(:last), '.') > 0) then
-         last = verify(buffer(:last), '0', back=.true.)
-         if (buffer(last:last) == '.') last = last - 1
-      end if
-      string = buffer(:last)//trim(buffer(exponent:))
+      string = without_end_zeros(adjustl(buffer))
       if (string == '-0') string = '0'
    end function real_to_text
+
+   !> A number >= 0 with two significant digits, or as many as given, plain where that is short.
+   pure function few_digits(number, digits) result(string)
+      real(dp), intent(in) :: number
+      integer, intent(in), optional :: digits   !! up to 9
+      character(:), allocatable :: string       !! such as 0.044 or 3.5E-10
+      real(dp), parameter :: plain(2) = [9.5e-5_dp, 9.95e5_dp]
+      character(24) :: buffer
+      integer :: behind_first
+
+      behind_first = 1
+      if (present(digits)) behind_first = digits - 1
+      if (number >= plain(1) .and. number < plain(2)) then
+         string = with_decimals(number, max(0, behind_first - floor(log10(number))))
+         string = without_end_zeros(string)
+         return
+      end if
+      write (buffer, '(1p,g0.'//to_text(behind_first)//')') number
+      string = without_end_zeros(adjustl(buffer))
+   end function few_digits
+
+   !> A part of 1 in percent with two significant digits, or as many as given.
+   pure function percent(part, digits) result(string)
+      real(dp), intent(in) :: part              !! >= 0
+      integer, intent(in), optional :: digits
+      character(:), allocatable :: string       !! such as 0.13 %
+
+      string = few_digits(100.0_dp*part, digits)//' %'
+   end function percent
+
+   !> A number with a fixed number of decimals.
+   pure function with_decimals(number, decimals) result(string)
+      real(dp), intent(in) :: number
+      integer, intent(in) :: decimals
+      character(:), allocatable :: string       !! such as 12.30
+      character(24) :: buffer
+
+      write (buffer, '(f24.'//to_text(decimals)//')') number
+      string = trim(adjustl(buffer))
+   end function with_decimals
+
+   !> A number without zeros behind its point that say nothing.
+   pure function without_end_zeros(number) result(string)
+      character(*), intent(in) :: number        !! with or without an exponent
+      character(:), allocatable :: string
+      integer :: exponent, last
+
+      exponent = index(number, 'E')
+      if (exponent == 0) exponent = len_trim(number) + 1
+      last = exponent - 1
+      if (index(number(:last), '.') > 0) then
+         last = verify(number(:last), '0', back=.true.)
+         if (number(last:last) == '.') last = last - 1
+      end if
+      string = number(:last)//trim(number(exponent:))
+   end function without_end_zeros
 
    !> A string with its letters a-z in upper case.
    pure function to_upper(string) result(upper)
@@ -264,90 +307,6 @@ contains
       longer(n + 1)%value = string
       call move_alloc(longer, list)
    end subroutine append
-
-   !> Index of the name in a list that is nearest to a given one, whatever their cases; empty names
-   !> do not count. 0 where there is none.
-   pure function nearest_name(name, names) result(nearest)
-      character(*), intent(in) :: name            !! what was written
-      type(string_type), intent(in) :: names(:)   !! what is known
-      integer :: nearest                          !! index of the first with the smallest distance
-      integer :: i, distance, smallest
-
-      nearest = 0
-      smallest = huge(smallest)
-      do i = 1, size(names)
-         if (len(names(i)%value) == 0) cycle
-         distance = edit_distance(to_upper(name), to_upper(names(i)%value))
-         if (distance >= smallest) cycle
-         smallest = distance
-         nearest = i
-      end do
-   end function nearest_name
-
-   !> The end of a message on an unknown name; empty where no known one is like it.
-   pure function nearest_known(name, names) result(hint)
-      character(*), intent(in) :: name             !! what was written
-      type(string_type), intent(in) :: names(:)    !! what is known
-      character(:), allocatable :: hint            !! such as "; the nearest known is TOP"
-
-      integer :: nearest
-
-      hint = ''
-      nearest = nearest_name(name, names)
-      if (nearest == 0) return
-      if (is_slip(name, names(nearest)%value)) hint = '; the nearest known is '// &
-         names(nearest)%value
-   end function nearest_known
-
-   !> The end of a message on a word that is none of a fixed list: the one it is like, or the list
-   !> itself where that is short.
-   pure function known_choices(name, names) result(hint)
-      character(*), intent(in) :: name             !! what was written
-      type(string_type), intent(in) :: names(:)    !! the list
-      character(:), allocatable :: hint            !! such as "; known: MOD, NEW"
-      integer :: i
-
-      hint = nearest_known(name, names)
-      if (len(hint) > 0 .or. size(names) == 0 .or. size(names) > most_listed) return
-      hint = '; known: '//names(1)%value
-      do i = 2, size(names)
-         hint = hint//', '//names(i)%value
-      end do
-   end function known_choices
-
-   !> Whether a name is likely a misspelling of another one, whatever their cases: in a short one
-   !> fewer letters may differ.
-   pure logical function is_slip(name, known)
-      character(*), intent(in) :: name     !! what was written
-      character(*), intent(in) :: known    !! what may be meant
-
-      is_slip = len(known) > 0 .and. edit_distance(to_upper(name), to_upper(known)) <= &
-         min(most_slips, max(len(name), len(known))/letters_per_slip)
-   end function is_slip
-
-   !> Number of letters to insert, delete, replace or swap with their neighbour that make one word
-   !> of another: the restricted Damerau-Levenshtein distance.
-   pure function edit_distance(a, b) result(distance)
-      character(*), intent(in) :: a    !! one word
-      character(*), intent(in) :: b    !! another
-      integer :: distance              !! steps from one to the other
-      integer :: row(0:len(b), 0:len(a))
-      integer :: i, j, change
-
-      row(:, 0) = [(j, j=0, len(b))]
-      do i = 1, len(a)
-         row(0, i) = i
-         do j = 1, len(b)
-            change = merge(0, 1, a(i:i) == b(j:j))
-            row(j, i) = min(row(j, i - 1) + 1, row(j - 1, i) + 1, row(j - 1, i - 1) + change)
-            if (i < 2 .or. j < 2) cycle
-            if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) then
-               row(j, i) = min(row(j, i), row(max(j - 2, 0), max(i - 2, 0)) + 1)
-            end if
-         end do
-      end do
-      distance = row(len(b), len(a))
-   end function edit_distance
 
    !> A number with its noun, such as 1 row or 3 rows.
    pure function counted(n, noun) result(words)

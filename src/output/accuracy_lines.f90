@@ -5,8 +5,8 @@ module accuracy_lines
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use kinds, only: dp
-   use summary, only: two_digits, words_of
-   use text, only: append, counted, string_type, to_text
+   use summary, only: words_of
+   use text, only: append, counted, few_digits, percent, string_type, to_text
    implicit none
    private
    public :: add_accuracy, add_missed
@@ -93,10 +93,9 @@ contains
          real(dp), intent(in) :: bound
          character(:), allocatable :: amount
 
-         amount = two_digits(bound)
+         amount = few_digits(bound)
          associate (demand => accuracy%demands(d))
-            if (demand%is_relative) amount = two_digits(100*demand%target*bound/ &
-               finding%allowed)//' %'
+            if (demand%is_relative) amount = percent(demand%target*bound/finding%allowed)
          end associate
       end function amount
    end function target_words
@@ -124,7 +123,7 @@ contains
          round%elements, round%increments
       words = trim(line)//'  '
       if (round%excess() < huge(1.0_dp)) then
-         words = words//two_digits(round%excess())
+         words = words//few_digits(round%excess())
       else
          words = words//'uncertain'
       end if

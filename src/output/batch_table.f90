@@ -6,7 +6,7 @@ module batch_table
    use file_calls, only: create_working_file, remove_file, rename_file, write_file
    use kinds, only: dp
    use messages, only: print_line
-   use text, only: counted, to_text
+   use text, only: counted, to_text, with_decimals
    use utf8, only: character_count, printable
    implicit none
    private
@@ -47,7 +47,8 @@ contains
                character_count(printable(deck%path)))//trim(line))
          end associate
       end do
-      call print_line(unit, counted(size(outcomes), 'deck')//' in '//decimal(seconds)//' s: '// &
+      call print_line(unit, counted(size(outcomes), 'deck')//' in '// &
+         with_decimals(seconds, 3)//' s: '// &
          counts_of(outcomes))
    end subroutine print_batch
 
@@ -104,7 +105,7 @@ contains
          line = line//','//deck%words()//','//quoted(deck%reason)
          if (deck%is_running) then
             line = line//','//to_text(deck%increments)//','//to_text(deck%iterations)//',,,'// &
-               decimal(deck%seconds)//',,'
+               with_decimals(deck%seconds, 3)//',,'
          else
             line = line//repeat(',', 7)
          end if
@@ -113,18 +114,8 @@ contains
       line = line//to_text(deck%status)//','//deck%words()//','//quoted(deck%reason)//','// &
          to_text(deck%increments)//','//to_text(deck%iterations)//','// &
          to_text(deck%verify_passed)//','//to_text(deck%verify_failed)//','// &
-         decimal(deck%seconds)//','//decimal(deck%cpu_seconds)//','// &
-         decimal(deck%peak_bytes/megabyte)
+         with_decimals(deck%seconds, 3)//','//with_decimals(deck%cpu_seconds, 3)//','// &
+         with_decimals(deck%peak_bytes/megabyte, 3)
    end function row_of
-
-   !> A number with three decimals.
-   pure function decimal(number) result(string)
-      real(dp), intent(in) :: number
-      character(:), allocatable :: string
-      character(24) :: buffer
-
-      write (buffer, '(f24.3)') number
-      string = trim(adjustl(buffer))
-   end function decimal
 
 end module batch_table

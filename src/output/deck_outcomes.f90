@@ -8,7 +8,7 @@ module deck_outcomes
    use messages, only: print_line
    use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
-   use text, only: counted, string_type, to_text
+   use text, only: counted, string_type, to_text, with_decimals
    implicit none
    private
    public :: deck_outcome_type
@@ -170,18 +170,16 @@ contains
    subroutine print_outcome(self, results)
       class(deck_outcome_type), intent(in) :: self    !! the run
       character(*), intent(in) :: results             !! path of its results without extension
-      character(12) :: seconds
       character(:), allocatable :: doubts
       integer :: i
 
-      write (seconds, '(f12.2)') self%seconds
       doubts = ''
       if (self%words() == 'skipped') return
       if (self%status == status_ok .and. allocated(self%reason)) then
          if (len(self%reason) > 0) doubts = '; '//self%reason
       end if
       call print_line(output_unit, self%path//': '//self%words()//', '// &
-         counted(self%increments, 'increment')//' in '//trim(adjustl(seconds))//' s'// &
+         counted(self%increments, 'increment')//' in '//with_decimals(self%seconds, 2)//' s'// &
          doubts)
       if (allocated(self%summary)) then
          do i = 1, size(self%summary)

@@ -11,7 +11,7 @@ module run_judgement
    use steps, only: solves_heat, solves_mechanics
    use strains, only: largest_deformation, of_strain
    use warning_summary, only: warning_summary_type
-   use text, only: append, string_type, to_text
+   use text, only: append, percent, string_type, to_text
    implicit none
    private
    public :: run_judgement_type
@@ -157,18 +157,8 @@ contains
       real(dp), intent(in) :: value
       character(:), allocatable :: words
 
-      words = percent(value)
+      words = percent(value, digits=3)
       if (i /= of_strain) words = words//' of a radian'
    end function amount
-
-   pure function percent(part) result(words)
-      real(dp), intent(in) :: part
-      character(:), allocatable :: words
-      real(dp) :: rounded
-
-      rounded = 1000.0_dp*part
-      if (rounded < 1.0e6_dp) rounded = real(nint(rounded), dp)
-      words = to_text(rounded/10)//' %'
-   end function percent
 
 end module run_judgement

@@ -9,11 +9,11 @@ module summary
    use quantity_types, only: needs_heat
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use run_summaries, only: or_blank
-   use text, only: append, string_type, to_text
+   use text, only: append, few_digits, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
    private
-   public :: summary_type, two_digits, words_of
+   public :: summary_type, words_of
 
    integer, parameter :: name_width = 17    !! columns of the name of a quantity
    integer, parameter :: value_width = 13   !! of its value
@@ -177,30 +177,9 @@ contains
 
       words = ' (uncertain)'
       if (ieee_is_nan(bound)) return
-      number = two_digits(bound)
+      number = few_digits(bound)
       words = ' +- '//number
-      if (abs(value) > 0.0_dp) words = ' +- '//number//'('//two_digits(100.0_dp*bound/ &
-         abs(value))//' %)'
+      if (abs(value) > 0.0_dp) words = ' +- '//number//'('//percent(bound/abs(value))//')'
    end function bound_words
-
-   !> A number >= 0 with two digits, plain where that is short.
-   pure function two_digits(number) result(words)
-      real(dp), intent(in) :: number
-      character(:), allocatable :: words
-      character(16) :: buffer
-      integer :: decimals, k
-
-      write (buffer, '(es16.1e3)') number
-      if (number >= 9.5e-5_dp .and. number < 9.95e5_dp) then
-         decimals = max(0, 1 - floor(log10(number*(1.0_dp + 1.0e-12_dp))))
-         write (buffer, '(f16.'//to_text(decimals)//')') number
-      end if
-      words = trim(adjustl(buffer))
-      k = scan(words, '+-')
-      if (k > 1 .and. words(k + 1:k + 1) == '0') words = words(:k)//words(k + 2:)
-      if (.not. number > 0.0_dp) words = '0'
-      if (words(:1) == '.') words = '0'//words
-      if (words(len(words):) == '.') words = words(:len(words) - 1)
-   end function two_digits
 
 end module summary

@@ -6,7 +6,7 @@ module verification
    use kinds, only: dp
    use model, only: model_type, verify_type
    use records, only: increment_record_type
-   use text, only: to_text
+   use text, only: percent, to_text
    use verify_values, only: values_asked_for
    implicit none
    private
@@ -104,8 +104,8 @@ contains
          words = words//'expected '//to_text(check%value)//', but '//outcome%reason
       else if (check%relative .and. abs(check%value) > 0.0_dp) then
          words = words//to_text(outcome%found)//', expected '//to_text(check%value)// &
-            ' (off by '//to_text(100*outcome%deviation)//' %, allowed '// &
-            to_text(100*check%tolerance)//' %)'
+            ' (off by '//percent(outcome%deviation, digits=6)//', allowed '// &
+            percent(check%tolerance, digits=6)//')'
       else
          words = words//to_text(outcome%found)//', expected '//to_text(check%value)// &
             ' (off by '//to_text(outcome%deviation)//', allowed '// &

@@ -2,7 +2,7 @@
 module recommendation
    use kinds, only: dp
    use reported_quantities, only: traded
-   use text, only: to_text
+   use text, only: percent
    use trade_quantities, only: is_there, quantity_count
    use trade_rows, only: trade_type, target_count, targets
    implicit none
@@ -103,7 +103,7 @@ contains
       if (len(words) > 0) words = words//'; '
       if (trade%uncertainty(q) >= targets(target_index)) then
          words = words//trim(traded(q)%name)//': the reference itself is uncertain by '// &
-            to_text(100.0_dp*rounded(trade%uncertainty(q)))//' %'
+            percent(trade%uncertainty(q))
          return
       end if
       closest = huge(closest)
@@ -111,7 +111,7 @@ contains
          if (trade%rows(i)%status == 0) closest = min(closest, trade%rows(i)%errors(q))
       end do
       words = words//trim(traded(q)%name)//': the best row has '// &
-         to_text(100.0_dp*rounded(closest))//' %'
+         percent(closest)
    end subroutine remark
 
    !> A number with two decimal digits: the same double for the same digits, as text is read.

@@ -4,7 +4,7 @@ module trade_table
    use kinds, only: dp
    use messages, only: print_line
    use reported_quantities, only: traded
-   use text, only: to_text
+   use text, only: few_digits, percent, to_text, with_decimals
    use trade_quantities, only: is_there, quantity_count
    use trade_rows, only: trade_row_type, trade_type, target_count, targets
    implicit none
@@ -35,7 +35,7 @@ contains
       end do
       write (unit, '(a, t66)', advance='no') '      reference uncertain by'
       do q = 1, quantity_count
-         write (unit, '(a9)', advance='no') percent(trade%uncertainty(q))
+         write (unit, '(a9)', advance='no') cell(trade%uncertainty(q))
       end do
       write (unit, '(/, /, a)') '* no row is both cheaper and better (worst error); = the deck '// &
          'as written'
@@ -65,7 +65,7 @@ contains
       do i = 1, trade%count
          associate (row => trade%rows(i))
             if (row%status /= 0 .or. row%values%imbalance <= sound_imbalance) cycle
-            rows = rows//', row '//to_text(i)//' ('//percent(row%values%imbalance)//' %'// &
+            rows = rows//', row '//to_text(i)//' ('//percent(row%values%imbalance)// &
                comma(row%varied)//')'
          end associate
       end do
@@ -94,9 +94,9 @@ contains
          return
       end if
       do q = 1, quantity_count
-         write (unit, '(a9)', advance='no') percent(row%errors(q))
+         write (unit, '(a9)', advance='no') cell(row%errors(q))
       end do
-      write (unit, '(a9)') percent(row%worst)
+      write (unit, '(a9)') cell(row%worst)
    end subroutine print_row
 
    pure function padded(words) result(field)
@@ -133,7 +133,7 @@ contains
 
       associate (rows => trade%rows(:trade%count), remark => trade%remarks(target_index)%value)
          i = findloc(rows%is_recommended(target_index), .true., dim=1)
-         write (unit, '(3a)', advance='no') 'for ', to_text(100.0_dp*targets(target_index)), ' %'
+         write (unit, '(2a)', advance='no') 'for ', percent(targets(target_index))
          if (i == 0) then
             write (unit, '(2a)') ': no row; ', remark
             return
@@ -141,19 +141,10 @@ contains
          if (len(remark) > 0) write (unit, '(a)', advance='no') ', not of all quantities'
          write (unit, '(a, i0, 8a)') ': row ', i, ' (', mesh_of(rows(i)), ', increments ', &
             trim(factor_text(rows(i)%variation%increments))//comma(rows(i)%varied)//'), ', &
-            seconds_text(rows(i)%cpu_seconds), ' s of CPU'
+            with_decimals(rows(i)%cpu_seconds, 3), ' s of CPU'
          if (len(remark) > 0) write (unit, '(7x, 2a)') 'but not for ', remark
       end associate
    end subroutine print_target
-
-   pure function seconds_text(seconds) result(text)
-      real(dp), intent(in) :: seconds
-      character(:), allocatable :: text
-      character(12) :: buffer
-
-      write (buffer, '(f12.3)') seconds
-      text = trim(adjustl(buffer))
-   end function seconds_text
 
    pure function comma(words) result(text)
       character(*), intent(in) :: words
@@ -192,31 +183,14 @@ contains
       end if
    end function factor_text
 
-   !> An error in percent with two digits, or - for none.
-   pure function percent(error) result(text)
+   !> An error in percent, or - for none.
+   pure function cell(error) result(text)
       real(dp), intent(in) :: error
       character(:), allocatable :: text
-      character(16) :: buffer
 
       text = '-'
-      if (.not. is_there(error)) return
-      associate (hundreds => 100.0_dp*error)
-         if (hundreds >= 1000.0_dp) then
-            text = '> 1000'
-            return
-         else if (hundreds >= 9.95_dp) then
-            write (buffer, '(i0)') nint(hundreds)
-         else if (hundreds >= 0.995_dp) then
-            write (buffer, '(f0.1)') hundreds
-         else if (hundreds >= 0.0995_dp) then
-            write (buffer, '(f4.2)') hundreds
-         else if (hundreds >= 0.00995_dp) then
-            write (buffer, '(f5.3)') hundreds
-         else
-            write (buffer, '(1p, e8.1)') hundreds
-         end if
-      end associate
-      text = trim(adjustl(buffer))
-   end function percent
+      if (is_there(error)) text = few_digits(100.0_dp*error)
+      if (100.0_dp*error >= 1000.0_dp) text = '> 1000'
+   end function cell
 
 end module trade_table

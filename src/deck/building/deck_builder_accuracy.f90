@@ -10,7 +10,8 @@ module deck_builder_accuracy
    use kinds, only: dp
    use model, only: model_type
    use quantity_types, only: find_quantity, quantity_type
-   use text, only: known_choices, string_type, to_upper
+   use spelling, only: known_choices
+   use text, only: string_type, to_upper
    implicit none
    private
    public :: build_accuracy

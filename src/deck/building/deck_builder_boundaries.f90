@@ -7,8 +7,9 @@ module deck_builder_boundaries
    use kinds, only: dp
    use load_requests, only: request_type
    use model, only: model_type
+   use spelling, only: is_slip
    use steps, only: dof_temperature
-   use text, only: is_slip, read_real, to_text, to_upper
+   use text, only: read_real, to_text, to_upper
    implicit none
    private
    public :: build_boundary, dof_rotation

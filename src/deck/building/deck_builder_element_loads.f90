@@ -10,9 +10,10 @@ module deck_builder_element_loads
    use load_requests, only: request_type
    use mesh, only: mesh_type, surface_type
    use model, only: model_type
+   use spelling, only: known_choices
    use steps, only: load_body_force, load_body_heat, load_face_heat, load_film_coefficient, &
       load_film_sink, load_pressure
-   use text, only: append, known_choices, string_type, to_text, to_upper
+   use text, only: append, string_type, to_text, to_upper
    implicit none
    private
    public :: build_element_load, build_on_faces, report_label

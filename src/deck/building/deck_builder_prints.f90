@@ -9,7 +9,8 @@ module deck_builder_prints
    use mesh, only: mesh_type, set_type
    use print_requests, only: append_request, print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
-   use text, only: append, known_choices, string_type, to_upper
+   use spelling, only: known_choices
+   use text, only: append, string_type, to_upper
    implicit none
    private
    public :: build_print, read_frequency

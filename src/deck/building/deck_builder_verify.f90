@@ -13,8 +13,9 @@ module deck_builder_verify
    use model, only: model_type, verify_type
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_history, of_interface, &
       of_nodes, of_contact_points, quantity_type
+   use spelling, only: nearest_known
    use steps, only: analysis_static
-   use text, only: nearest_known, read_real, string_type, to_text, to_upper
+   use text, only: read_real, string_type, to_text, to_upper
    implicit none
    private
    public :: build_verifications, check_heat_quantities

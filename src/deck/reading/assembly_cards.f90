@@ -10,7 +10,8 @@ module assembly_cards
    use deck_report, only: deck_report_type
    use instance_copies, only: copy_card, instance_type, members_of_instance, read_motion
    use kinds, only: long
-   use text, only: append, nearest_known, read_integer, string_type, to_text, to_upper
+   use spelling, only: nearest_known
+   use text, only: append, read_integer, string_type, to_text, to_upper
    implicit none
    private
    public :: flatten_cards

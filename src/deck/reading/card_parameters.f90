@@ -5,8 +5,9 @@ module card_parameters
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp
-   use text, only: append, integer_fault, known_choices, read_integer, read_real, real_fault, &
-      string_type, to_upper, without_blanks
+   use spelling, only: known_choices
+   use text, only: append, integer_fault, read_integer, read_real, real_fault, string_type, &
+      to_upper, without_blanks
    implicit none
    private
    public :: has_parameter, lacks_parameter, parameter_text, parameter_place

@@ -11,7 +11,8 @@ module deck_context
    use quantity_types, only: quantity_type
    use refined_regions, only: element_levels_type, refined_region_type
    use sorting, only: number_index_type
-   use text, only: is_slip, nearest_known, read_integer, string_type, to_upper
+   use spelling, only: is_slip, nearest_known
+   use text, only: read_integer, string_type, to_upper
    implicit none
    private
    public :: deck_context_type, place_list_type, find_set, set_names, read_target, report_unknown

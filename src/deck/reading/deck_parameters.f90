@@ -5,7 +5,8 @@ module deck_parameters
    use cards, only: add_note, field_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use text, only: append, nearest_known, string_type, to_text, to_upper
+   use spelling, only: nearest_known
+   use text, only: append, string_type, to_text, to_upper
    use utf8, only: as_utf8
    implicit none
    private

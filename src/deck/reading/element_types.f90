@@ -2,7 +2,8 @@
 module element_types
    use element_kinds, only: axisymmetric, element_node_count, plane_strain, plane_stress, quad4, &
       quad8, quad8_reduced, triangle3, triangle6
-   use text, only: nearest_known, string_type, to_upper
+   use spelling, only: nearest_known
+   use text, only: string_type, to_upper
    implicit none
    private
    public :: take_element_type, element_type_fields, line_node_count

@@ -1,7 +1,8 @@
 !> Keywords of CalculiX and Abaqus that are no keywords of this program: which are passed over, and
 !> which are refused and why. Decks that were written elsewhere use them.
 module foreign_keywords
-   use text, only: is_same_name, is_slip
+   use spelling, only: is_slip
+   use text, only: is_same_name
    implicit none
    private
    public :: foreign_keyword_type, find_foreign, misspelt_foreign

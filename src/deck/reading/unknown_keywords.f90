@@ -8,7 +8,8 @@ module unknown_keywords
    use keyword_meanings, only: is_meaning, keyword_advice, parameter_advice
    use keywords, only: built, find_parameter, keyword_names, known_keywords, &
       known_parameter_type, parameter_names, refused
-   use text, only: edit_distance, is_slip, nearest_name, string_type, to_upper
+   use spelling, only: edit_distance, is_slip, nearest_name
+   use text, only: string_type, to_upper
    implicit none
    private
    public :: report_unknown_keyword, report_unknown_parameter

@@ -1,0 +1,98 @@
+!> Names that are likely meant where an unknown one is written.
+module spelling
+   use text, only: string_type, to_upper
+   implicit none
+   private
+   public :: nearest_name, nearest_known, known_choices, edit_distance, is_slip
+
+   integer, parameter :: most_listed = 16         !! choices that a message lists
+   integer, parameter :: most_slips = 2           !! letters that differ in a misspelt name,
+   integer, parameter :: letters_per_slip = 3     !! and letters for each of them
+
+contains
+
+   !> Index of the name in a list that is nearest to a given one, whatever their cases; empty names
+   !> do not count. 0 where there is none.
+   pure function nearest_name(name, names) result(nearest)
+      character(*), intent(in) :: name            !! what was written
+      type(string_type), intent(in) :: names(:)   !! what is known
+      integer :: nearest                          !! index of the first with the smallest distance
+      integer :: i, distance, smallest
+
+      nearest = 0
+      smallest = huge(smallest)
+      do i = 1, size(names)
+         if (len(names(i)%value) == 0) cycle
+         distance = edit_distance(to_upper(name), to_upper(names(i)%value))
+         if (distance >= smallest) cycle
+         smallest = distance
+         nearest = i
+      end do
+   end function nearest_name
+
+   !> The end of a message on an unknown name; empty where no known one is like it.
+   pure function nearest_known(name, names) result(hint)
+      character(*), intent(in) :: name             !! what was written
+      type(string_type), intent(in) :: names(:)    !! what is known
+      character(:), allocatable :: hint            !! such as "; the nearest known is TOP"
+
+      integer :: nearest
+
+      hint = ''
+      nearest = nearest_name(name, names)
+      if (nearest == 0) return
+      if (is_slip(name, names(nearest)%value)) hint = '; the nearest known is '// &
+         names(nearest)%value
+   end function nearest_known
+
+   !> The end of a message on a word that is none of a fixed list: the one it is like, or the list
+   !> itself where that is short.
+   pure function known_choices(name, names) result(hint)
+      character(*), intent(in) :: name             !! what was written
+      type(string_type), intent(in) :: names(:)    !! the list
+      character(:), allocatable :: hint            !! such as "; known: MOD, NEW"
+      integer :: i
+
+      hint = nearest_known(name, names)
+      if (len(hint) > 0 .or. size(names) == 0 .or. size(names) > most_listed) return
+      hint = '; known: '//names(1)%value
+      do i = 2, size(names)
+         hint = hint//', '//names(i)%value
+      end do
+   end function known_choices
+
+   !> Whether a name is likely a misspelling of another one, whatever their cases: in a short one
+   !> fewer letters may differ.
+   pure logical function is_slip(name, known)
+      character(*), intent(in) :: name     !! what was written
+      character(*), intent(in) :: known    !! what may be meant
+
+      is_slip = len(known) > 0 .and. edit_distance(to_upper(name), to_upper(known)) <= &
+         min(most_slips, max(len(name), len(known))/letters_per_slip)
+   end function is_slip
+
+   !> Number of letters to insert, delete, replace or swap with their neighbour that make one word
+   !> of another: the restricted Damerau-Levenshtein distance.
+   pure function edit_distance(a, b) result(distance)
+      character(*), intent(in) :: a    !! one word
+      character(*), intent(in) :: b    !! another
+      integer :: distance              !! steps from one to the other
+      integer :: row(0:len(b), 0:len(a))
+      integer :: i, j, change
+
+      row(:, 0) = [(j, j=0, len(b))]
+      do i = 1, len(a)
+         row(0, i) = i
+         do j = 1, len(b)
+            change = merge(0, 1, a(i:i) == b(j:j))
+            row(j, i) = min(row(j, i - 1) + 1, row(j - 1, i) + 1, row(j - 1, i - 1) + change)
+            if (i < 2 .or. j < 2) cycle
+            if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) then
+               row(j, i) = min(row(j, i), row(max(j - 2, 0), max(i - 2, 0)) + 1)
+            end if
+         end do
+      end do
+      distance = row(len(b), len(a))
+   end function edit_distance
+
+end module spelling
