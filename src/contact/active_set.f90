@@ -48,7 +48,7 @@ contains
 
       call find_state(system, load, work, state, error)
       if (allocated(error)) return
-      call find_idle_points(system, load, force_rounding(system, load, work, state), work, state)
+      call find_idle_points(system, load, force_rounding(system, work, state), work, state)
    end subroutine solve_contact
 
    !> A state that satisfies all contact conditions.
@@ -113,7 +113,7 @@ contains
       do set = 1, most_sets
          call work%solve_set(system, load, state, error)
          if (allocated(error)) return
-         call judge(system, load, work, state, next, excess)
+         call judge(system, work, state, next, excess)
          corrected = excess > 0.0_dp
          if (.not. any(corrected)) return
          visited(:, set) = state_code(state)
@@ -181,7 +181,7 @@ contains
       call work%solve_set(system, load, exact, error)
       holds_exactly = .not. allocated(error)
       if (.not. holds_exactly) return
-      call judge(system, load, work, exact, next, excess)
+      call judge(system, work, exact, next, excess)
       holds_exactly = all(excess <= 0.0_dp)
       if (holds_exactly) state = exact
    end function holds_exactly
@@ -213,9 +213,8 @@ contains
    end function stiffness_of_points
 
    !> The state that each contact point should have, and by how much it violates the present one.
-   subroutine judge(system, load, work, state, next, excess)
+   subroutine judge(system, work, state, next, excess)
       type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: load(:)
       type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
       integer, intent(out) :: next(:, :)
@@ -226,7 +225,7 @@ contains
 
       rounding%gap = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(work%initial_gap)), &
          maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
-      rounding%force = force_rounding(system, load, work, state)
+      rounding%force = force_rounding(system, work, state)
       next(1, :) = state%contact_state
       next(2, :) = state%direction
       excess = 0.0_dp
@@ -241,34 +240,13 @@ contains
    end subroutine judge
 
    !> Contact force that is rounding.
-   pure real(dp) function force_rounding(system, load, work, state)
+   pure real(dp) function force_rounding(system, work, state)
       type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: load(:)
-      type(contact_workspace_type), intent(in) :: work
+      type(contact_workspace_type), intent(in) :: work   ! of the state
       type(contact_state_type), intent(in) :: state
 
-      force_rounding = max(1.0e-12_dp*maxval(abs(state%force)), &
-         1.0e-13_dp*largest_term(system, load, work, state), work%least_force(system)) + &
-         tiny(1.0_dp)
+      force_rounding = max(1.0e-12_dp*maxval(abs(state%force)), 1.0e-13_dp*work%largest_term, &
+         work%least_force(system)) + tiny(1.0_dp)
    end function force_rounding
-
-   !> Largest sum of the terms of which a contact force is made, S d - c, without their signs: what
-   !> its rounding goes by where the terms cancel, as in a body that contact moves as a whole.
-   pure function largest_term(system, load, work, state) result(force)
-      type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: load(:)
-      type(contact_workspace_type), intent(in) :: work
-      type(contact_state_type), intent(in) :: state
-      real(dp) :: force
-      real(dp) :: d(size(load)), terms(size(load))
-      integer :: i
-
-      d = positions(system, work, state)
-      terms = abs(load)
-      do i = 1, size(d)
-         if (abs(d(i)) > 0.0_dp) terms = terms + abs(d(i))*abs(system%schur(:, i))
-      end do
-      force = maxval(terms)
-   end function largest_term
 
 end module active_set

@@ -2,11 +2,11 @@
 !> laws of contact points that close in the increment, and the factors of the active set of the
 !> moment. A second trial takes a workspace of its own.
 module contact_workspace
+   use contact_factors, only: contact_factors_type
    use contact_rows, only: contact_rows_type, rows_of
    use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type, &
       contact_stick, is_capped, slip_force, state_code
    use contact_system, only: contact_system_type
-   use dense, only: lu_type
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use kinds, only: dp
@@ -32,6 +32,9 @@ module contact_workspace
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
       real(dp), allocatable :: largest_shear(:) !! (m) largest friction [force]
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
+      !> Largest sum of the terms that a force of the last solution is made of, S d - c, without their
+      !> signs: what its rounding goes by where they cancel, as in a body that contact moves as a whole
+      real(dp) :: largest_term = 0.0_dp
       real(dp), allocatable :: least_drive(:) !! (tail) resultants that count as none [force]
       !> Stiffness that holds the unsupported motions softly, 0 for none [force/length]
       real(dp) :: hold = 0.0_dp
@@ -47,9 +50,7 @@ module contact_workspace
       integer :: reliefs = 0                      !! found so far
       type(relief_type), allocatable :: relief(:) !! (m) with the factors; none were sought at first
       logical :: several = .false.                !! whether other states under the load are proven
-      type(lu_type), private :: lu                !! factors on the free rows, bordered
-      real(dp), private :: border = 1.0_dp        !! scale of the border [force/length]
-      real(dp), allocatable, private :: scale(:)  !! (free) factor of the rows, 1 beside a border
+      type(contact_factors_type) :: factors       !! of these rows
       integer, allocatable, private :: factored(:)   !! (m) state codes of the factors
       type(closing_law_type), allocatable, private :: factored_closing(:) !! (m) and their laws
    contains
@@ -125,7 +126,7 @@ contains
       real(dp), intent(in) :: load(:)                      !! (tail) c [force]
       type(contact_state_type), intent(inout) :: state     !! its states in, the values out
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: d(size(load)), lambda(size(load)), residual(size(load), 1)
+      real(dp) :: d(size(load)), lambda(size(load)), residual(size(load), 1), terms(size(load))
       real(dp), allocatable :: unbalanced(:, :)
       integer :: k
 
@@ -139,7 +140,8 @@ contains
          if (system%tangent(k) == 0 .or. state%contact_state(k) /= contact_stick) cycle
          d(system%tangent(k)) = start_of_slip(self, state, k)
       end do
-      residual(:, 1) = load + capped_forces(self, system, state) - forces(self, system, d)
+      call find_forces(self, system, d, lambda)
+      residual(:, 1) = load + capped_forces(self, system, state) - lambda
       call self%solve_free(residual, unbalanced)
       d(self%rows%free) = d(self%rows%free) + residual(self%rows%free, 1)
       if (size(self%unconstrained, 2) > 0) then
@@ -148,7 +150,10 @@ contains
          if (allocated(error)) return
          call move_least(self, system, state, d)
       end if
-      lambda = forces(self, system, d) - load
+      terms = abs(load)
+      call find_forces(self, system, d, lambda, terms)
+      lambda = lambda - load
+      self%largest_term = maxval(terms)
       call check_finite([d, lambda], 'displacements and forces of the contact', &
          status_no_convergence, error)
       if (allocated(error)) return
@@ -213,33 +218,24 @@ contains
    end function capped_forces
 
    !> S d, with the soft hold.
-   pure function forces(self, system, d)
+   pure subroutine find_forces(self, system, d, lambda, terms)
       type(contact_workspace_type), intent(in) :: self
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: d(:)
-      real(dp) :: forces(size(d))
+      real(dp), intent(out) :: lambda(:)
+      real(dp), intent(inout), optional :: terms(:)   !! receives the moduli of the terms of S d
       integer :: i
 
-      forces = 0.0_dp
+      lambda = 0.0_dp
       do i = 1, size(d)
          ! Many are zero: contact points that touched at the start, without slip.
-         if (abs(d(i)) > 0.0_dp) forces = forces + d(i)*system%schur(:, i)
+         if (.not. abs(d(i)) > 0.0_dp) cycle
+         lambda = lambda + d(i)*system%schur(:, i)
+         if (present(terms)) terms = terms + abs(d(i))*abs(system%schur(:, i))
       end do
-      if (self%hold > 0.0_dp) forces = forces + &
+      if (self%hold > 0.0_dp) lambda = lambda + &
          self%hold*matmul(system%motion, matmul(d, system%motion))
-   end function forces
-
-   !> Columns of S, with the soft hold.
-   pure function columns(self, system, tail_rows)
-      type(contact_workspace_type), intent(in) :: self
-      type(contact_system_type), intent(in) :: system
-      integer, intent(in) :: tail_rows(:)
-      real(dp) :: columns(size(system%schur, 1), size(tail_rows))
-
-      columns = system%schur(:, tail_rows)
-      if (self%hold > 0.0_dp) columns = columns + &
-         self%hold*matmul(system%motion, transpose(system%motion(tail_rows, :)))
-   end function columns
+   end subroutine find_forces
 
    !> Whether the load drives the unconstrained motions, by more than rounding.
    !> Error: it does.
@@ -340,34 +336,10 @@ contains
       class(contact_workspace_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system      !! the reduced system
       logical, intent(out) :: singular                     !! the rows depend on each other
-      real(dp) :: rows(size(self%rows%free) + size(self%unconstrained, 2), size(self%rows%free) + &
-         size(self%unconstrained, 2))
-      real(dp) :: column(size(system%schur, 1), 1)
-      integer :: i, j
 
       if (allocated(self%factored)) deallocate (self%factored)
       if (allocated(self%relief)) deallocate (self%relief)
-      associate (f => size(self%rows%free), free => self%rows%free)
-         do j = 1, f
-            column = self%rows%combine(columns(self, system, free(j:j)))
-            rows(:f, j) = column(free, 1)
-            rows(f + 1:, j) = 0.0_dp
-            rows(j, j) = rows(j, j) + self%rows%spring(free(j))
-         end do
-         rows(:, f + 1:) = 0.0_dp
-         ! Rows of slipping contact points are mu times as large, those of stuck ones in cycles 1e8
-         ! times.
-         self%scale = [(1.0_dp, i=1, f)]
-         if (size(self%unconstrained, 2) == 0) self%scale = 1.0_dp/max(maxval(abs(rows(:f, :f)), &
-            dim=2), tiny(1.0_dp))
-         do j = 1, f
-            rows(:f, j) = self%scale*rows(:f, j)
-         end do
-         self%border = max(maxval(abs(rows)), tiny(1.0_dp))
-         rows(:f, f + 1:) = self%border*self%unconstrained
-         rows(f + 1:, :f) = self%border*transpose(self%unconstrained)
-      end associate
-      call self%lu%factor(rows, singular)
+      call self%factors%factor(system, self%rows, self%hold, self%unconstrained, singular)
    end subroutine factor_rows
 
    !> Free displacements that take up forces, with the factors of the last active set.
@@ -376,17 +348,11 @@ contains
       real(dp), intent(inout) :: x(:, :) !! (tail, columns) forces; displacements in free rows
       !> (l, columns) forces along the unconstrained motions that nothing takes up.
       real(dp), allocatable, intent(out), optional :: unbalanced(:, :)
-      real(dp) :: rows(size(self%rows%free) + size(self%unconstrained, 2), size(x, 2))
+      real(dp) :: of_rows(size(x, 1), size(x, 2))
 
-      associate (f => size(self%rows%free))
-         rows = 0.0_dp
-         associate (of_tail => self%rows%combine(x))
-            rows(:f, :) = spread(self%scale, 2, size(x, 2))*of_tail(self%rows%free, :)
-         end associate
-         if (size(rows, 1) > 0) call self%lu%solve(rows)
-         x(self%rows%free, :) = rows(:f, :)
-         if (present(unbalanced)) unbalanced = self%border*rows(f + 1:, :)
-      end associate
+      of_rows = self%rows%combine(x)
+      call self%factors%solve(of_rows, unbalanced)
+      x(self%rows%free, :) = of_rows(self%rows%free, :)
    end subroutine solve_free
 
    !> Forces at some rows of the tail for unit displacements there, the free ones following; with
@@ -425,7 +391,7 @@ contains
       turns_back = .false.
       if (any(self%closing%acts)) return
       ! Every link and every unconstrained motion borders a positive matrix, which turns its sign.
-      turns_back = self%lu%negative_determinant() .neqv. &
+      turns_back = self%factors%is_negative() .neqv. &
          (mod(size(system%link) + size(self%unconstrained, 2), 2) == 1)
    end function turns_back
 

@@ -1,0 +1,237 @@
+!> Factors of the rows of an active set (contact_rows). From set to set only a few rows change. With
+!> M the matrix of all rows of the tail, those that are not sought being sigma_i d_i = 0, another set
+!> has
+!>
+!>    M + E D,   E the unit columns of the changed rows, D their differences,
+!>
+!> and by Woodbury's formula its solutions are y - M^-1 E (1 + D M^-1 E)^-1 D y with M y the forces.
+!> So the first set of many is factored; the next ones cost a few solutions with it.
+module contact_factors
+   use contact_rows, only: contact_rows_type
+   use contact_system, only: contact_system_type
+   use dense, only: lu_type, product_of
+   use kinds, only: dp
+   implicit none
+   private
+   public :: contact_factors_type
+
+   integer, parameter :: rows_per_change = 16   !! free rows for each one that may change
+
+   !> Factors of one set, and what makes them those of another.
+   type :: contact_factors_type
+      integer :: full = 0                          !! sets that were factored in full, so far
+      real(dp), private :: border = 1.0_dp         !! scale of the border [force/length]
+      logical, private :: may_change = .false.     !! whether other sets may use the factors
+      type(lu_type), private :: lu                 !! on the free rows, bordered
+      type(contact_rows_type), private :: rows     !! that were factored
+      real(dp), allocatable, private :: scale(:)   !! (free) factor of the rows, 1 beside a border
+      real(dp), allocatable, private :: unconstrained(:, :)   !! (free, l) motions that border them
+      integer, allocatable, private :: free(:)     !! of the present set
+      integer, allocatable, private :: entering(:) !! rows that are free now and were not
+      real(dp), allocatable, private :: sigma(:)   !! (entering) [force/length]
+      real(dp), allocatable, private :: of_entering(:, :)     !! (free, entering) their columns
+      real(dp), allocatable, private :: difference(:, :)      !! (tail, changed) D^T
+      real(dp), allocatable, private :: response(:, :)        !! (tail, changed) M^-1 E
+      type(lu_type), private :: correction         !! 1 + D M^-1 E
+   contains
+      procedure :: factor
+      procedure :: solve
+      procedure :: is_negative
+   end type contact_factors_type
+
+contains
+
+   !> Factors the rows of a set, bordered by the motions that it leaves unconstrained.
+   pure subroutine factor(self, system, rows, hold, unconstrained, singular)
+      class(contact_factors_type), intent(inout) :: self   !! of another set, or none
+      type(contact_system_type), intent(in) :: system      !! the reduced system
+      type(contact_rows_type), intent(in) :: rows
+      real(dp), intent(in) :: hold                         !! soft one of the motions [force/length]
+      real(dp), intent(in) :: unconstrained(:, :)          !! (free, l)
+      logical, intent(out) :: singular                     !! the rows depend on each other
+      logical :: is_plain
+
+      ! Rows in cycles are 1e8 times as large as others, and links have no stiffness.
+      is_plain = hold <= 0.0_dp .and. size(unconstrained, 2) == 0 .and. size(system%link) == 0 .and. &
+         .not. any(system%compliance > 0.0_dp)
+      if (self%may_change .and. is_plain) then
+         call change_rows(self, system, rows, singular)
+         if (.not. singular) return
+      end if
+      call factor_in_full(self, system, rows, hold, unconstrained, singular)
+      self%may_change = is_plain .and. .not. singular
+   end subroutine factor
+
+   !> Factors the rows of a set in full.
+   pure subroutine factor_in_full(self, system, rows, hold, unconstrained, singular)
+      type(contact_factors_type), intent(inout) :: self
+      type(contact_system_type), intent(in) :: system
+      type(contact_rows_type), intent(in) :: rows
+      real(dp), intent(in) :: hold
+      real(dp), intent(in) :: unconstrained(:, :)
+      logical, intent(out) :: singular
+      real(dp) :: matrix(size(rows%free) + size(unconstrained, 2), size(rows%free) + &
+         size(unconstrained, 2))
+      real(dp) :: column(size(system%schur, 1), 1)
+      integer :: i, j
+
+      self%full = self%full + 1
+      self%rows = rows
+      self%free = rows%free
+      self%unconstrained = unconstrained
+      self%entering = [integer ::]
+      if (allocated(self%difference)) deallocate (self%difference)
+      associate (f => size(rows%free), free => rows%free)
+         do j = 1, f
+            column(:, 1) = system%schur(:, free(j))
+            if (hold > 0.0_dp) column(:, 1) = column(:, 1) + &
+               hold*matmul(system%motion, system%motion(free(j), :))
+            column = rows%combine(column)
+            matrix(:f, j) = column(free, 1)
+            matrix(f + 1:, j) = 0.0_dp
+            matrix(j, j) = matrix(j, j) + rows%spring(free(j))
+         end do
+         matrix(:, f + 1:) = 0.0_dp
+         ! Rows of slipping contact points are mu times as large, those of stuck ones in cycles 1e8
+         ! times.
+         self%scale = [(1.0_dp, i=1, f)]
+         if (size(unconstrained, 2) == 0) self%scale = 1.0_dp/max(maxval(abs(matrix(:f, :f)), &
+            dim=2), tiny(1.0_dp))
+         do j = 1, f
+            matrix(:f, j) = self%scale*matrix(:f, j)
+         end do
+         self%border = max(maxval(abs(matrix)), tiny(1.0_dp))
+         matrix(:f, f + 1:) = self%border*unconstrained
+         matrix(f + 1:, :f) = self%border*transpose(unconstrained)
+      end associate
+      call self%lu%factor(matrix, singular)
+   end subroutine factor_in_full
+
+   !> Makes the factors those of another set.
+   pure subroutine change_rows(self, system, rows, failed)
+      type(contact_factors_type), intent(inout) :: self
+      type(contact_system_type), intent(in) :: system
+      type(contact_rows_type), intent(in) :: rows
+      logical, intent(out) :: failed               !! too many rows change, or the set is singular
+      logical, dimension(size(rows%own)) :: is_free, was_free
+      integer, allocatable :: changed(:)
+      real(dp), allocatable :: columns(:, :), matrix(:, :)
+      integer :: i, j
+
+      is_free = .false.
+      is_free(rows%free) = .true.
+      was_free = .false.
+      was_free(self%rows%free) = .true.
+      changed = pack([(i, i=1, size(is_free))], (is_free .neqv. was_free) .or. (is_free .and. &
+         differ(rows, self%rows)))
+      failed = rows_per_change*size(changed) > size(self%rows%free)
+      if (failed) return
+      self%free = rows%free
+      self%entering = pack(changed, .not. was_free(changed))
+      self%sigma = [(system%schur(self%entering(i), self%entering(i)), i=1, size(self%entering))]
+      failed = any(self%sigma <= 0.0_dp)
+      if (failed) return
+      columns = self%rows%combine(system%schur(:, self%entering))
+      self%of_entering = columns(self%rows%free, :)
+      deallocate (columns)
+      allocate (columns(size(is_free), size(changed)), source=0.0_dp)
+      do j = 1, size(changed)
+         columns(changed(j), j) = 1.0_dp
+      end do
+      call solve_base(self, columns)
+      self%response = columns
+      do j = 1, size(changed)
+         columns(:, j) = row_of(system, rows, changed(j), is_free) - row_of(system, self%rows, &
+            changed(j), was_free)
+      end do
+      self%difference = columns
+      matrix = product_of(transpose(self%difference), self%response)
+      do j = 1, size(changed)
+         matrix(j, j) = matrix(j, j) + 1.0_dp
+      end do
+      call self%correction%factor(matrix, failed)
+   end subroutine change_rows
+
+   !> Whether rows have other factors.
+   pure function differ(a, b)
+      type(contact_rows_type), intent(in) :: a, b
+      logical :: differ(size(a%own))
+
+      differ = a%partner /= b%partner .or. abs(a%share - b%share) > 0.0_dp .or. &
+         abs(a%own - b%own) > 0.0_dp .or. abs(a%spring - b%spring) > 0.0_dp
+   end function differ
+
+   !> A row of M, in a column.
+   pure function row_of(system, rows, i, is_free) result(row)
+      type(contact_system_type), intent(in) :: system
+      type(contact_rows_type), intent(in) :: rows
+      integer, intent(in) :: i
+      logical, intent(in) :: is_free(:)
+      real(dp) :: row(size(is_free))
+
+      row = 0.0_dp
+      if (is_free(i)) then
+         row = rows%own(i)*system%schur(:, i)
+         if (rows%partner(i) > 0) row = row + rows%share(i)*system%schur(:, rows%partner(i))
+         row(i) = row(i) + rows%spring(i)
+      else
+         row(i) = system%schur(i, i)
+      end if
+   end function row_of
+
+   !> Solves with the rows that were factored, and with those that enter.
+   pure subroutine solve_base(self, x, unbalanced)
+      type(contact_factors_type), intent(in) :: self
+      real(dp), intent(inout) :: x(:, :)
+      real(dp), allocatable, intent(out), optional :: unbalanced(:, :)
+      real(dp) :: rows(size(self%scale) + size(self%unconstrained, 2), size(x, 2))
+      integer :: j
+
+      associate (f => size(self%scale), base => self%rows%free, entering => self%entering)
+         rows(f + 1:, :) = 0.0_dp
+         do j = 1, size(entering)
+            x(entering(j), :) = x(entering(j), :)/self%sigma(j)
+         end do
+         rows(:f, :) = x(base, :)
+         if (size(entering) > 0) rows(:f, :) = rows(:f, :) - product_of(self%of_entering, &
+            x(entering, :))
+         do j = 1, size(x, 2)
+            rows(:f, j) = self%scale*rows(:f, j)
+         end do
+         if (size(rows, 1) > 0) call self%lu%solve(rows)
+         x(base, :) = rows(:f, :)
+         if (present(unbalanced)) unbalanced = self%border*rows(f + 1:, :)
+      end associate
+   end subroutine solve_base
+
+   !> Free displacements that take up forces.
+   pure subroutine solve(self, x, unbalanced)
+      class(contact_factors_type), intent(in) :: self
+      !> (tail, columns) forces as they enter the rows in; displacements in the free rows out
+      real(dp), intent(inout) :: x(:, :)
+      !> (l, columns) forces along the unconstrained motions that nothing takes up
+      real(dp), allocatable, intent(out), optional :: unbalanced(:, :)
+      real(dp) :: taken(size(x, 1), size(x, 2))
+      real(dp), allocatable :: heads(:, :)
+
+      taken = 0.0_dp
+      taken(self%free, :) = x(self%free, :)
+      call solve_base(self, taken, unbalanced)
+      if (allocated(self%difference)) then
+         heads = product_of(transpose(self%difference), taken)
+         call self%correction%solve(heads)
+         taken = taken - product_of(self%response, heads)
+      end if
+      x(self%free, :) = taken(self%free, :)
+   end subroutine solve
+
+   !> Whether the determinant of the free rows, with their border, is negative.
+   pure logical function is_negative(self)
+      class(contact_factors_type), intent(in) :: self
+
+      is_negative = self%lu%negative_determinant()
+      if (allocated(self%difference)) is_negative = is_negative .neqv. &
+         self%correction%negative_determinant()
+   end function is_negative
+
+end module contact_factors
