@@ -1,11 +1,11 @@
-!> Factors of the rows of an active set (contact_rows). From set to set only a few rows change. With
-!> M the matrix of all rows of the tail, those that are not sought being sigma_i d_i = 0, another set
-!> has
+!> Factors of the rows of an active set (contact_rows). From set to set only a few rows change. Let M
+!> be the matrix of all rows of the tail, those that are not sought being sigma_i d_i = 0. Another
+!> set has
 !>
 !>    M + E D,   E the unit columns of the changed rows, D their differences,
 !>
-!> and by Woodbury's formula its solutions are y - M^-1 E (1 + D M^-1 E)^-1 D y with M y the forces.
-!> So the first set of many is factored; the next ones cost a few solutions with it.
+!> and by Woodbury's formula its solutions are y - M^-1 E (1 + D M^-1 E)^-1 D y, M y the forces. So
+!> the first set of many is factored; the next ones cost a few solutions with it.
 module contact_factors
    use contact_rows, only: contact_rows_type
    use contact_system, only: contact_system_type
@@ -52,8 +52,8 @@ contains
       logical :: is_plain
 
       ! Rows in cycles are 1e8 times as large as others, and links have no stiffness.
-      is_plain = hold <= 0.0_dp .and. size(unconstrained, 2) == 0 .and. size(system%link) == 0 .and. &
-         .not. any(system%compliance > 0.0_dp)
+      is_plain = hold <= 0.0_dp .and. size(unconstrained, 2) == 0 .and. size(system%link) == 0 &
+         .and. .not. any(system%compliance > 0.0_dp)
       if (self%may_change .and. is_plain) then
          call change_rows(self, system, rows, singular)
          if (.not. singular) return

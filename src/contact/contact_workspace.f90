@@ -32,8 +32,8 @@ module contact_workspace
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
       real(dp), allocatable :: largest_shear(:) !! (m) largest friction [force]
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
-      !> Largest sum of the terms that a force of the last solution is made of, S d - c, without their
-      !> signs: what its rounding goes by where they cancel, as in a body that contact moves as a whole
+      !> Largest sum of the terms that make a force of the last solution, S d - c, without their
+      !> signs: what its rounding goes by where they cancel, as in a body that contact moves [force]
       real(dp) :: largest_term = 0.0_dp
       real(dp), allocatable :: least_drive(:) !! (tail) resultants that count as none [force]
       !> Stiffness that holds the unsupported motions softly, 0 for none [force/length]
