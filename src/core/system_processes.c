@@ -241,14 +241,19 @@ void *__real_malloc(size_t bytes);
 void *__real_calloc(size_t count, size_t bytes);
 void *__real_realloc(void *address, size_t bytes);
 
-static void *checked(void *address, double bytes)
+_Noreturn void thercon_end_without_memory(double bytes)
 {
    char words[80];
 
-   if (address != NULL || bytes <= 0.0) return address;
    snprintf(words, sizeof words, "memory ran out: %.0f MB more are not available", bytes / 1e6);
    filed.lacks_memory = 1;
-   end_run(status_internal, words, "");
+   end_run(status_internal, words, where);
+}
+
+static void *checked(void *address, double bytes)
+{
+   if (address == NULL && bytes > 0.0) thercon_end_without_memory(bytes);
+   return address;
 }
 
 void *__wrap_malloc(size_t bytes) { return checked(__real_malloc(bytes), (double)bytes); }

@@ -5,7 +5,8 @@ module system_processes
    private
    public :: report_type, process_end_type, longest_reason
    public :: c_start_child, c_collect_child, c_signal_child, c_read, c_file_report
-   public :: c_catch_signals, c_signals, c_prepare_end, c_hold_end, c_close, c_exit_at_once, c_sleep
+   public :: c_catch_signals, c_signals, c_prepare_end, c_hold_end, c_end_without_memory
+   public :: c_close, c_exit_at_once, c_sleep
 
    integer, parameter :: longest_reason = 4096   !! characters, with the 0 at the end
 
@@ -84,6 +85,12 @@ module system_processes
          import :: c_int
          integer(c_int), value :: holds
       end subroutine c_hold_end
+
+      !> Ends the process because so many bytes more are not available, with what is prepared.
+      subroutine c_end_without_memory(bytes) bind(c, name='thercon_end_without_memory')
+         import :: c_double
+         real(c_double), value :: bytes
+      end subroutine c_end_without_memory
 
       !> POSIX close(2).
       integer(c_int) function c_close(file) bind(c, name='close')

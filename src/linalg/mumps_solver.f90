@@ -10,6 +10,7 @@ module mumps_solver
    use metis, only: nested_dissection
    use ordering, only: adjacency, alike_unknowns, ungrouped
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use system_processes, only: c_end_without_memory
    use text, only: to_text
    implicit none
    private
@@ -117,7 +118,7 @@ contains
       tail = self%tail
       if (tail > 0) call ask_for_schur(self)
       self%mumps%job = job_analyse
-      call dmumps(self%mumps)
+      call call_mumps(self%mumps)
       call check(self, 'analysis', error)
       if (allocated(error)) return
       if (self%mumps%infog(7) /= order_given) then
@@ -126,7 +127,7 @@ contains
       end if
       self%mumps%job = job_factor
       do attempt = 1, workspace_tries
-         call dmumps(self%mumps)
+         call call_mumps(self%mumps)
          if (self%mumps%infog(1) /= -9 .and. self%mumps%infog(1) /= -8) exit
          self%mumps%icntl(14) = 2*self%mumps%icntl(14) + 20
       end do
@@ -160,6 +161,17 @@ contains
       call dmumps(id)
    end function mumps_version
 
+   !> A job of MUMPS. Where memory runs out, which a solution would not tell, the process ends as
+   !> where the program's own does.
+   subroutine call_mumps(id)
+      type(dmumps_struc), intent(inout) :: id
+      integer, parameter :: no_memory = -13   ! INFOG(1); INFOG(2) entries were asked for
+
+      call dmumps(id)
+      if (id%infog(1) == no_memory) call c_end_without_memory(real(factor_entries(id%infog(2))* &
+         storage_size(1.0_dp)/8, dp))
+   end subroutine call_mumps
+
    !> INFOG(9): entries of the factors, in millions where negative.
    pure function factor_entries(reported) result(entries)
       integer, intent(in) :: reported
@@ -183,7 +195,7 @@ contains
          id%sym = 2
          id%par = 1
          id%job = job_start
-         call dmumps(id)
+         call call_mumps(id)
          id%icntl(1:3) = -1
          id%icntl(4) = 0
          id%icntl(24) = 1
@@ -297,7 +309,7 @@ contains
          id%icntl(20) = merge(0, rhs_is_sparse, present(rhs))
          id%irhs_ptr(:) = [1, (2, k=1, columns)]
          id%icntl(26) = 1
-         call dmumps(id)
+         call call_mumps(id)
          id%icntl(20) = 0
       end associate
    end subroutine eliminate
@@ -314,7 +326,7 @@ contains
             id%redrhs(self%tail*(k - 1) + 1:self%tail*k) = on_tail(:, k)
          end do
          if (self%tail > 0) id%icntl(26) = 2
-         call dmumps(id)
+         call call_mumps(id)
          do k = 1, size(solution, 2)
             solution(:, k) = id%rhs(id%n*(k - 1) + 1:id%n*k)
          end do
@@ -347,7 +359,7 @@ contains
 
       if (.not. associated(self%mumps)) return
       self%mumps%job = job_end
-      call dmumps(self%mumps)
+      call call_mumps(self%mumps)
       associate (id => self%mumps)
          if (associated(id%perm_in)) deallocate (id%perm_in)
          if (associated(id%schur)) deallocate (id%schur)
