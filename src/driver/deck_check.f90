@@ -1,9 +1,8 @@
 !> What `thercon check` prints of a deck that it understood.
 module deck_check
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use cards, only: cards_type
    use command_line, only: command_type
-   use deck_preparation, only: prepare_deck
+   use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type
    use increments, only: simulation_type
    use interface_warnings, only: gap_range
@@ -27,14 +26,14 @@ contains
       character(*), intent(in) :: path            !! the deck as given
       type(command_type), intent(in) :: command   !! options of the command line
       integer, intent(out) :: status              !! exit status
-      type(cards_type) :: cards
+      type(read_deck_type) :: deck
       type(model_type) :: model
       type(simulation_type) :: simulation
       type(run_summary_type) :: run
       type(error_type), allocatable :: error
 
       status = 0
-      call prepare_deck(path, command, cards, model, simulation, error)
+      call prepare_deck(path, command, deck, model, simulation, error)
       if (allocated(error)) then
          status = error%status
       else if (allocated(model%steps)) then

@@ -20,11 +20,16 @@ contains
       type(accuracy_rounds_type), intent(in) :: accuracy
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), allocatable, intent(inout) :: lines(:)
+      character(:), allocatable :: verdict
       integer :: d, i
 
       if (.not. accuracy%is_on) return
-      call append(lines, 'requested accuracy '//trim(merge('reached    ', 'not reached', &
-         accuracy%is_reached()))//' after '//counted(size(accuracy%rounds), 'round'))
+      verdict = 'requested accuracy '//trim(merge('reached    ', 'not reached', &
+         accuracy%is_reached()))//' after '//counted(size(accuracy%rounds), 'round')
+      ! Read only while another round is solved, or where that did not come to its end.
+      if (accuracy%goes_on) verdict = verdict//'; round '//to_text(size(accuracy%rounds) + 1)// &
+         ' was begun'
+      call append(lines, verdict)
       do d = 1, size(accuracy%demands)
          call append(lines, target_words(accuracy, d, interfaces))
       end do
@@ -44,7 +49,7 @@ contains
       type(string_type), allocatable, intent(inout) :: lines(:)
       integer :: d
 
-      if (.not. accuracy%is_on .or. accuracy%goes_on) return
+      if (.not. accuracy%is_on) return
       associate (last => accuracy%rounds(size(accuracy%rounds)))
          do d = 1, size(accuracy%demands)
             if (all(last%findings(d, :)%is_met())) cycle

@@ -29,6 +29,8 @@ module deck_outcomes
       integer :: verify_failed = 0          !! *VERIFY checks that failed
       real(dp) :: known_to = 0.0_dp         !! conductance, relative, where rounding exceeds TOL
       integer :: files = 0                  !! how many files it has written: run_output's written
+      logical :: keeps_round = .false.      !! whether files and increments are those of the last
+      !! whole round of a requested accuracy, beside which another is solved
       real(dp) :: seconds = 0.0_dp          !! time it took [s]
       ! The rest is what a batch knows of the deck's process.
       logical :: is_running = .false.       !! whether it was started and has not ended
@@ -57,9 +59,11 @@ module deck_outcomes
 contains
 
    !> Begins a round: what the one before left to be desired counts no longer.
-   pure subroutine begin(self)
+   pure subroutine begin(self, keeps_round)
       class(deck_outcome_type), intent(inout) :: self     !! the run
+      logical, intent(in) :: keeps_round                  !! whether there is one before
 
+      self%keeps_round = keeps_round
       self%known_to = 0.0_dp
       if (allocated(self%reason)) deallocate (self%reason)
    end subroutine begin
@@ -71,7 +75,7 @@ contains
       integer, intent(in) :: accepted                     !! increments accepted so far
       integer, intent(in) :: files                        !! what run_output has written
 
-      self%increments = accepted
+      if (.not. self%keeps_round) self%increments = accepted
       if (allocated(record%iterations)) self%iterations = self%iterations + size(record%iterations)
       call self%note_files(files)
    end subroutine note
@@ -92,7 +96,7 @@ contains
       class(deck_outcome_type), intent(inout) :: self     !! the run
       integer, intent(in) :: files                        !! what run_output has written
 
-      self%files = files
+      if (.not. self%keeps_round) self%files = files
       call file_report(self%as_report())
    end subroutine note_files
 
@@ -186,7 +190,8 @@ contains
             call print_line(output_unit, '  '//self%summary(i)%value)
          end do
       end if
-      if (self%files > 0 .and. self%status /= status_deck .and. self%status /= status_internal) then
+      if (self%files > 0 .and. (self%keeps_round .or. self%status /= status_deck .and. &
+         self%status /= status_internal)) then
          call print_line(output_unit, '  results: '//results//trim(extensions(self%files)))
       end if
       if (self%verify_passed + self%verify_failed > 0) call print_line(output_unit, '  '// &

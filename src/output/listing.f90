@@ -1,14 +1,15 @@
 !> The print file `NAME.lst`: a summary, what is modelled and why, every increment, the verdicts,
 !> the zone diagrams, all warnings, and the deck.
 !>
-!> The summary is known at the end only: its lines are blank until then, and written over.
+!> The summary is known at the end only: its lines are blank until then, and written over. A draft
+!> is kept in memory until it is whole; then it takes the place of what the file holds.
 module listing
    use accuracy_lines, only: add_accuracy, add_missed
    use contact_points, only: contact_points_type, never_approached
    use due_output, only: table_is_due
    use errors, only: error_type
-   use file_calls, only: append_to_file, empty_file, lock_file, overwrite_in_file, &
-      unlock_file
+   use file_calls, only: append_to_file, close_descriptor, copy_file, empty_file, lock_file, &
+      open_in_memory, overwrite_in_file, unlock_file
    use listing_errors, only: print_body_errors, print_interface_errors
    use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
@@ -32,7 +33,9 @@ module listing
    type :: listing_type
       private
       character(:), allocatable, public :: path                !! path of the file
-      integer :: descriptor = -1                               !! of the file while it is locked
+      integer :: lock = -1                                     !! descriptor of the locked file
+      integer :: descriptor = -1                               !! of what is written: it, or a draft
+      character(:), allocatable :: draft                       !! path of the draft, if there is one
       type(printed_text_type) :: text                          !! what is not yet in the file
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       character(:), allocatable :: failure                     !! why the run ended early
@@ -46,6 +49,7 @@ module listing
       procedure :: add
       procedure :: add_failure
       procedure :: break_off
+      procedure :: drop_draft
       procedure :: warn
       procedure :: finish
       procedure :: close => close_listing
@@ -53,22 +57,29 @@ module listing
 
 contains
 
-   !> Locks the file, so that no other run of the same name writes it; its contents stay.
+   !> Locks the file, so that no other run of the same name writes it, or goes on with a lock; its
+   !> contents stay.
    !> Error: status_internal, when it cannot be written or another run has it.
-   subroutine reserve(self, path, has_lock, error)
+   subroutine reserve(self, path, lock, has_lock, error)
       class(listing_type), intent(inout) :: self
       character(*), intent(in) :: path                    !! path of the file
+      integer, intent(inout) :: lock                      !! its descriptor once locked; -1 before
       logical, intent(out) :: has_lock                    !! false where there are no locks
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       self%path = path
-      call lock_file(path, self%descriptor, has_lock, error)
+      has_lock = .true.
+      if (lock < 0) call lock_file(path, lock, has_lock, error)
+      self%lock = lock
+      self%descriptor = lock
+      if (.not. allocated(error)) call self%text%open(error)
    end subroutine reserve
 
    !> Begins the reserved listing: heading, room for the summary, defaults, what is modelled.
    !> Error: status_internal, when the file cannot be written.
-   subroutine open_listing(self, model, interfaces, run, error)
+   subroutine open_listing(self, is_draft, model, interfaces, run, error)
       class(listing_type), intent(inout) :: self
+      logical, intent(in) :: is_draft                     !! whether the file stays until the end
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run
@@ -76,9 +87,11 @@ contains
       character(:), allocatable :: lines
       type(string_type), allocatable :: running(:)
 
-      call empty_file(self%descriptor, self%path, error)
-      if (allocated(error)) return
-      call self%text%open(error)
+      if (is_draft) then
+         call open_in_memory(self%descriptor, self%draft, error)
+      else
+         call empty_file(self%descriptor, self%path, error)
+      end if
       if (allocated(error)) return
       allocate(self%diagrams(size(interfaces)), self%warnings(0))
       call print_heading(self%text%unit, model, run)
@@ -178,6 +191,33 @@ contains
       call write_text(self, ignored)
    end subroutine break_off
 
+   !> Drops a draft; what the file holds stays, and the reason why there is no more follows it.
+   subroutine drop_draft(self, reason, record, kept)
+      class(listing_type), intent(inout) :: self
+      character(*), intent(in) :: reason                     !! what went wrong
+      type(increment_record_type), intent(in) :: record      !! as for add_failure
+      character(*), intent(in) :: kept                       !! what the results hold, a sentence
+      character(:), allocatable :: dropped
+      type(error_type), allocatable :: ignored
+
+      call close_draft(self)
+      if (self%text%unit == 0) return   ! not reserved: another run writes the file
+      call self%text%take(dropped)
+      call self%add_failure(reason, record, kept)
+      call write_text(self, ignored)
+   end subroutine drop_draft
+
+   !> From now on the file itself is written.
+   subroutine close_draft(self)
+      class(listing_type), intent(inout) :: self
+
+      if (allocated(self%draft)) then
+         call close_descriptor(self%descriptor)
+         deallocate (self%draft)
+      end if
+      self%descriptor = self%lock
+   end subroutine close_draft
+
    !> Takes the warnings of the run as a whole.
    subroutine warn(self, warnings)
       class(listing_type), intent(inout) :: self
@@ -232,15 +272,19 @@ contains
       call self%summary%add_lines(model, interfaces, lines)
       block = summary_block(lines, size(interfaces))
       call overwrite_in_file(self%descriptor, self%path, self%summary_start, block, error)
+      if (allocated(error)) return
+      if (allocated(self%draft)) call copy_file(self%draft, self%path, error)
    end subroutine finish
 
    !> Frees the file; one in which nothing was written is removed. One that is not reserved stays.
-   subroutine close_listing(self)
+   subroutine close_listing(self, keeps_lock)
       class(listing_type), intent(inout) :: self
+      logical, intent(in) :: keeps_lock   !! whether the file stays locked
 
       call self%text%close()
-      if (self%descriptor >= 0) call unlock_file(self%path, self%descriptor)
-      self%descriptor = -1
+      call close_draft(self)
+      if (self%lock >= 0 .and. .not. keeps_lock) call unlock_file(self%path, self%lock)
+      self%lock = -1
    end subroutine close_listing
 
    subroutine print_heading(unit, model, run)

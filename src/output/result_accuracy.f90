@@ -48,6 +48,8 @@ contains
       end associate
       call write_attribute(file, group, 'reached', merge(1, 0, accuracy%is_reached()), error)
       if (allocated(error)) return
+      call write_attribute(file, group, 'later_round_begun', merge(1, 0, accuracy%goes_on), error)
+      if (allocated(error)) return
       call create_group(file, group//'/bounds', error)
       if (allocated(error)) return
       do i = 1, size(interfaces)

@@ -4,7 +4,7 @@
 !> renamed over the one in place, then their lines go to `.sta`. So a killed run leaves a file that
 !> opens and holds every increment of its `.sta`. A run publishes the end of every step and its own
 !> end, and in between whenever that costs less than a tenth of the time, or an increment was long.
-!> The first publishing replaces the files of an earlier run.
+!> The first publishing replaces the files of an earlier run. A draft publishes its end only.
 module results
    use contact_grid, only: contact_grid_type
    use contact_points, only: contact_points_type
@@ -53,6 +53,7 @@ module results
       logical, public :: has_contact = .false.                !! whether there is such a file
       integer, allocatable :: element_points(:, :)            !! (8, elements)
       type(string_type), allocatable :: cards(:)              !! card images
+      logical :: is_draft = .false.                           !! whether only its end is published
       logical :: is_broken = .false.                          !! whether writing has failed
       integer, public :: accepted = 0                         !! increments appended
       integer, public :: published = 0                        !! of these, in the file in place
@@ -61,18 +62,21 @@ module results
       procedure :: open => open_results
       procedure :: append
       procedure :: finish
+      procedure :: give_up
    end type results_type
 
 contains
 
    !> Names the files and tries whether all of them can be written; they are left as they are.
    !> Error: status_internal, when one of them cannot.
-   subroutine reserve(self, path, has_lock, error)
+   subroutine reserve(self, path, is_draft, has_lock, error)
       class(results_type), intent(inout) :: self          !! the writer
       character(*), intent(in) :: path                    !! path of the results without extension
+      logical, intent(in) :: is_draft                     !! whether only their end is published
       logical, intent(in) :: has_lock                     !! whether no other run writes them
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
+      self%is_draft = is_draft
       call self%file%start(path//'.vtkhdf')
       call self%contact_file%start(path//'.contact.vtkhdf')
       call self%increments%start_increments(path//'.sta')
@@ -147,7 +151,7 @@ contains
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
       is_due = self%file%is_due()
       ends_run = record%last_of_step .and. record%step == size(model%steps)
-      if ((record%last_of_step .or. is_due) .and. .not. ends_run) then
+      if ((record%last_of_step .or. is_due) .and. .not. (ends_run .or. self%is_draft)) then
          call publish(self, model, interfaces, run, error, ends_run)
       else if (waiting_bytes(self) > memory_limit) then
          call flush_all(self, model, interfaces, error)
@@ -158,7 +162,7 @@ contains
          end if
          call self%file%charge(since, ended=.false.)
       end if
-      if (allocated(error)) call give_up(self)
+      if (allocated(error)) call self%give_up()
    end subroutine append
 
    !> Publishes what is left and ends HDF5. Without any accepted increment the files of an earlier
@@ -182,7 +186,7 @@ contains
          if (.not. allocated(error)) call self%passes%write_waiting(error)
       end if
       if (allocated(error)) then
-         call give_up(self)
+         call self%give_up()
       else
          call self%increments%close()
          call self%passes%close()
@@ -193,7 +197,7 @@ contains
    !> Leaves the file in place as it is: what could not be written whole is dropped, and nothing
    !> more is written.
    subroutine give_up(self)
-      class(results_type), intent(inout) :: self
+      class(results_type), intent(inout) :: self          !! the writer
 
       self%is_broken = .true.
       call self%file%discard()

@@ -1,5 +1,8 @@
 !> All that a run writes, in one object: result file, `.sta`, `.cvg`, listing, verdicts, progress
 !> line.
+!>
+!> A later round of a requested accuracy is a draft: it takes the place of the round before once it
+!> is whole. Until then nothing of it is in the files.
 module run_output
    use, intrinsic :: iso_fortran_env, only: error_unit
    use accuracy_lines, only: add_accuracy
@@ -20,7 +23,7 @@ module run_output
    use verification, only: failure_words, verifier_type
    implicit none
    private
-   public :: run_output_type, kept_words
+   public :: run_output_type
 
    !> The output of one run.
    type :: run_output_type
@@ -31,6 +34,7 @@ module run_output
       type(verifier_type) :: verifier                          !! *VERIFY cards
       type(progress_type), public :: progress                  !! progress line
       type(run_judgement_type) :: judgement                    !! what the whole run shows
+      integer, public :: kept_round = 0                        !! round in the files; 0 for none
       type(iteration_record_type), allocatable :: failed(:)    !! passes of an increment that failed
       integer, allocatable :: point_node(:)                    !! (points) node index of each point
       logical :: is_finished = .false.                         !! whether it came to its end
@@ -43,7 +47,7 @@ module run_output
       procedure :: break_off
       procedure :: close => close_output
       procedure :: accepted
-      procedure :: is_begun
+      procedure :: kept
       procedure :: listing_path
       procedure :: working_path
       procedure :: published
@@ -57,17 +61,19 @@ contains
    !> Tries whether all files of a run can be written, before anything is solved, and locks them
    !> against other runs of the same name. They are left as they are; close the output in any case.
    !> Error: status_internal, when one cannot be written, or another run writes them.
-   subroutine reserve(self, path, error)
+   subroutine reserve(self, path, lock, error)
       class(run_output_type), intent(inout) :: self
       character(*), intent(in) :: path                    !! path of the results without extension
+      integer, intent(inout) :: lock                      !! as listing_type's reserve
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       logical :: has_lock
 
-      call self%listing%reserve(path//'.lst', has_lock, error)
+      call self%listing%reserve(path//'.lst', lock, has_lock, error)
       if (allocated(error)) return
       if (.not. has_lock) call print_warnings(self, [string_type('the file system of "'//path// &
          '.lst" has no locks: a second run of this name at the same time would not be noticed')])
-      call self%results%reserve(path, has_lock, error)
+      call self%results%reserve(path, self%kept_round > 0, has_lock .and. self%kept_round == 0, &
+         error)
    end subroutine reserve
 
    !> Begins the output of a run, whose files are reserved: writes the head of the listing and
@@ -87,7 +93,7 @@ contains
       self%point_node = point_node
       allocate(self%failed(0))
       call self%verifier%start(model)
-      call self%listing%open(model, interfaces, self%run, error)
+      call self%listing%open(self%kept_round > 0, model, interfaces, self%run, error)
       if (allocated(error)) return
       call self%results%open(model, interfaces, point_node, element_points, cards, error)
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
@@ -127,15 +133,22 @@ contains
       end do
    end subroutine print_warnings
 
-   !> Takes why the run ended early, and the increment at which it did not converge.
+   !> Takes why the run ended early, and the increment at which it did not converge. A draft is then
+   !> dropped.
    subroutine fail(self, reason, record)
       class(run_output_type), intent(inout) :: self
       character(*), intent(in) :: reason                     !! what went wrong, one sentence
       type(increment_record_type), intent(in) :: record      !! attempts and passes; empty for none
 
+      if (self%kept_round > 0) then
+         call self%progress%clear()
+         call self%results%give_up()
+         call self%listing%drop_draft(reason, record, self%kept())
+         return
+      end if
       if (allocated(record%iterations)) self%failed = record%iterations
       call self%judgement%fail()
-      call self%listing%add_failure(reason, record, kept_words(self%results%accepted))
+      call self%listing%add_failure(reason, record, words_of_kept(self%results%accepted))
    end subroutine fail
 
    !> Ends the output: publishes what is left, then closes the listing. `run` then holds the
@@ -158,6 +171,7 @@ contains
          call self%break_off(error%message)
          return
       end if
+      self%kept_round = 0
       self%is_finished = .true.
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
       warnings = self%judgement%warnings(model, interfaces)
@@ -171,15 +185,20 @@ contains
       class(run_output_type), intent(inout) :: self
       character(*), intent(in) :: reason                  !! what went wrong, one sentence
 
+      if (self%kept_round > 0) then
+         call self%fail(reason, increment_record_type())
+         return
+      end if
       call self%progress%clear()
       call self%listing%break_off(reason)
    end subroutine break_off
 
    !> Frees the files.
-   subroutine close_output(self)
+   subroutine close_output(self, keeps_lock)
       class(run_output_type), intent(inout) :: self
+      logical, intent(in) :: keeps_lock   !! whether another round follows
 
-      call self%listing%close()
+      call self%listing%close(keeps_lock)
    end subroutine close_output
 
    !> What the run comes to at its last accepted increment.
@@ -214,13 +233,6 @@ contains
          trim(merge('its time   ', 'their times', unjudged == 1)))
    end function failed_checks
 
-   !> Whether the listing holds anything of this run.
-   pure logical function is_begun(self)
-      class(run_output_type), intent(in) :: self
-
-      is_begun = self%listing%is_begun()
-   end function is_begun
-
    !> Path of the listing, or nothing before it is reserved.
    pure function listing_path(self) result(path)
       class(run_output_type), intent(in) :: self
@@ -249,21 +261,34 @@ contains
    pure integer function written(self)
       class(run_output_type), intent(in) :: self
 
-      written = merge(1, 0, self%is_begun())
+      written = merge(1, 0, self%listing%is_begun())
       if (self%is_finished) written = 2
       if (self%published() > 0) written = merge(4, 3, self%results%has_contact)
    end function written
 
-   !> What the results of a run hold.
-   pure function kept_words(increments) result(words)
-      integer, intent(in) :: increments            !! in the result file
-      character(:), allocatable :: words           !! one sentence
+   !> What the files hold if the run ends here.
+   pure function kept(self) result(words)
+      class(run_output_type), intent(in) :: self
+      character(:), allocatable :: words           !! one sentence; empty if nothing
+
+      words = ''
+      if (self%kept_round > 0 .and. self%published() == 0) then
+         words = 'The results are those of round '//to_text(self%kept_round)// &
+            ', the last whole one.'
+      else if (self%listing%is_begun()) then
+         words = words_of_kept(self%published())
+      end if
+   end function kept
+
+   pure function words_of_kept(increments) result(words)
+      integer, intent(in) :: increments            ! in the result file
+      character(:), allocatable :: words
 
       words = 'No increment was accepted: this run has no result file and no .sta; those of an '// &
          'earlier run, if there are any, were kept.'
       if (increments > 0) words = 'The results hold the increments up to number '// &
          to_text(increments)//'.'
-   end function kept_words
+   end function words_of_kept
 
    !> Number of increments that were accepted.
    pure function accepted(self) result(number)

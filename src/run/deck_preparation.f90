@@ -32,22 +32,30 @@ module deck_preparation
    use verify_positions, only: check_arc_lengths
    implicit none
    private
-   public :: prepare_deck
+   public :: prepare_deck, read_deck_type
 
    !> Why a file is skipped.
    character(*), parameter, public :: not_a_deck = 'it has no *STEP; it is taken as a file '// &
       'that decks include'
 
+   !> A deck as it was read.
+   type :: read_deck_type
+      type(cards_type) :: cards
+      !> Where several runs may be made of it: a pipe can be read only once, and a file may change
+      type(deck_report_type), allocatable, private :: report
+   end type read_deck_type
+
 contains
 
-   !> Reads a deck and prepares its run. Warnings and errors are printed on stderr.
+   !> Reads a deck, unless that is done, and prepares its run. Warnings and errors are printed on
+   !> stderr.
    !> Warnings of a variation are those of the deck, and are not printed.
    !> Of several decks, a file without errors and without *STEP is none: its model stays empty.
    !> Errors: status_deck, with the first of the deck's errors; as simulation_type's start.
-   subroutine prepare_deck(path, command, cards, model, simulation, error, variation)
+   subroutine prepare_deck(path, command, deck, model, simulation, error, variation)
       character(*), intent(in) :: path                    !! the deck as given
       type(command_type), intent(in) :: command           !! options of the command line
-      type(cards_type), intent(out) :: cards
+      type(read_deck_type), intent(inout) :: deck         !! fresh, or of an earlier round
       type(model_type), intent(out) :: model
       type(simulation_type), intent(inout) :: simulation  !! a fresh run
       type(error_type), allocatable, intent(out) :: error
@@ -57,15 +65,21 @@ contains
 
       call progress%start(command%quiet)
       call progress%say('reading')
-      call read_deck(path, command%width, command%settings, cards, report)
-      if (size(command%decks) > 1 .and. .not. (report%has_errors() .or. has_step(cards))) then
+      if (allocated(deck%report)) then
+         report = deck%report
+      else
+         call read_deck(path, command%width, command%settings, deck%cards, report)
+         if (command%accuracy > 0.0_dp .or. has_card('ACCURACY', deck%cards)) deck%report = report
+      end if
+      if (size(command%decks) > 1 .and. .not. (report%has_errors() .or. &
+         has_card('STEP', deck%cards))) then
          call progress%clear()
          call print_line(error_unit, path//': note: skipped: '//not_a_deck)
          return
       end if
-      call build_model(cards, verifiable, estimated, model, report, error, variation)
+      call build_model(deck%cards, verifiable, estimated, model, report, error, variation)
       if (command%accuracy > 0.0_dp .and. .not. report%has_errors()) call request_accuracy( &
-         cards%last, command%accuracy, model, report)
+         deck%cards%last, command%accuracy, model, report)
       if (.not. (report%has_errors() .or. allocated(error))) then
          call make_interfaces(model, simulation%bodies%interfaces, report)
          call make_ties(model, simulation%bodies%ties, model%notes, report)
@@ -74,7 +88,7 @@ contains
          call simulation%start(model, error)
          if (.not. allocated(error)) call check_arc_lengths(model, &
             simulation%bodies%interfaces, report)
-         call check_supports(cards, model, simulation, report)
+         call check_supports(deck%cards, model, simulation, report)
          call report_at_card(error, report)
       end if
       model%warnings = report%warnings()
@@ -100,16 +114,17 @@ contains
          'there is no quantity whose accuracy could be requested')
    end subroutine request_accuracy
 
-   pure logical function has_step(cards)
+   pure logical function has_card(name, cards)
+      character(*), intent(in) :: name
       type(cards_type), intent(in) :: cards
       integer :: i
 
-      has_step = .true.
+      has_card = .true.
       do i = 1, size(cards%keywords)
-         if (cards%keywords(i)%name == 'STEP') return
+         if (cards%keywords(i)%name == name) return
       end do
-      has_step = .false.
-   end function has_step
+      has_card = .false.
+   end function has_card
 
    !> Reports an error at the card that it names.
    subroutine report_at_card(error, report)

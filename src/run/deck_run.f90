@@ -4,46 +4,35 @@ module deck_run
    use accuracy_rounds, only: accuracy_rounds_type
    use batch_table, only: table_name
    use blas_memory, only: reserve_blas_memory
-   use cards, only: cards_type
    use clock, only: wall_seconds
    use command_line, only: command_type
    use deck_outcomes, only: deck_outcome_type
-   use deck_preparation, only: not_a_deck, prepare_deck
+   use deck_preparation, only: not_a_deck, prepare_deck, read_deck_type
    use error_estimator, only: error_estimator_type
    use errors, only: error_type, set_error, status_deck, status_interrupted, status_internal, &
       status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
-   use increment_control, only: increment_control_type
    use increments, only: simulation_type
-   use interruption, only: caught_signal, end_after_grace, end_at_once, end_by_increments, &
-      run_end_type
+   use interruption, only: end_after_grace, end_at_once, end_by_increments
    use kinds, only: dp
-   use load_histories, only: step_clock_type
    use messages, only: print_error
-   use model, only: model_type
    use records, only: increment_record_type
-   use round_indicators, only: round_indicators_type
    use run_description, only: describe_run
-   use run_output, only: kept_words, run_output_type
-   use text, only: append, string_type, to_text
-   use utf8, only: printable
+   use run_ending, only: check_signals, prepare_end, report_failure, run_type, say_when
+   use run_output, only: run_output_type
+   use text, only: append, string_type
    use variations, only: variation_type
    implicit none
    private
    public :: run_deck, base_name
 
-   !> The run of a deck, or one round of it.
-   type :: run_type
-      character(:), allocatable :: path       !! the deck as given
-      type(command_type) :: command           !! options of the command line
-      type(cards_type) :: cards
-      type(model_type) :: model
-      type(simulation_type) :: simulation
-      type(run_output_type) :: output
-      type(run_end_type) :: end               !! of an increment that takes too long
-      type(round_indicators_type) :: indicators   !! what another round should vary
-      real(dp) :: cpu_start = 0.0_dp          !! CPU seconds of the process at its start [s]
-   end type run_type
+   !> What goes from one round to the next.
+   type :: rounds_type
+      type(read_deck_type) :: deck
+      type(accuracy_rounds_type) :: accuracy
+      type(variation_type), allocatable :: variation   !! of the deck; unallocated in the first one
+      integer :: lock = -1                             !! as run_output_type's reserve
+   end type rounds_type
 
 contains
 
@@ -53,8 +42,7 @@ contains
       character(*), intent(in) :: path                  !! the deck as given
       type(command_type), intent(in) :: command         !! options of the command line
       type(deck_outcome_type), intent(inout) :: outcome !! how it ended
-      type(accuracy_rounds_type) :: accuracy
-      type(variation_type), allocatable :: variation
+      type(rounds_type) :: rounds
       type(error_type), allocatable :: error
       real(dp) :: since
 
@@ -69,8 +57,8 @@ contains
       call reserve_blas_memory()
       allocate (outcome%failed_checks(0))
       do
-         call run_round(path, command, accuracy, variation, outcome)
-         if (outcome%status /= status_ok .or. .not. accuracy%goes_on) exit
+         call run_round(path, command, rounds, outcome)
+         if (outcome%status /= status_ok .or. .not. rounds%accuracy%goes_on) exit
       end do
       if (size(outcome%failed_checks) > 0) then
          call set_error(error, status_verify, outcome%failed_checks(1)%value)
@@ -79,12 +67,12 @@ contains
       outcome%seconds = wall_seconds() - since
    end subroutine run_deck
 
-   !> Solves a deck as it is written, or as a variation has it, which then is that of another round.
-   subroutine run_round(path, command, accuracy, variation, outcome)
+   !> Solves a deck as it is written, or as the variation of a later round has it. The files of the
+   !> round before stay until a later one is whole.
+   subroutine run_round(path, command, rounds, outcome)
       character(*), intent(in) :: path
       type(command_type), intent(in) :: command
-      type(accuracy_rounds_type), intent(inout) :: accuracy
-      type(variation_type), allocatable, intent(inout) :: variation
+      type(rounds_type), intent(inout) :: rounds
       type(deck_outcome_type), intent(inout) :: outcome
       type(run_type) :: self
       type(error_type), allocatable :: error
@@ -94,37 +82,57 @@ contains
       call cpu_time(self%cpu_start)
       self%path = path
       self%command = command
-      call outcome%begin()
+      if (allocated(rounds%variation)) self%output%kept_round = size(rounds%accuracy%rounds)
+      call outcome%begin(self%output%kept_round > 0)
       call prepare_end(self, end_at_once)
-      call prepare_deck(path, command, self%cards, self%model, self%simulation, error, variation)
-      if (allocated(error)) then
-         call outcome%fail(error)
-      else if (.not. allocated(self%model%steps)) then
-         outcome%reason = not_a_deck
-         return
-      else
-         call reserve_files(self, error)
-         if (.not. allocated(error)) call reduce_bodies(self, error)
-         if (allocated(error)) call report_failure(self, error, outcome)
-      end if
-      if (outcome%status == status_ok) then
+      call begin_round(self, rounds, outcome)
+      if (outcome%status == status_ok .and. allocated(self%model%steps)) then
          self%output%run%seconds_read = wall_seconds() - since - &
             self%simulation%seconds%assemble - self%simulation%seconds%reduce
          call describe_run(path, self%model, self%simulation, self%output%run)
-         self%output%run%accuracy = accuracy
-         call solve_deck(self, outcome, error)
-         accuracy = self%output%run%accuracy
-         if (allocated(error)) call report_failure(self, error, outcome)
+         self%output%run%accuracy = rounds%accuracy
+         call solve_deck(self, rounds%deck%cards%images, outcome, error)
+         rounds%accuracy = self%output%run%accuracy
+         if (allocated(error)) call report_failure(self, error, outcome, is_told=.false.)
          ! Of a run that could not go on for want of a file or of memory a check says nothing.
          if (outcome%status /= status_internal) call take_checks(self, outcome)
-         if (accuracy%goes_on) then
-            if (.not. allocated(variation)) allocate (variation)
-            call self%indicators%add_to(variation)
+         if (rounds%accuracy%goes_on) then
+            if (.not. allocated(rounds%variation)) allocate (rounds%variation)
+            call self%indicators%add_to(rounds%variation)
          end if
       end if
-      call self%output%close()
+      call self%output%close(outcome%status == status_ok .and. rounds%accuracy%goes_on)
       call self%simulation%release()
    end subroutine run_round
+
+   !> All that comes before the first increment. A first round touches no file before its deck is
+   !> found sound; a later one can say in the listing what ends it.
+   subroutine begin_round(self, rounds, outcome)
+      type(run_type), intent(inout) :: self
+      type(rounds_type), intent(inout) :: rounds
+      type(deck_outcome_type), intent(inout) :: outcome
+      type(error_type), allocatable :: error
+      logical :: is_told
+
+      is_told = .false.
+      associate (is_later => self%output%kept_round > 0)
+         if (is_later) call reserve_files(self, rounds%lock, error)
+         if (.not. allocated(error)) then
+            call prepare_deck(self%path, self%command, rounds%deck, self%model, &
+               self%simulation, error, rounds%variation)
+            is_told = allocated(error)
+         end if
+         if (.not. (allocated(error) .or. allocated(self%model%steps))) then
+            outcome%reason = not_a_deck
+            return
+         end if
+         if (.not. (allocated(error) .or. is_later)) call reserve_files(self, rounds%lock, error)
+         if (.not. allocated(error)) call reduce_bodies(self, error)
+         if (.not. allocated(error)) return
+         if (is_later) call self%output%fail(error%message, increment_record_type())
+      end associate
+      call report_failure(self, error, outcome, is_told)
+   end subroutine begin_round
 
    !> Error: status_deck, where results would be written over the deck.
    subroutine check_name(path, error)
@@ -140,14 +148,15 @@ contains
 
    !> Sees to it that results can be written before anything is solved.
    !> Error: as run_output_type's reserve.
-   subroutine reserve_files(self, error)
+   subroutine reserve_files(self, lock, error)
       type(run_type), intent(inout) :: self
+      integer, intent(inout) :: lock                !! as run_output_type's reserve
       type(error_type), allocatable, intent(out) :: error
 
       self%output%run%deck_path = self%path
       call make_folder(self%command%folder)
       call self%end%hold(.true.)
-      call self%output%reserve(self%command%folder//'/'//base_name(self%path), error)
+      call self%output%reserve(self%command%folder//'/'//base_name(self%path), lock, error)
       call prepare_end(self, end_at_once)
       call self%end%hold(.false.)
    end subroutine reserve_files
@@ -164,13 +173,14 @@ contains
          call self%simulation%assemble(self%model)
          call progress%say('reducing')
          call self%simulation%reduce(self%model, error)
-         if (allocated(error)) call say_when(self%model, self%simulation, error)
+         if (allocated(error)) call say_when(self, error)
       end associate
    end subroutine reduce_bodies
 
    !> All increments, with their output.
-   subroutine solve_deck(self, outcome, error)
+   subroutine solve_deck(self, cards, outcome, error)
       type(run_type), intent(inout) :: self
+      type(string_type), intent(in) :: cards(:)     !! card images as read
       type(deck_outcome_type), intent(inout) :: outcome
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: output_error
@@ -180,8 +190,7 @@ contains
       associate (model => self%model, simulation => self%simulation, output => self%output, &
          interfaces => self%simulation%bodies%interfaces, points => self%simulation%recovery%points)
          call self%end%hold(.true.)
-         call output%start(model, interfaces, points%node, points%element_points, &
-            self%cards%images, error)
+         call output%start(model, interfaces, points%node, points%element_points, cards, error)
          if (allocated(error)) return
          call outcome%note_files(output%written())
          call prepare_end(self, end_at_once)
@@ -199,15 +208,20 @@ contains
             if (error%status == status_deck) then
                ! What only an increment shows is no mistake of the deck's cards; one that has no
                ! number yet failed as it was set up.
-               if (record%increment == 0) call say_when(model, simulation, error)
+               if (record%increment == 0) call say_when(self, error)
                error%status = status_no_convergence
             end if
             call output%fail(error%message, record)
             call outcome%note(record, output%accepted(), output%written())
+            if (output%kept_round > 0) return
          end if
-         call output%finish(model, interfaces, self%cards%images, output_error)
-         outcome%summary = output%summary_lines(model, interfaces)
-         call outcome%note_files(output%written())
+         call output%finish(model, interfaces, cards, output_error)
+         if (output%kept_round == 0) then
+            outcome%keeps_round = .false.
+            outcome%increments = output%accepted()
+            outcome%summary = output%summary_lines(model, interfaces)
+            call outcome%note_files(output%written())
+         end if
          if (allocated(output_error)) then
             if (allocated(error)) output_error%message = error%message//'; '//output_error%message
             call move_alloc(output_error, error)
@@ -233,7 +247,7 @@ contains
          call self%indicators%start(model)
          do while (.not. simulation%finished(model))
             call prepare_end(self, end_after_grace)
-            call check_signals(simulation%control, error)
+            call check_signals(self, error)
             if (.not. allocated(error)) then
                call output%progress%begin_increment(simulation%control%increments + 1, &
                   simulation%control%planned(model))
@@ -241,8 +255,7 @@ contains
                call simulation%advance(model, record, error)
                call take_measures(simulation, output)
                if (allocated(error)) then
-                  if (error%status == status_interrupted) call check_signals( &
-                     simulation%control, error)
+                  if (error%status == status_interrupted) call check_signals(self, error)
                end if
             end if
             if (allocated(error)) then
@@ -301,58 +314,6 @@ contains
       output%run%smallest_pivot = simulation%sizes%smallest_pivot
    end subroutine take_measures
 
-   !> Prepares the end of the run from here on: within an increment that takes too long after a
-   !> signal, or where there is no memory left.
-   subroutine prepare_end(self, when)
-      type(run_type), intent(inout) :: self
-      integer, intent(in) :: when   !! one of the end_* constants
-
-      self%end%when = when
-      self%end%shows_progress = self%output%progress%is_on_line()
-      self%end%deck = printable(self%path)
-      self%end%where = where_words(self%simulation%control)
-      self%end%listing = self%output%listing_path()
-      self%end%working = self%output%working_path()
-      self%end%kept = ''
-      if (self%output%is_begun()) self%end%kept = kept_words(self%output%published())
-      ! Increments that wait for their publication are lost with the process.
-      if (self%output%published() < self%output%accepted()) self%end%where = self%end%where// &
-         '; the results hold those up to number '//to_text(self%output%published())
-      call self%end%prepare()
-   end subroutine prepare_end
-
-   !> Puts the increment that was tried before what went wrong.
-   subroutine say_when(model, simulation, error)
-      type(model_type), intent(in) :: model
-      type(simulation_type), intent(in) :: simulation
-      type(error_type), intent(inout) :: error
-      type(step_clock_type) :: clock
-
-      clock = simulation%control%next_instant(model)
-      error%message = 'increment '//to_text(simulation%control%increments + 1)//' (time '// &
-         to_text(clock%total_time)//'): '//error%message
-   end subroutine say_when
-
-   !> A signal ends the run between two increments.
-   !> Error: status_interrupted.
-   subroutine check_signals(control, error)
-      type(increment_control_type), intent(in) :: control
-      type(error_type), allocatable, intent(out) :: error
-
-      if (caught_signal() /= '') call set_error(error, status_interrupted, 'ended by '// &
-         caught_signal()//where_words(control))
-   end subroutine check_signals
-
-   !> Behind which increment a run ends.
-   function where_words(control) result(words)
-      type(increment_control_type), intent(in) :: control
-      character(:), allocatable :: words   !! with a blank before them
-
-      words = ' before the first increment'
-      if (control%increments > 0) words = ' after increment '//to_text(control%increments)// &
-         ' (time '//to_text(control%step_start + control%step_time)//')'
-   end function where_words
-
    !> Takes which checks of the deck failed, and which targets were missed.
    subroutine take_checks(self, outcome)
       type(run_type), intent(in) :: self
@@ -364,7 +325,7 @@ contains
          outcome%failed_checks = [outcome%failed_checks, output%failed_checks(self%model)]
          outcome%verify_passed = outcome%verify_passed + output%run%verify_passed
          outcome%verify_failed = outcome%verify_failed + output%run%verify_failed
-         if (outcome%status /= status_ok) return
+         if (outcome%status /= status_ok .or. output%run%accuracy%goes_on) return
          allocate (missed(0))
          call add_missed(output%run%accuracy, self%simulation%bodies%interfaces, missed)
          do i = 1, size(missed)
@@ -372,21 +333,6 @@ contains
          end do
       end associate
    end subroutine take_checks
-
-   !> Prints why a run ended early.
-   subroutine report_failure(self, error, outcome)
-      type(run_type), intent(inout) :: self
-      type(error_type), intent(in) :: error
-      type(deck_outcome_type), intent(inout) :: outcome
-
-      call outcome%fail(error)
-      call self%output%progress%clear()
-      if (error%status == status_no_convergence) then
-         call print_error(self%path, error%message//'; the listing shows the passes')
-      else
-         call print_error(self%path, error%message)
-      end if
-   end subroutine report_failure
 
    !> Name of a deck's results: its file name without folder and extension, or stdin where it is
    !> read from an open file, which has a number only.

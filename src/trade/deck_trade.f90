@@ -2,11 +2,10 @@
 module deck_trade
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use all_contact_points, only: match_surfaces
-   use cards, only: cards_type
    use command_line, only: command_type
    use contact_definitions, only: pairing_by_faces, pairing_nodes, pairing_surfaces
    use contact_points, only: contact_points_type
-   use deck_preparation, only: prepare_deck
+   use deck_preparation, only: prepare_deck, read_deck_type
    use deck_run, only: base_name
    use element_kinds, only: element_corner_count
    use errors, only: error_type, status_deck, status_interrupted
@@ -45,7 +44,7 @@ contains
       character(*), intent(in) :: path             !! the deck as given
       type(command_type), intent(in) :: command    !! options of the command line
       integer, intent(out) :: status               !! exit status
-      type(cards_type) :: cards
+      type(read_deck_type) :: deck
       type(model_type) :: model
       type(simulation_type) :: simulation
       type(trade_type) :: trade
@@ -59,7 +58,7 @@ contains
          call print_error(path, 'trade reads the deck more than once: give a file, not a pipe')
          return
       end if
-      call prepare_deck(path, command, cards, model, simulation, error, &
+      call prepare_deck(path, command, deck, model, simulation, error, &
          variation_type(order=2, levels=0))
       call simulation%release()
       if (allocated(error)) then

@@ -1,9 +1,8 @@
 !> One row of a trade, solved in a process of its own.
 module row_task
    use, intrinsic :: iso_c_binding, only: c_int
-   use cards, only: cards_type
    use command_line, only: command_type
-   use deck_preparation, only: prepare_deck
+   use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type, set_error, status_interrupted, status_no_convergence
    use increments, only: simulation_type
    use interruption, only: caught_signal
@@ -38,13 +37,13 @@ contains
    subroutine execute(self, report)
       class(row_task_type), intent(inout) :: self
       type(report_type), intent(inout) :: report    !! how it ended
-      type(cards_type) :: cards
+      type(read_deck_type) :: deck
       type(model_type) :: model
       type(simulation_type) :: simulation
       type(row_values_type) :: values
       type(error_type), allocatable :: error
 
-      call prepare_deck(self%path, self%command, cards, model, simulation, error, self%variation)
+      call prepare_deck(self%path, self%command, deck, model, simulation, error, self%variation)
       if (.not. allocated(error)) then
          call solve(self, model, simulation, values, error)
          call values%save(self%values_path)

@@ -1,14 +1,20 @@
 """A requested accuracy: *ACCURACY and --accuracy. True errors are those to the converged values that
 docs/accuracy.md tells, from uniform meshes far finer than any here."""
 
+import fcntl
+import re
+import resource
+import signal
+import subprocess
 import sys
+import time
 
 import h5py
 import numpy as np
 import pytest
 from blocks import without_unused_surfaces, write
 from changes import note_changes
-from deck_runs import COUPLED, CYLINDER, DECKS, HERTZ, INPUT, copy_deck, run, solve
+from deck_runs import COUPLED, CYLINDER, DECKS, HERTZ, INPUT, PROGRAM, copy_deck, run, solve
 from physics import material, mesh
 
 sys.path.insert(0, str(DECKS.parent / "documents"))
@@ -153,3 +159,139 @@ def test_a_pressure_without_limit_is_never_reached_where_only_changes_tell(tmp_p
     peak = bounds["peak_pressure"]
     assert not reached and peak[-1, 2] > peak[-1, 3]
     assert np.all(np.diff(peak[:, 1]) > 0)
+
+
+def kept_round(folder, name, words):
+    """Return the round that the files of a run are of, whose request ended early; they are whole, of
+    one and the same round, and say so."""
+    assert sorted(f.name for f in folder.iterdir()) == sorted(
+        name + end for end in (".contact.vtkhdf", ".cvg", ".inp", ".lst", ".sta", ".vtkhdf"))
+    costs, _, reached = rounds_of(folder / f"{name}.vtkhdf")
+    whole = len(costs["elements"])
+    with h5py.File(folder / f"{name}.vtkhdf") as file:
+        assert reached == 0 and file["accuracy"].attrs["later_round_begun"] == 1
+        times = file["history/time"][:]
+        assert len(times) == costs["increments"][-1]
+        assert len(file["VTKHDF/CellData/element_id"]) == costs["elements"][-1]
+        passes = len(file["convergence/increment"])
+    with h5py.File(folder / f"{name}.contact.vtkhdf") as file:
+        np.testing.assert_array_equal(file["VTKHDF/Steps/Values"][:], times)
+    assert len((folder / f"{name}.sta").read_text().splitlines()) == 1 + len(times)
+    assert len((folder / f"{name}.cvg").read_text().splitlines()) == 1 + passes
+    said = f"; the results are those of round {whole}"
+    assert said in words, words
+    listing = (folder / f"{name}.lst").read_text()
+    assert f"accuracy not reached, {len(times)} increments" in listing
+    assert re.search(rf"requested accuracy not reached after {whole} rounds?; round {whole + 1} was "
+                     "begun", listing)
+    assert listing.count("\nSECONDS\n") == 1
+    reason = re.search(r"error: (?:round \d+: )?([^;\n]+)", words)[1]
+    ended = " ".join(listing[listing.index("\nENDED EARLY\n"):].split())
+    assert reason in ended and f"The results are those of round {whole}" in ended
+    return whole
+
+
+def in_a_later_round(folder, seconds):
+    """Start a run whose later rounds take seconds; return it so long after the first one."""
+    deck = copy_deck(CYLINDER, folder / "deck.inp", ["*REFINE, LEVELS=1"])
+    process = subprocess.Popen(
+        [PROGRAM, "run", "--accuracy", "0.05%", deck, "--out", folder], text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    listing, until = folder / "deck.lst", time.monotonic() + 60.0
+    while not (listing.exists() and "REQUESTED ACCURACY" in listing.read_text()):
+        assert process.poll() is None and time.monotonic() < until
+        time.sleep(0.01)
+    time.sleep(seconds)
+    return process
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.3, 1.0, 1.6, 2.5])
+def test_a_signal_in_a_later_round_keeps_the_last_whole_one(tmp_path, seconds):
+    """Wherever it comes: while the next round is prepared, reduced, or solved."""
+    process = in_a_later_round(tmp_path, seconds)
+    process.send_signal(signal.SIGINT)
+    output, words = process.communicate(timeout=60.0)
+    assert process.returncode == 5, words
+    whole = kept_round(tmp_path, "deck", words)
+    assert f"ended by SIGINT in round {whole + 1} " in words
+    if "results:" in output:   # where the signal did not end the process within an increment
+        assert "deck.inp: interrupted, 45 increments" in output
+
+
+def test_a_later_round_that_does_not_converge_keeps_the_last_whole_one(tmp_path):
+    """With as many iterations as the mesh of the deck needs, and no cut-backs."""
+    deck = copy_deck(COUPLED, tmp_path / "deck.inp", changes={
+        "METHOD=NEWTON": "METHOD=NEWTON, MAXITER=11"})
+    process = run("run", deck, "--out", tmp_path, "--accuracy", "0.3%")
+    assert process.returncode == 2
+    whole = kept_round(tmp_path, "deck", process.stderr)
+    assert whole > 1
+    assert f"error: round {whole + 1}: increment " in process.stderr
+    assert "the conductance does not converge in 11 iterations" in process.stderr
+    assert "deck.inp: not converged, 45 increments" in process.stdout
+    assert f"requested accuracy not reached after {whole} rounds; " in process.stdout
+    assert "results: " in process.stdout and "check failed" not in process.stderr
+    listing = (tmp_path / "deck.lst").read_text()
+    assert "ITERATION HISTORY" in listing[listing.index("\nENDED EARLY\n"):]
+
+
+def test_a_later_round_without_memory_keeps_the_last_whole_one(tmp_path):
+    """Some limit of the process lets it solve the first round and not a later one."""
+    kept = []
+    for megabytes in range(210, 310, 20):
+        folder = tmp_path / str(megabytes)
+        folder.mkdir()
+        deck = copy_deck(CYLINDER, folder / "deck.inp")
+        limit = megabytes * 1000000
+        process = subprocess.run(
+            [PROGRAM, "run", deck, "--out", folder, "--accuracy", "0.3%"],
+            capture_output=True, text=True, check=False,
+            preexec_fn=lambda limit=limit: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        assert process.returncode in (0, 3), process.stderr
+        if "results are those of round" in process.stderr:
+            assert "not enough memory: " in process.stderr and "results: " in process.stdout
+            kept.append(kept_round(folder, "deck", process.stderr))
+        elif process.returncode == 3:
+            assert not (folder / "deck.vtkhdf").exists()
+    assert kept, "no limit ends a later round"
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.5, 1.0, 1.5, 2.0])
+def test_memory_that_runs_out_in_a_later_round_keeps_the_last_whole_one(tmp_path, seconds):
+    """As where others take it meanwhile, which no estimate can foresee."""
+    process = in_a_later_round(tmp_path, seconds)
+    resource.prlimit(process.pid, resource.RLIMIT_AS, (1000000, 1000000))
+    _, words = process.communicate(timeout=60.0)
+    assert process.returncode == 3, words
+    assert kept_round(tmp_path, "deck", words) > 0
+
+
+def test_a_run_keeps_its_lock_from_round_to_round(tmp_path):
+    """A lock that is asked for all the time is had when the run has ended; had it before, the run
+    would end with "another run writes here"."""
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp")
+    process = subprocess.Popen(
+        [PROGRAM, "run", "--quiet", "--accuracy", "0.3%", deck, "--out", tmp_path],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    listing = tmp_path / "deck.lst"
+    while not (listing.exists() and listing.stat().st_size > 0):
+        assert process.poll() is None
+    with listing.open() as file:
+        while True:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                pass
+        words = process.communicate(timeout=60.0)[1]
+    assert process.returncode == 0, words
+    assert rounds_of(tmp_path / "deck.vtkhdf")[2] == 1
+
+
+def test_all_rounds_are_of_the_deck_as_it_was_read_first(tmp_path):
+    """A pipe can be read only once."""
+    with subprocess.Popen(["cat", CYLINDER], stdout=subprocess.PIPE) as deck:
+        process = subprocess.run([PROGRAM, "run", "/dev/stdin", "--accuracy", "1%"], text=True,
+                                 cwd=tmp_path, stdin=deck.stdout, capture_output=True, check=False)
+    assert process.returncode == 0, process.stderr
+    assert "requested accuracy reached after 2 rounds" in process.stdout
