@@ -23,32 +23,39 @@ module linked_relaxation
 contains
 
    !> Relaxes the free unknowns x of A x + springs = rhs, with what is rigid kept.
-   subroutine relax(matrix, joints, rhs, free, steps, x)
+   subroutine relax(matrix, joints, rhs, free, steps, x, residual)
       type(sparse_matrix_type), intent(in) :: matrix    !! (n, n) A, both triangles
       type(joint_type), intent(inout) :: joints(:)
       real(dp), intent(in) :: rhs(:)                    !! (n) right-hand side
       logical, intent(in) :: free(:)                    !! (n) unknowns that may change
       integer, intent(in) :: steps                      !! number of steps
       real(dp), intent(inout) :: x(:)                   !! (n) guess in, solution out
-      real(dp) :: residual(size(x)), direction(size(x)), image(size(x)), z(size(x))
-      real(dp) :: diagonal(size(x)), energy, before
+      real(dp), intent(out) :: residual(:)              !! (n) rhs - A x - springs
+      real(dp) :: direction(size(x)), image(size(x)), z(size(x))
+      real(dp) :: diagonal(size(x)), inverse(size(x)), before, energy, length
       integer :: k
 
       diagonal = diagonal_of(matrix)
+      inverse = 0.0_dp
+      where (free .and. diagonal > 0.0_dp) inverse = 1/diagonal
       do k = 1, size(joints)
          call prepare_joint(matrix, free, diagonal, joints(k), x)
       end do
-      residual = rhs - matrix%multiply(x) - spring_forces(joints, x, .true.)
+      residual = rhs - matrix%multiply(x)
+      call add_springs(joints, x, .true., -1.0_dp, residual)
       direction = 0.0_dp
       before = 1.0_dp
       do k = 1, steps
-         z = preconditioned(joints, free, diagonal, residual)
+         z = inverse*residual
+         call precondition_joints(joints, residual, z)
          energy = dot_product(z, residual)
          if (energy <= 0.0_dp) exit
          direction = z + energy/before*direction
-         image = matrix%multiply(direction) + spring_forces(joints, direction, .false.)
-         x = x + energy/dot_product(direction, image)*direction
-         residual = residual - energy/dot_product(direction, image)*image
+         image = matrix%multiply(direction)
+         call add_springs(joints, direction, .false., 1.0_dp, image)
+         length = energy/dot_product(direction, image)
+         x = x + length*direction
+         residual = residual - length*image
          before = energy
       end do
    end subroutine relax
@@ -119,25 +126,25 @@ contains
       end do
    end function block_of
 
-   !> Forces of the springs; without their rest where this does not count.
-   pure function spring_forces(joints, x, with_rest) result(forces)
+   !> Adds a multiple of the forces of the springs; without their rest where this does not count.
+   pure subroutine add_springs(joints, x, with_rest, factor, forces)
       type(joint_type), intent(in) :: joints(:)
       real(dp), intent(in) :: x(:)
       logical, intent(in) :: with_rest
-      real(dp) :: forces(size(x))
+      real(dp), intent(in) :: factor
+      real(dp), intent(inout) :: forces(:)
       real(dp) :: stretch
       integer :: k
 
-      forces = 0.0_dp
       do k = 1, size(joints)
          if (joints(k)%is_rigid) cycle
          associate (along => joints(k)%direction(:, 1), dof => joints(k)%dof)
             stretch = dot_product(along, x(dof))
             if (with_rest) stretch = stretch - joints(k)%rest(1)
-            forces(dof) = forces(dof) + joints(k)%stiffness*stretch*along
+            forces(dof) = forces(dof) + factor*joints(k)%stiffness*stretch*along
          end associate
       end do
-   end function spring_forces
+   end subroutine add_springs
 
    pure function diagonal_of(matrix) result(diagonal)
       type(sparse_matrix_type), intent(in) :: matrix
@@ -147,23 +154,22 @@ contains
       diagonal = 0.0_dp
       do i = 1, matrix%row_count
          do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+            if (matrix%column(k) < i) cycle
             if (matrix%column(k) == i) diagonal(i) = matrix%value(k)
+            exit
          end do
       end do
    end function diagonal_of
 
-   pure function preconditioned(joints, free, diagonal, residual) result(z)
+   pure subroutine precondition_joints(joints, residual, z)
       type(joint_type), intent(in) :: joints(:)
-      logical, intent(in) :: free(:)
-      real(dp), intent(in) :: diagonal(:), residual(:)
-      real(dp) :: z(size(residual))
+      real(dp), intent(in) :: residual(:)
+      real(dp), intent(inout) :: z(:)
       integer :: k
 
-      z = 0.0_dp
-      where (free .and. diagonal > 0.0_dp) z = residual/diagonal
       do k = 1, size(joints)
          z(joints(k)%dof) = matmul(joints(k)%inverse, residual(joints(k)%dof))
       end do
-   end function preconditioned
+   end subroutine precondition_joints
 
 end module linked_relaxation

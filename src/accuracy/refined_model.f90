@@ -7,9 +7,7 @@ module refined_model
    use hanging_nodes, only: at_level_changes
    use kinds, only: dp
    use loads, only: loads_type
-   use mesh, only: mesh_type
-   use mesh_division, only: divide, division_type, refined_members, refined_values, &
-      restricted_values
+   use mesh_division, only: divide, division_type, refined_members
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type, match_surfaces, joined_points
    use refinement, only: refine
@@ -23,7 +21,6 @@ module refined_model
    !> The refined model. Its old nodes keep their indexes, its new ones follow.
    type :: refined_model_type
       type(model_type) :: model                 !! the model, refined once
-      type(mesh_type) :: coarse                 !! the mesh before
       type(division_type) :: division           !! how its elements were divided
       type(contact_points_type), allocatable :: interfaces(:) !! interfaces in the deck's order
       type(all_contact_points_type) :: points   !! all their contact points
@@ -59,7 +56,6 @@ contains
       type(contact_points_type), allocatable :: no_ties(:)
       integer :: i
 
-      self%coarse = model%mesh
       self%division = divide(model%mesh, [(.true., i=1, size(model%mesh%element_number))])
       self%model = model
       call refine(self%model, 1)
@@ -144,8 +140,7 @@ contains
       integer :: c
 
       do c = 1, components
-         refined(c::components) = refined_values(self%division, self%coarse, &
-            values(c::components))
+         refined(c::components) = self%division%weights%multiply(values(c::components))
       end do
    end function prolong
 
@@ -167,7 +162,7 @@ contains
       integer :: c
 
       do c = 1, components
-         coarse(c::components) = restricted_values(self%division, self%coarse, &
+         coarse(c::components) = self%division%weights%multiply_transposed( &
             values(c::components))
       end do
    end function restrict
@@ -181,8 +176,7 @@ contains
       integer :: c
 
       do c = 1, components
-         refined(c::components) = refined_members(self%division, self%coarse, &
-            member(c::components))
+         refined(c::components) = refined_members(self%division, member(c::components))
       end do
    end function prolong_set
 

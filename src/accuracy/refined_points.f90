@@ -60,18 +60,17 @@ contains
       class(refined_points_type), intent(inout) :: self
       type(refined_model_type), intent(in) :: refined
       type(contact_state_type), intent(in) :: contact    !! state of the old contact points
-      real(dp) :: shared(2*size(refined%coarse%node_number)), on_slave(2)
+      real(dp) :: shared(2, refined%division%nodes)
       integer :: k, old
 
-      shared = refined%restrict(slave_forces(self, refined), 2)
+      shared = slave_forces(self, refined)
       do k = 1, size(self%contact_state)
          old = refined%old_point(k)
          if (old == 0) cycle
-         associate (points => refined%points, slave_dof => 2*refined%points%slave(k))
+         associate (points => refined%points, on_slave => shared(:, refined%points%slave(k)))
             self%contact_state(k) = contact%contact_state(old)
             self%direction(k) = contact%direction(old)
             self%gap(k) = contact%gap(old)
-            on_slave = shared(slave_dof - 1:slave_dof)
             self%force(k) = contact%force(old) + dot_product(on_slave, points%normal(:, k))
             self%shear_force(k) = contact%shear_force(old) - &
                dot_product(on_slave, points%tangent(:, k))
@@ -79,21 +78,23 @@ contains
       end do
    end subroutine take_old
 
-   !> Forces of the new contact points on the slave's nodes.
+   !> Forces of the new contact points on the slave, at the old nodes that do the same work.
    pure function slave_forces(self, refined) result(forces)
       class(refined_points_type), intent(in) :: self
       type(refined_model_type), intent(in) :: refined
-      real(dp) :: forces(2*size(refined%model%mesh%node_number))
-      integer :: k
+      real(dp) :: forces(2, refined%division%nodes)
+      integer :: k, l
 
       forces = 0.0_dp
-      do k = 1, size(self%contact_state)
-         if (refined%old_point(k) > 0) cycle
-         associate (points => refined%points, slave_dof => 2*refined%points%slave(k))
-            forces(slave_dof - 1:slave_dof) = forces(slave_dof - 1:slave_dof) + &
-               self%shear_force(k)*points%tangent(:, k) - self%force(k)*points%normal(:, k)
-         end associate
-      end do
+      associate (points => refined%points, weights => refined%division%weights)
+         do k = 1, size(self%contact_state)
+            if (refined%old_point(k) > 0) cycle
+            do l = weights%row_start(points%slave(k)), weights%row_start(points%slave(k) + 1) - 1
+               forces(:, weights%column(l)) = forces(:, weights%column(l)) + weights%value(l)* &
+                  (self%shear_force(k)*points%tangent(:, k) - self%force(k)*points%normal(:, k))
+            end do
+         end do
+      end associate
    end function slave_forces
 
    !> Forces of friction in slip on both bodies, from the normal forces as they stand.

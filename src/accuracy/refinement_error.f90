@@ -48,6 +48,8 @@ module refinement_error
       type(solution_state_type) :: coarse           !! solution on the old mesh
       real(dp), allocatable :: displacement(:)      !! (2 nodes) on the new one [length]
       real(dp), allocatable :: temperature(:)       !! (nodes) likewise [temperature]
+      real(dp), allocatable :: elastic_force(:)     !! (2 nodes) of the displacements [force]
+      real(dp), allocatable :: heat(:)              !! (nodes) out of balance [power]
       type(refined_points_type) :: points           !! its contact points
       logical, allocatable :: moves(:)              !! (2 nodes) displacements that are smoothed
       logical, allocatable :: warms(:)              !! (nodes) temperatures that are
@@ -148,6 +150,7 @@ contains
       end associate
       fields%displacement = refined%prolong(fields%coarse%displacement, 2)
       fields%temperature = refined%prolong(fields%coarse%temperature, 1)
+      allocate (fields%heat, source=0.0_dp*fields%temperature)
       call fields%points%begin(refined, kept_contact(fields%coarse%contact, &
          fields%coarse%has_mechanics))
    end subroutine begin
@@ -158,7 +161,8 @@ contains
       type(step_type), intent(in) :: step
       type(corrected_type), intent(inout) :: fields
       type(joint_type), allocatable :: joints(:)
-      real(dp), allocatable :: load(:)
+      real(dp), allocatable :: load(:), slip_forces(:)
+      real(dp) :: residual(size(fields%displacement))
 
       associate (points => fields%points, u => fields%displacement, t => fields%temperature)
          call points%take_old(refined, kept_contact(fields%coarse%contact, &
@@ -167,16 +171,18 @@ contains
             call points%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, 2), &
                joints)
             load = mechanical_load(refined, fields)
-            call relax(refined%stiffness, joints, load + points%slip_forces(refined), &
-               fields%moves, smoothing_steps, u)
-            call points%update(refined, u, load - refined%stiffness%multiply(u))
+            slip_forces = points%slip_forces(refined)
+            call relax(refined%stiffness, joints, load + slip_forces, fields%moves, &
+               smoothing_steps, u, residual)
+            fields%elastic_force = load + slip_forces - residual
+            call points%update(refined, u, residual - slip_forces)
             call points%take_old(refined, fields%coarse%contact)
          end if
          if (solves_heat(step%analysis)) then
             call points%conduct(refined, t, fields%coarse%omega, fields%coarse%resting)
             call points%conducting_joints(refined, joints)
             call relax(fields%conduction, joints, refined%loads%heat_load(), fields%warms, &
-               smoothing_steps, t)
+               smoothing_steps, t, fields%heat)
          end if
       end associate
    end subroutine smooth
@@ -209,12 +215,11 @@ contains
       associate (u => fields%displacement(:size(trial%displacement)), &
          t => fields%temperature(:size(trial%temperature)))
          if (solves_heat(step%analysis)) trial%heat_load = refined%restrict( &
-            heat_out_of_balance(refined, fields), 1) + heat_taken(bodies, fields%coarse, t)
+            fields%heat, 1) + heat_taken(bodies, fields%coarse, t)
          ! Contact forces of both meshes do the same work and cancel.
          if (solves_mechanics(step%analysis)) trial%force_load = refined%restrict( &
-            mechanical_load(refined, fields) - refined%stiffness%multiply(fields%displacement), &
-            2) + bodies%mechanical%matrix%multiply(u) - &
-            unstrained_forces(bodies, t)
+            mechanical_load(refined, fields) - fields%elastic_force, 2) + &
+            bodies%mechanical%matrix%multiply(u) - unstrained_forces(bodies, t)
       end associate
       call solve_points(bodies, loads, step, previous, workspace, trial, error)
       if (allocated(error)) return
@@ -242,19 +247,6 @@ contains
             points%jumps(t))
       end associate
    end function heat_taken
-
-   !> Q - K T - F T - what the contact points take, on the new mesh.
-   function heat_out_of_balance(refined, fields) result(residual)
-      type(refined_model_type), intent(in) :: refined
-      type(corrected_type), intent(in) :: fields
-      real(dp) :: residual(size(fields%temperature))
-
-      associate (t => fields%temperature)
-         residual = -heat_residual(refined%conduction%multiply(t), &
-            net_heat(refined%loads%heat_load(), fields%film, t), refined%points, &
-            fields%points%heat(refined%points, t))
-      end associate
-   end function heat_out_of_balance
 
    !> The quantities on the new mesh.
    subroutine measure(refined, fields, values)

@@ -6,7 +6,6 @@
 !> in place of that at each point (B-bar: Hughes, Int. J. Num. Meth. Eng. 15 (1980) 1413), so that
 !> nearly incompressible materials do not lock them.
 module element_elasticity
-   use blas_lapack, only: dgemm
    use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4
    use kinds, only: dp
    use quadrature, only: integration_rule, point_count
@@ -30,19 +29,31 @@ contains
       integer, intent(in) :: kind                 !! kind of the element
       integer, intent(in) :: plane                !! plane_strain, ...
       real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
-      real(dp), intent(in) :: e(:, :, :)          !! (4, 4, points of integration_rule) [stress]
+      !> (4, 4, points of integration_rule, or 1 for all) [stress]
+      real(dp), intent(in) :: e(:, :, :)
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
       real(dp) :: k(2*element_node_count(kind), 2*element_node_count(kind)) !! [stress length]
       real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
-      real(dp) :: stress(4, 2*element_node_count(kind))
-      integer :: g, n
+      real(dp) :: rows(2*element_node_count(kind), 4), weighted(4, 4), stress(4, 2)
+      integer :: g, i, j
 
       call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
-      n = size(k, 1)
       k = 0.0_dp
       do g = 1, size(volumes)
-         stress = matmul(volumes(g)*e(:, :, g), b(:, :, g))
-         call dgemm('T', 'N', n, n, 4, 1.0_dp, b(1, 1, g), 4, stress, 4, 1.0_dp, k, n)
+         weighted = volumes(g)*e(:, :, min(g, size(e, 3)))
+         rows = transpose(b(:, :, g))
+         do j = 1, size(k, 1), 2
+            stress = matmul(weighted, b(:, j:j + 1, g))
+            do i = 1, j + 1
+               k(i, j) = k(i, j) + rows(i, 1)*stress(1, 1) + rows(i, 2)*stress(2, 1) + &
+                  rows(i, 3)*stress(3, 1) + rows(i, 4)*stress(4, 1)
+               k(i, j + 1) = k(i, j + 1) + rows(i, 1)*stress(1, 2) + rows(i, 2)*stress(2, 2) + &
+                  rows(i, 3)*stress(3, 2) + rows(i, 4)*stress(4, 2)
+            end do
+         end do
+      end do
+      do j = 2, size(k, 1)
+         k(j, :j - 1) = k(:j - 1, j)
       end do
    end function element_stiffness
 
@@ -52,7 +63,8 @@ contains
       integer, intent(in) :: kind                 !! kind of the element
       integer, intent(in) :: plane                !! plane_strain, ...
       real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
-      real(dp), intent(in) :: beta(:, :)   !! (4, points of integration_rule) [stress/temperature]
+      !> (4, points of integration_rule, or 1 for all) [stress/temperature]
+      real(dp), intent(in) :: beta(:, :)
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
       !> (2 nodes, nodes) [stress length^2/temperature]
       real(dp) :: load(2*element_node_count(kind), element_node_count(kind))
@@ -66,7 +78,7 @@ contains
       load = 0.0_dp
       do g = 1, size(volumes)
          psi = element_shape(kind, points(:, g))
-         force = volumes(g)*matmul(beta(:, g), b(:, :, g))
+         force = volumes(g)*matmul(beta(:, min(g, size(beta, 2))), b(:, :, g))
          do q = 1, size(psi)
             load(:, q) = load(:, q) + force*psi(q)
          end do

@@ -5,7 +5,7 @@ module point_properties
    use kinds, only: dp
    use materials, only: material_type
    use orientations, only: material_axes, orientation_type, strain_rotation
-   use quadrature, only: integration_rule, most_points, point_count
+   use quadrature, only: integration_rule, point_count
    use shape_functions, only: element_shape
    implicit none
    private
@@ -13,19 +13,19 @@ module point_properties
 
 contains
 
-   !> Axes 1 and 2 of the material at the integration points of an element, as columns.
+   !> Axes 1 and 2 of the material at the integration points of an element, as columns; x and y only
+   !> once.
    pure function axes_at_points(kind, coordinates, orientations, orientation) result(axes)
       integer, intent(in) :: kind                             !! kind of the element
       real(dp), intent(in) :: coordinates(:, :)               !! (2, nodes of the kind) [length]
       type(orientation_type), intent(in) :: orientations(:)   !! all orientations
       integer, intent(in) :: orientation                      !! which, or 0 for x and y
-      real(dp) :: axes(2, 2, most_points)                     !! used up to point_count(kind)
+      real(dp) :: axes(2, 2, merge(point_count(kind), 1, orientation > 0))
       real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
       integer :: g
 
-      axes = 0.0_dp
       call integration_rule(kind, points, weights)
-      do g = 1, size(weights)
+      do g = 1, size(axes, 3)
          axes(:, :, g) = material_axes(orientations, orientation, &
             matmul(coordinates, element_shape(kind, points(:, g))))
       end do

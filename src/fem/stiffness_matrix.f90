@@ -1,6 +1,7 @@
 !> The stiffness matrices K^n of (2.4) of all bodies, and the forces that temperatures and initial
 !> stresses exert on them. Rows 2i - 1 and 2i are u_x and u_y of node i; bodies share no entries.
 module stiffness_matrix
+   use element_assembly, only: element_assembly_type
    use element_elasticity, only: element_stiffness, element_stress_force, element_thermal_load
    use element_kinds, only: element_node_count
    use kinds, only: dp
@@ -8,8 +9,8 @@ module stiffness_matrix
    use mesh, only: mesh_type
    use orientations, only: orientation_type
    use point_properties, only: axes_at_points, elasticity_in, thermal_modulus_in
-   use quadrature, only: most_points, point_count
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use quadrature, only: most_points
+   use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
    public :: assemble_stiffness, assemble_thermal_load, assemble_initial_force
@@ -23,28 +24,27 @@ contains
       type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
       type(sparse_matrix_type) :: stiffness                  !! (2 nodes, 2 nodes) [stress length]
-      type(triplet_list_type) :: list
-      real(dp), allocatable :: k(:, :)
-      real(dp) :: e(4, 4, most_points), axes(2, 2, most_points)
-      integer, allocatable :: dofs(:)
+      type(element_assembly_type) :: assembly
+      real(dp), allocatable :: axes(:, :, :), k(:, :)
+      real(dp) :: e(4, 4, most_points)
       integer :: element, g
 
-      call list%reserve(sum(4*element_node_count(mesh%element_kind)**2))
+      call assembly%begin(mesh, 2, 2)
       do element = 1, size(mesh%element_number)
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
             axes = axes_at_points(kind, mesh%coordinates(:, nodes), orientations, &
                section%orientation)
-            do g = 1, point_count(kind)
+            do g = 1, size(axes, 3)
                e(:, :, g) = elasticity_in(plane, materials(section%material), axes(:, :, g))
             end do
-            k = element_stiffness(kind, plane, mesh%coordinates(:, nodes), e, section%thickness)
-            dofs = element_dofs(nodes)
+            k = element_stiffness(kind, plane, mesh%coordinates(:, nodes), &
+               e(:, :, :size(axes, 3)), section%thickness)
+            call assembly%add(nodes, k)
          end associate
-         call list%add_block(dofs, dofs, k)
       end do
-      stiffness = list%compress(2*size(mesh%node_number), 2*size(mesh%node_number))
+      stiffness = assembly%matrix
    end function assemble_stiffness
 
    !> Nodal forces per unit nodal temperature over the natural state, the right-hand side of (1.1).
@@ -54,27 +54,27 @@ contains
       type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
       type(sparse_matrix_type) :: load                       !! (2 nodes, nodes)
-      type(triplet_list_type) :: list
-      real(dp), allocatable :: f(:, :)
-      real(dp) :: beta(4, most_points), axes(2, 2, most_points)
+      type(element_assembly_type) :: assembly
+      real(dp), allocatable :: axes(:, :, :), f(:, :)
+      real(dp) :: beta(4, most_points)
       integer :: element, g
 
-      call list%reserve(sum(2*element_node_count(mesh%element_kind)**2))
+      call assembly%begin(mesh, 2, 1)
       do element = 1, size(mesh%element_number)
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
             axes = axes_at_points(kind, mesh%coordinates(:, nodes), orientations, &
                section%orientation)
-            do g = 1, point_count(kind)
+            do g = 1, size(axes, 3)
                beta(:, g) = thermal_modulus_in(plane, materials(section%material), axes(:, :, g))
             end do
-            f = element_thermal_load(kind, plane, mesh%coordinates(:, nodes), beta, &
-               section%thickness)
-            call list%add_block(element_dofs(nodes), nodes, f)
+            f = element_thermal_load(kind, plane, mesh%coordinates(:, nodes), &
+               beta(:, :size(axes, 3)), section%thickness)
+            call assembly%add(nodes, f)
          end associate
       end do
-      load = list%compress(2*size(mesh%node_number), size(mesh%node_number))
+      load = assembly%matrix
    end function assemble_thermal_load
 
    !> Nodal forces of the initial stresses.

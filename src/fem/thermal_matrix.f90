@@ -11,6 +11,7 @@
 !> the terms with weight standing in the rows of the jumps only.
 module thermal_matrix
    use controls, only: thermal_scheme_type
+   use element_assembly, only: element_assembly_type
    use element_conduction, only: conduction_matrix
    use element_kinds, only: element_node_count
    use kinds, only: dp
@@ -18,8 +19,8 @@ module thermal_matrix
    use mesh, only: mesh_type
    use orientations, only: orientation_type
    use point_properties, only: axes_at_points, conductivity_in
-   use quadrature, only: most_points, point_count
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use quadrature, only: most_points
+   use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
    public :: assemble_conduction, contact_diagonal, contact_history, field_history, scheme_load
@@ -33,27 +34,27 @@ contains
       type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
       type(sparse_matrix_type) :: conduction                 !! (nodes, nodes) [power/temperature]
-      type(triplet_list_type) :: list
-      real(dp), allocatable :: k(:, :)
-      real(dp) :: conductivity(2, 2, most_points), axes(2, 2, most_points)
+      type(element_assembly_type) :: assembly
+      real(dp), allocatable :: axes(:, :, :), k(:, :)
+      real(dp) :: conductivity(2, 2, most_points)
       integer :: element, g
 
-      call list%reserve(sum(element_node_count(mesh%element_kind)**2))
+      call assembly%begin(mesh, 1, 1)
       do element = 1, size(mesh%element_number)
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
             axes = axes_at_points(kind, mesh%coordinates(:, nodes), orientations, &
                section%orientation)
-            do g = 1, point_count(kind)
+            do g = 1, size(axes, 3)
                conductivity(:, :, g) = conductivity_in(materials(section%material), axes(:, :, g))
             end do
-            k = conduction_matrix(kind, plane, mesh%coordinates(:, nodes), conductivity, &
-               section%thickness)
-            call list%add_block(nodes, nodes, k)
+            k = conduction_matrix(kind, plane, mesh%coordinates(:, nodes), &
+               conductivity(:, :, :size(axes, 3)), section%thickness)
+            call assembly%add(nodes, k)
          end associate
       end do
-      conduction = list%compress(size(mesh%node_number), size(mesh%node_number))
+      conduction = assembly%matrix
    end function assemble_conduction
 
    !> Diagonal of the jumps in (a1 K + a2 G_i + a3 G_i+1)/a1.

@@ -3,8 +3,7 @@
 module load_refinement
    use element_kinds, only: element_corner_count
    use kinds, only: dp
-   use mesh, only: mesh_type
-   use mesh_division, only: child_element, division_type, refined_members, refined_values
+   use mesh_division, only: child_element, division_type, refined_members
    use steps, only: load_body_force, load_body_heat, load_centrifugal, load_face_heat, &
       load_film_coefficient, load_film_sink, load_force, load_gravity, load_nodal_heat, &
       load_pressure, load_temperature, load_traction, load_type, step_type
@@ -15,33 +14,33 @@ module load_refinement
 contains
 
    !> Refines the loads of all steps.
-   subroutine refine_loads(division, mesh, steps)
+   subroutine refine_loads(division, kinds, steps)
       type(division_type), intent(in) :: division
-      type(mesh_type), intent(in) :: mesh           !! the mesh before
+      integer, intent(in) :: kinds(:)               !! (elements) kinds of the elements
       type(step_type), intent(inout) :: steps(:)
       type(load_type), allocatable :: refined(:)
       integer :: s
 
       do s = 1, size(steps)
          if (.not. allocated(steps(s)%loads)) cycle
-         call refine_step(division, mesh, steps(s)%loads, refined)
+         call refine_step(division, kinds, steps(s)%loads, refined)
          call move_alloc(refined, steps(s)%loads)
       end do
    end subroutine refine_loads
 
-   subroutine refine_step(division, mesh, loads, refined)
+   subroutine refine_step(division, kinds, loads, refined)
       type(division_type), intent(in) :: division
-      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: kinds(:)
       type(load_type), intent(in) :: loads(:)
       type(load_type), allocatable, intent(out) :: refined(:)
       type(load_type), allocatable :: added(:)
       integer :: children(4), i, n, parts
 
-      call add_temperatures(division, mesh, loads, added)
+      call add_temperatures(division, loads, added)
       allocate(refined(4*size(loads) + size(added)))
       n = 0
       do i = 1, size(loads)
-         call find_children(division, mesh%element_kind, loads(i), children, parts)
+         call find_children(division, kinds, loads(i), children, parts)
          if (parts == 0) then
             parts = 1
             children(1) = loads(i)%item
@@ -86,9 +85,8 @@ contains
 
    !> Temperatures of the new nodes: a new node has one where all nodes of its side or element have
    !> one on the same amplitude.
-   subroutine add_temperatures(division, mesh, loads, added)
+   subroutine add_temperatures(division, loads, added)
       type(division_type), intent(in) :: division
-      type(mesh_type), intent(in) :: mesh
       type(load_type), intent(in) :: loads(:)
       type(load_type), allocatable, intent(out) :: added(:)
       logical, allocatable :: waiting(:), members(:)
@@ -107,8 +105,8 @@ contains
             members(loads(i)%item) = .true.
             waiting(i) = .false.
          end do
-         values = refined_values(division, mesh, values)
-         members = refined_members(division, mesh, members)
+         values = division%weights%multiply(values)
+         members = refined_members(division, members)
          members(:division%nodes) = .false.
          call append(pack([(node, node=1, size(members))], members), values, loads(first), added)
          deallocate(values, members)

@@ -8,10 +8,11 @@ module mesh_division
    use hanging_nodes, only: coarse_side, fine_sides, hanging_count, nodes_between
    use kinds, only: dp
    use mesh, only: mesh_type
+   use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
    public :: division_type, divide, hanging_after, side_node, inner_node, child_element
-   public :: refined_values, refined_members, restricted_values
+   public :: refined_members
 
    !> New nodes inside an element by its kind.
    integer, parameter :: inner_count(kind_count) = [5, 5, 1, 3, 0]
@@ -48,6 +49,8 @@ module mesh_division
       integer, allocatable :: between(:, :)
       integer, allocatable :: inner_start(:)        !! (elements) index before the first node inside
       integer, allocatable :: rank(:) !! (elements) how many are divided up to each, 0 if it is not
+      !> (nodes_after, nodes) of the old nodes in the values at all nodes; columns in any order
+      type(sparse_matrix_type) :: weights
    contains
       procedure, private :: elements_at
    end type division_type
@@ -74,6 +77,7 @@ contains
          division%between(:, side) = nodes_between(mesh, h, division%sides%ends(1, side))
       end do
       call number_nodes(mesh%element_kind, chosen, division)
+      call find_weights(mesh, division)
    end function divide
 
    pure subroutine number_nodes(kinds, chosen, division)
@@ -201,101 +205,73 @@ contains
       if (child == 1) child_element = parent
    end function child_element
 
-   !> Values at the old nodes and, by the shape functions, at the new ones.
-   pure function refined_values(division, mesh, values) result(refined)
-      type(division_type), intent(in) :: division
-      type(mesh_type), intent(in) :: mesh              !! the mesh before
-      real(dp), intent(in) :: values(:)                !! (nodes) values before
-      real(dp) :: refined(division%nodes_after)        !! values
-      integer :: e, i, s, corners(2)
-
-      refined(:division%nodes) = values
-      do s = 1, division%sides%count
-         i = division%between(1, s)
-         if (i <= division%nodes) cycle
-         associate (ends => division%sides%ends(:, s))
-            if (ends(2) == 0) then
-               corners = ends([1, 3])
-               refined(i) = 0.5_dp*sum(values(corners))
-            else
-               refined(i) = dot_product(quarter_weights, values(ends))
-               refined(i + 1) = dot_product(quarter_weights, values(ends(3:1:-1)))
-            end if
-         end associate
-      end do
-      do e = 1, division%elements
-         if (division%rank(e) == 0) cycle
-         associate (kind => mesh%element_kind(e))
-            do i = 1, inner_count(kind)
-               refined(inner_node(division, e, i)) = dot_product(inner_weights(kind, i), &
-                  values(mesh%element_nodes(:element_node_count(kind), e)))
-            end do
-         end associate
-      end do
-   end function refined_values
-
-   !> The transpose of refined_values: what acts at the new nodes, shared by the old ones as the
-   !> shape functions are.
-   pure function restricted_values(division, mesh, values) result(restricted)
-      type(division_type), intent(in) :: division
-      type(mesh_type), intent(in) :: mesh              !! the mesh before
-      real(dp), intent(in) :: values(:)                !! (nodes after) values such as forces
-      real(dp) :: restricted(division%nodes)           !! values at the old nodes
+   !> Weights of the old nodes in the new mesh's: one for a node itself, at a new one the shape
+   !> functions of the side, or of the element, that it lies on.
+   pure subroutine find_weights(mesh, division)
+      type(mesh_type), intent(in) :: mesh              ! the mesh before
+      type(division_type), intent(inout) :: division   ! numbered
       integer :: e, i, s
 
-      restricted = values(:division%nodes)
-      do s = 1, division%sides%count
-         i = division%between(1, s)
-         if (i <= division%nodes) cycle
-         associate (ends => division%sides%ends(:, s))
-            if (ends(2) == 0) then
-               restricted(ends([1, 3])) = restricted(ends([1, 3])) + 0.5_dp*values(i)
+      associate (weights => division%weights, sides => division%sides)
+         weights%row_count = division%nodes_after
+         weights%column_count = division%nodes
+         allocate (weights%row_start(division%nodes_after + 1))
+         i = division%nodes + 6*sides%count + sum(inner_count(mesh%element_kind)* &
+            element_node_count(mesh%element_kind), mask=division%rank > 0)
+         allocate (weights%column(i), weights%value(i))
+         do i = 1, division%nodes
+            call set_row(weights, i, [i], [1.0_dp])
+         end do
+         do s = 1, sides%count
+            i = division%between(1, s)
+            if (i <= division%nodes) cycle
+            if (sides%ends(2, s) == 0) then
+               call set_row(weights, i, sides%ends([1, 3], s), [0.5_dp, 0.5_dp])
             else
-               restricted(ends) = restricted(ends) + quarter_weights*values(i) + &
-                  quarter_weights(3:1:-1)*values(i + 1)
+               call set_row(weights, i, sides%ends(:, s), quarter_weights)
+               call set_row(weights, i + 1, sides%ends(3:1:-1, s), quarter_weights)
             end if
-         end associate
-      end do
-      do e = 1, division%elements
-         if (division%rank(e) == 0) cycle
-         associate (kind => mesh%element_kind(e), &
-            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
-            do i = 1, inner_count(kind)
-               restricted(nodes) = restricted(nodes) + &
-                  inner_weights(kind, i)*values(inner_node(division, e, i))
-            end do
-         end associate
-      end do
-   end function restricted_values
+         end do
+         do e = 1, division%elements
+            if (division%rank(e) == 0) cycle
+            associate (kind => mesh%element_kind(e))
+               do i = 1, inner_count(kind)
+                  call set_row(weights, inner_node(division, e, i), &
+                     mesh%element_nodes(:element_node_count(kind), e), inner_weights(kind, i))
+               end do
+            end associate
+         end do
+      end associate
+   end subroutine find_weights
+
+   !> Sets a row behind those before it.
+   pure subroutine set_row(matrix, row, columns, values)
+      type(sparse_matrix_type), intent(inout) :: matrix
+      integer, intent(in) :: row, columns(:)
+      real(dp), intent(in) :: values(:)
+
+      if (row == 1) matrix%row_start(1) = 1
+      matrix%row_start(row + 1) = matrix%row_start(row) + size(columns)
+      matrix%column(matrix%row_start(row):matrix%row_start(row + 1) - 1) = columns
+      matrix%value(matrix%row_start(row):matrix%row_start(row + 1) - 1) = values
+   end subroutine set_row
 
    !> Members of a set of nodes, old and new: a new node belongs to it if all nodes of the side, or
    !> of the element, that it lies on do.
-   pure function refined_members(division, mesh, member) result(refined)
+   pure function refined_members(division, member) result(refined)
       type(division_type), intent(in) :: division
-      type(mesh_type), intent(in) :: mesh              !! the mesh before
       logical, intent(in) :: member(:)                 !! (nodes) whether a node is in the set
       logical :: refined(division%nodes_after)         !! likewise
-      integer :: e, s
+      integer :: i, k
 
-      refined = .false.
-      refined(:division%nodes) = member
-      do s = 1, division%sides%count
-         associate (i => division%between(1, s), ends => division%sides%ends(:, s))
-            if (i <= division%nodes) cycle
-            if (ends(2) == 0) then
-               refined(i) = all(member(ends([1, 3])))
-            else
-               refined(i:i + 1) = all(member(ends))
-            end if
-         end associate
-      end do
-      do e = 1, division%elements
-         if (division%rank(e) == 0) cycle
-         associate (kind => mesh%element_kind(e), start => division%inner_start(e))
-            refined(start + 1:start + inner_count(kind)) = &
-               all(member(mesh%element_nodes(:element_node_count(kind), e)))
-         end associate
-      end do
+      refined = .true.
+      associate (weights => division%weights)
+         do i = 1, division%nodes_after
+            do k = weights%row_start(i), weights%row_start(i + 1) - 1
+               if (.not. member(weights%column(k))) refined(i) = .false.
+            end do
+         end do
+      end associate
    end function refined_members
 
 end module mesh_division

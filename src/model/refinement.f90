@@ -7,8 +7,7 @@ module refinement
    use kinds, only: dp
    use load_refinement, only: refine_loads
    use mesh, only: mesh_type
-   use mesh_division, only: child_element, divide, division_type, hanging_after, refined_members, &
-      refined_values
+   use mesh_division, only: child_element, divide, division_type, hanging_after, refined_members
    use model, only: model_type
    implicit none
    private
@@ -39,10 +38,9 @@ contains
 
       division = divide(model%mesh, chosen)
       if (allocated(model%initial_temperature)) then
-         model%initial_temperature = refined_values(division, model%mesh, &
-            model%initial_temperature)
+         model%initial_temperature = division%weights%multiply(model%initial_temperature)
       end if
-      if (allocated(model%steps)) call refine_loads(division, model%mesh, model%steps)
+      if (allocated(model%steps)) call refine_loads(division, model%mesh%element_kind, model%steps)
       if (present(levels)) levels = max(levels(parents_of(division)) - 1, 0)
       call refine_mesh(division, model%mesh)
    end subroutine refine_chosen
@@ -54,7 +52,7 @@ contains
       integer :: i, first, parent(division%elements_after)
 
       do i = 1, size(mesh%node_sets)
-         call refine_node_set(division, mesh, mesh%node_sets(i)%members)
+         call refine_node_set(division, mesh%node_sets(i)%members)
       end do
       do i = 1, size(mesh%element_sets)
          call refine_element_set(division, mesh%element_sets(i)%members)
@@ -64,8 +62,8 @@ contains
       end do
       mesh%hanging_sides = hanging_after(division, mesh)
       allocate(coordinates(2, division%nodes_after))
-      coordinates(1, :) = refined_values(division, mesh, mesh%coordinates(1, :))
-      coordinates(2, :) = refined_values(division, mesh, mesh%coordinates(2, :))
+      coordinates(1, :) = division%weights%multiply(mesh%coordinates(1, :))
+      coordinates(2, :) = division%weights%multiply(mesh%coordinates(2, :))
       call move_alloc(coordinates, mesh%coordinates)
       first = maxval(mesh%node_number) - division%nodes
       mesh%node_number = [mesh%node_number, &
@@ -96,16 +94,15 @@ contains
       end do
    end function parents_of
 
-   subroutine refine_node_set(division, mesh, members)
+   subroutine refine_node_set(division, members)
       type(division_type), intent(in) :: division
-      type(mesh_type), intent(in) :: mesh
       integer, allocatable, intent(inout) :: members(:)
       logical :: member(division%nodes)
       integer :: i
 
       member = .false.
       member(members) = .true.
-      members = pack([(i, i=1, division%nodes_after)], refined_members(division, mesh, member))
+      members = pack([(i, i=1, division%nodes_after)], refined_members(division, member))
    end subroutine refine_node_set
 
    subroutine refine_element_set(division, members)

@@ -205,8 +205,8 @@ def costs(folder):
     """Return the table of what the bounds cost."""
     table = Table("Cost of the bounds", ["deck", "million instructions of the run", "of the bounds",
                                          "% of the rest"], text="""The meshes as they are, with fields of
-the last increment only. The aim of a third is missed by a little with 45 increments; Hertz has four
-and no heat, so that assembling the finer mesh counts for more.""")
+the last increment only. The aim of a third is reached with 45 increments; Hertz has four and no heat,
+so that assembling and smoothing the finer mesh count for more.""")
     for case in CASES[:3]:
         deck = case_deck(case, 0, 1, folder, True)
         spent = profile("run", "--quiet", deck, "--out", folder, path=folder / "profile.out")
