@@ -12,7 +12,7 @@ module listing_increments
    use records, only: attempt_record_type, contact_record_type, increment_record_type
    use reported_quantities, only: quantities
    use steps, only: solves_heat, solves_mechanics
-   use text, only: percent, to_text
+   use text, only: to_text
    use zone_diagram, only: zone_counts
    use zone_edges, only: edges_kept
    implicit none
@@ -149,11 +149,11 @@ contains
       if (solves_heat(analysis)) write (unit, '(a)') history_line(needs_heat, record)
       if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
       associate (work => record%work)
-         if (work%columns_full > 0) write (unit, '(3x, a, 2(i0, a, i0, 3a))') &
+         if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &
             'refactored ', work%columns_again, ' of ', work%columns_full, ' columns (', &
-            percent(real(work%columns_again, dp)/work%columns_full), '), ', work%flops_again, &
-            ' of ', work%flops_full, ' flops (', percent(work%flops_again/max(1.0_dp, &
-            real(work%flops_full, dp))), ')'
+            100.0_dp*work%columns_again/work%columns_full, ' %), ', work%flops_again, ' of ', &
+            work%flops_full, ' flops (', 100.0_dp*work%flops_again/max(1.0_dp, &
+            real(work%flops_full, dp)), ' %)'
       end associate
    end subroutine print_balances
 
