@@ -1,4 +1,4 @@
-!> Factors of the rows of an active set (contact_rows). From set to set only a few rows change. Let M
+!> Factors of the rows of an active set (contact_system). From set to set only a few rows change. Let M
 !> be the matrix of all rows of the tail, those that are not sought being sigma_i d_i = 0. Another
 !> set has
 !>
@@ -7,8 +7,7 @@
 !> and by Woodbury's formula its solutions are y - M^-1 E (1 + D M^-1 E)^-1 D y, M y the forces. So
 !> the first set of many is factored; the next ones cost a few solutions with it.
 module contact_factors
-   use contact_rows, only: contact_rows_type
-   use contact_system, only: contact_system_type
+   use contact_system, only: contact_rows_type, contact_system_type
    use dense, only: lu_type, product_of
    use kinds, only: dp
    implicit none

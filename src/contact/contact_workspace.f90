@@ -3,10 +3,9 @@
 !> moment. A second trial takes a workspace of its own.
 module contact_workspace
    use contact_factors, only: contact_factors_type
-   use contact_rows, only: contact_rows_type, rows_of
    use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type, &
       contact_stick, is_capped, slip_force, state_code
-   use contact_system, only: contact_system_type
+   use contact_system, only: contact_rows_type, contact_system_type, rows_of
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use kinds, only: dp

@@ -3,10 +3,10 @@
 !> points.
 module tie_points
    use contact_definitions, only: pairing_nodes, tie_definition_type
+   use contact_pairs, only: make_contact_points
    use contact_points, only: contact_points_type
    use element_kinds, only: side_node_count, side_nodes
    use errors, only: error_type, set_error, status_deck
-   use interface_points, only: make_contact_points
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
    use sum_lists, only: sum_list_type

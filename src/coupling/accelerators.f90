@@ -1,9 +1,8 @@
 !> The accelerators of the fixed point by the names of *FIXED POINT.
 module accelerators
-   use anderson, only: anderson_type
    use controls, only: fixed_point_type, method_anderson, method_picard, &
       method_zaitsev
-   use fixed_point, only: accelerator_type, picard_type, zaitsev_type
+   use fixed_point, only: accelerator_type, anderson_type, picard_type, zaitsev_type
    use kinds, only: dp
    use newton, only: newton_type
    implicit none

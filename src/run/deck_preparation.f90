@@ -18,7 +18,7 @@ module deck_preparation
    use loads, only: loads_type
    use messages, only: print_error, print_line
    use model, only: model_type
-   use interface_reports, only: make_interfaces, make_ties
+   use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
    use all_contact_points, only: all_contact_points_type
    use held_points, only: find_held_directions, normal_supports, over_constrained
    use progress, only: progress_type
@@ -29,7 +29,6 @@ module deck_preparation
    use text, only: string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
    use variations, only: variation_type
-   use verify_positions, only: check_arc_lengths
    implicit none
    private
    public :: prepare_deck, read_deck_type

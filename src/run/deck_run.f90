@@ -3,7 +3,7 @@ module deck_run
    use accuracy_lines, only: add_missed
    use accuracy_rounds, only: accuracy_rounds_type
    use batch_table, only: table_name
-   use blas_memory, only: reserve_blas_memory
+   use blas_lapack, only: reserve_blas_memory
    use clock, only: wall_seconds
    use command_line, only: command_type
    use deck_outcomes, only: deck_outcome_type

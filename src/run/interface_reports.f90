@@ -1,19 +1,21 @@
-!> What is said of the interfaces of a deck once they are made.
+!> What is said of the interfaces of a deck once they are made, and of *VERIFY cards on positions
+!> that only their contact points can tell.
 module interface_reports
+   use all_contact_points, only: match_surfaces, match_tie
    use contact_points, only: contact_points_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric
    use errors, only: error_type
+   use interface_warnings, only: offset_warning, overlap_warning
    use kinds, only: dp
    use model, only: model_type
-   use all_contact_points, only: match_surfaces, match_tie
-   use interface_warnings, only: offset_warning, overlap_warning
-   use text, only: append, string_type, to_text
+   use text, only: append, read_real, string_type, to_text, to_upper
    use tie_points, only: distance_warning, tie_words
+   use verify_values, only: is_on_interface
    implicit none
    private
-   public :: make_interfaces, make_ties, first_repeated
+   public :: make_interfaces, make_ties, first_repeated, check_arc_lengths
 
    real(dp), parameter :: parallel = 0.99_dp   !! cosine between normals that count as one
 
@@ -155,5 +157,31 @@ contains
             to_text(mesh%element_number(elements(1)))
       end associate
    end function thickness_warning
+
+   !> Reports every check at an arc length beyond the end of its interface.
+   subroutine check_arc_lengths(model, interfaces, report)
+      type(model_type), intent(in) :: model                !! its checks name known interfaces
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      real(dp) :: s
+      integer :: at, i, k
+      logical :: valid
+
+      do i = 1, size(model%verifications)
+         associate (check => model%verifications(i))
+            at = index(check%where, '@')
+            if (at == 0) cycle
+            call read_real(trim(adjustl(check%where(at + 1:))), s, valid)
+            if (.not. valid) cycle
+            do k = 1, size(interfaces)
+               if (to_upper(interfaces(k)%name) /= to_upper(trim(check%where(:at - 1)))) cycle
+               if (is_on_interface(s, interfaces(k))) cycle
+               call report%error(place_type(check%line, check%columns(2)), &
+                  'the arc length of contact pair '//interfaces(k)%name//' ends at '// &
+                  to_text(interfaces(k)%arc_length(size(interfaces(k)%arc_length))))
+            end do
+         end associate
+      end do
+   end subroutine check_arc_lengths
 
 end module interface_reports

@@ -19,10 +19,10 @@ module increments
    use model, only: model_type
    use records, only: add_attempts, increment_record_type, note_failure
    use reduced_bodies, only: reduced_bodies_type
-   use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
-   use step_reduction, only: assemble_bodies, measure_factors, measure_steps, step_reduction_type
+   use step_reduction, only: assemble_bodies, measure_factors, measure_steps, run_seconds_type, &
+      run_size_type, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: counted, to_text
    use tie_checks, only: check_prescribed_ties

@@ -1,6 +1,8 @@
 !> The bodies as a step needs them: unknowns numbered for its supports, fields reduced to the
-!> contact points. What is numbered and reduced already is kept from step to step.
+!> contact points. What is numbered and reduced already is kept from step to step. How large they
+!> are, and where the time goes.
 module step_reduction
+   use all_contact_points, only: all_contact_points_type
    use clock, only: wall_seconds
    use conductance_laws, only: is_constant
    use contact_reduction, only: take_laws
@@ -11,9 +13,7 @@ module step_reduction
    use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
-   use all_contact_points, only: all_contact_points_type
    use reduced_bodies, only: reduced_bodies_type
-   use run_measures, only: run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: load_temperature, solves_heat, solves_mechanics, step_type
@@ -21,7 +21,25 @@ module step_reduction
    use tie_checks, only: check_prescribed_ties
    implicit none
    private
-   public :: step_reduction_type, assemble_bodies, measure_steps, measure_factors
+   public :: step_reduction_type, assemble_bodies, measure_steps, measure_factors, &
+      run_seconds_type, run_size_type
+
+   !> Where the time goes.
+   type :: run_seconds_type
+      real(dp) :: assemble = 0.0_dp   !! matching and matrices of the bodies [s]
+      real(dp) :: reduce = 0.0_dp     !! factors and reduction to the contact points [s]
+      real(dp) :: iterate = 0.0_dp    !! increments on the contact points [s]
+      real(dp) :: recover = 0.0_dp    !! fields and balances [s]
+   end type run_seconds_type
+
+   !> The largest problems of a run.
+   type :: run_size_type
+      integer :: equations_thermal = 0      !! unknown temperatures, largest of the steps
+      integer :: equations_mechanical = 0   !! unknown displacements, largest of the steps
+      integer :: contact_unknowns = 0       !! unknowns on the contact points, largest of the steps
+      integer(long) :: factor_bytes = 0     !! bytes of factors, largest so far
+      real(dp) :: smallest_pivot = 1.0_dp   !! over its diagonal entry, smallest so far [-]
+   end type run_size_type
 
    !> What of the bodies is numbered and reduced.
    type :: step_reduction_type

@@ -1,7 +1,6 @@
 !> Data cards of *DLOAD with GRAV and CENTRIF, which act on the mass of elements.
 module deck_builder_mass_loads
-   use card_values, only: check_extra, need_field
-   use card_vectors, only: need_plane_vector, need_vector
+   use card_values, only: check_extra, need_field, need_plane_vector, need_vector
    use cards, only: data_card_type, field_place
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type

@@ -1,7 +1,6 @@
 !> Data cards of *DSLOAD, *DSFLUX and *SFILM: surface, label, values.
 module deck_builder_surface_loads
-   use card_values, only: check_extra, need_field
-   use card_vectors, only: need_plane_vector
+   use card_values, only: check_extra, need_field, need_plane_vector
    use cards, only: data_card_type, field_place
    use deck_builder_element_loads, only: build_on_faces, report_label
    use deck_context, only: deck_context_type, report_unknown
