@@ -32,6 +32,9 @@ module increment_records
    !> Part of K u or of the gaps below which a force or a displacement is no scale to measure by:
    !> where nothing is loaded only rounding is left of them.
    real(dp), parameter :: noise = 1.0e-6_dp
+   !> Part of the contact forces that their solution loses by rounding: the spacing of numbers times
+   !> the condition of the contact system, some 1e4. A sum of shear forces below it is none.
+   real(dp), parameter :: no_shear = 1.0e-12_dp
    !> Displacement, in the extent of the model, below which it is no scale.
    real(dp), parameter :: least_strain = 1.0e-12_dp
 
@@ -179,6 +182,9 @@ contains
       record%shear = shears(points, shear_force, closed, friction, record%pressure)
       record%normal_force = sum(force)
       record%shear_force = sum(shear_force)
+      if (abs(record%shear_force) <= no_shear*sum(abs(force) + abs(shear_force))) then
+         record%shear_force = 0.0_dp
+      end if
       profile = contact_profile(points, record%contact_state, record%pressure, record%shear, &
          record%gap)
       call contact_edges(profile, record%edges_contact, record%edge_contact)

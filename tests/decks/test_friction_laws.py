@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from blocks import write
 from changes import note_changes
-from deck_runs import run, solve
+from deck_runs import INPUT, run, solve
 from physics import material, mesh, nodes_of
 from test_hysteresis import FRICTION, ONSET, PRESSURE, STIFFNESS, history, moves, sheared
 from test_patch import read, shear_deck
@@ -98,3 +98,17 @@ def test_printed_shear_obeys_the_law(tmp_path, kind, pairing, friction):
     slips = (found["status"] == 1) & heavy
     np.testing.assert_allclose(np.abs(found["shear"][slips]), bound[slips], rtol=1e-9)
     assert (slips & (bound == 0.05)).any()
+
+
+@pytest.mark.parametrize(("name", "count"), [("brake_pad", 4), ("thermal_cycling", 1)])
+def test_shear_forces_that_cancel_sum_up_to_none(tmp_path, name, count):
+    """As long as a strip is only pressed nothing pulls it along, whatever shear its nodes have."""
+    source = INPUT / "examples" / f"{name}.inp"
+    (tmp_path / f"{name}.mesh").symlink_to(source.with_suffix(".mesh"))
+    deck = tmp_path / source.name
+    deck.write_text(source.read_text().split("*VERIFY")[0])
+    with h5py.File(solve(deck)) as file:
+        (contact,) = file["contact"].values()
+        shear, normal = contact["shear_force"][:], contact["normal_force"][:]
+    assert np.all(normal > 0.0) and np.all(np.abs(shear[count:]) > 0.0)
+    assert not shear[:count].any(), shear[:count]
