@@ -4,6 +4,7 @@ module deck_structure
    use card_parameters, only: has_parameter, parameter_place, parameter_text
    use cards, only: cards_type, field_place, keyword_card_type
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use keywords, only: built, in_model, in_step, known_keyword_type, known_keywords, not_needed
    use text, only: to_text, to_upper
    implicit none
@@ -87,9 +88,9 @@ contains
          end associate
       end do
       if (step_open) call report%error(cards%keywords(step)%place, 'this step has no *END STEP')
-      call need_card(cards, 'NODE', report)
-      call need_card(cards, 'ELEMENT', report)
-      call need_card(cards, 'SOLID SECTION', report)
+      call need_card(cards, 'NODE', cards%last, report)
+      call need_card(cards, 'ELEMENT', cards%last, report)
+      call need_card(cards, 'SOLID SECTION', first_place(cards, 'ELEMENT'), report)
    end subroutine check_structure
 
    !> What a card with an error in it defines may be missing elsewhere.
@@ -239,18 +240,31 @@ contains
             return
          end associate
       end do
-      call need_card(cards, 'STEP', report)
+      call need_card(cards, 'STEP', cards%last, report)
    end subroutine need_step
 
    !> Reports a card that no deck can do without, unless a refused one is in its place.
-   subroutine need_card(cards, name, report)
+   subroutine need_card(cards, name, place, report)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name
+      type(place_type), intent(in) :: place              ! where it is missed
       type(deck_report_type), intent(inout) :: report
 
       if (card_count(cards, name) > 0 .or. has_stand_in(cards, name)) return
       call report%lose('*'//name)
-      if (size(cards%keywords) > 0) call report%error(cards%last, 'the deck has no *'//name)
+      if (size(cards%keywords) > 0) call report%error(place, 'the deck has no *'//name)
    end subroutine need_card
+
+   !> The first card of a keyword, or the last line of a deck that has none.
+   pure type(place_type) function first_place(cards, name)
+      type(cards_type), intent(in) :: cards
+      character(*), intent(in) :: name
+      integer :: k
+
+      first_place = cards%last
+      do k = size(cards%keywords), 1, -1
+         if (cards%keywords(k)%name == name) first_place = cards%keywords(k)%place
+      end do
+   end function first_place
 
 end module deck_structure
