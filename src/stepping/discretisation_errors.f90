@@ -2,10 +2,11 @@
 !> geometry and materials give is formed once a run.
 module discretisation_errors
    use element_fields, only: element_positions
+   use element_kinds, only: element_node_count
    use field_recovery, only: average_samples, heat_flux_samples, make_points, point_map_type, &
       prepare_samples, stress_samples
    use kinds, only: dp
-   use mesh, only: nodes_per_element
+   use mesh, only: mesh_type, nodes_per_element
    use model, only: model_type
    use patch_recovery, only: patch_recovery_type
    use point_fields, only: most => most_field_points, point_fields_type
@@ -18,6 +19,9 @@ module discretisation_errors
 
    !> Largest value, or the inverse of the smallest, of which squares are taken as they are.
    real(dp), parameter :: large = 1.0e70_dp
+   !> A field is rounding where it is below this part of the terms that cancel in it, some hundred
+   !> spacings of numbers; rounding is nowhere smooth, so its error is above `unsmooth`.
+   real(dp), parameter :: rounding = 1.0e-13_dp, unsmooth = 0.1_dp
 
    !> Where stress and flux are taken, averaged, smoothed and compared.
    type :: recovery_type
@@ -26,6 +30,9 @@ module discretisation_errors
       type(point_fields_type) :: samples         !! recovery points
       type(point_fields_type) :: quadrature      !! points at which errors are integrated
       type(patch_recovery_type) :: patches       !! smooth nodal values from the recovery points
+      !> (elements) factors of displacements, of temperatures over the natural state, and of
+      !> temperatures in stress, stress and heat flux, at most
+      real(dp), allocatable :: of_displacement(:), of_expansion(:), of_temperature(:)
    contains
       procedure :: prepare
       procedure :: recover_stress
@@ -52,7 +59,27 @@ contains
             element_positions(model%mesh, e, recovery_points(model%mesh%element_kind(e)))
       end do
       call self%patches%prepare(model%mesh, self%points, self%samples%first, position)
+      call measure_factors(self)
    end subroutine prepare
+
+   subroutine measure_factors(self)
+      type(recovery_type), intent(inout) :: self
+      real(dp) :: gradient
+      integer :: e, n
+
+      associate (fields => self%samples)
+         n = size(fields%material)
+         allocate (self%of_displacement(n), self%of_expansion(n), self%of_temperature(n))
+         do e = 1, n
+            gradient = maxval(abs(fields%inverse(:, fields%first(e):fields%first(e + 1) - 1)))
+            associate (material => fields%materials(fields%material(e)))
+               self%of_displacement(e) = gradient*maxval(abs(material%elasticity))
+               self%of_expansion(e) = maxval(abs(material%thermal_modulus))
+               self%of_temperature(e) = gradient*maxval(abs(material%conductivity))
+            end associate
+         end do
+      end associate
+   end subroutine measure_factors
 
    !> Stress, averaged at the points, and its estimated error.
    pure subroutine recover_stress(self, model, displacement, temperature, stress, estimate)
@@ -64,7 +91,7 @@ contains
       type(error_record_type), intent(out) :: estimate
       type(element_error_type) :: errors(size(model%mesh%element_kind))
       real(dp), allocatable :: samples(:, :), smooth(:, :)
-      real(dp) :: values(most, 4), scale
+      real(dp) :: values(most, 4), least, scale
       integer :: e
 
       values = 0.0_dp
@@ -80,6 +107,10 @@ contains
          call compare_stress(self, model, e, 1/scale, smooth, values, errors(e))
       end do
       estimate = sum_up(model, scale, errors)
+      if (.not. any(estimate%body > unsmooth)) return
+      least = largest_term(model%mesh, self%of_displacement, maxval(abs(displacement), dim=1)) + &
+         largest_term(model%mesh, self%of_expansion, temperature)
+      call drop_rounding(model, self%samples%first, samples, rounding*least, estimate%body)
    end subroutine recover_stress
 
    !> Heat flux, averaged at the points, and its estimated error.
@@ -91,7 +122,7 @@ contains
       type(error_record_type), intent(out) :: estimate
       type(element_error_type) :: errors(size(model%mesh%element_kind))
       real(dp), allocatable :: samples(:, :), smooth(:, :)
-      real(dp) :: values(most, 2), scale
+      real(dp) :: values(most, 2), least, scale
       integer :: e
 
       values = 0.0_dp
@@ -107,7 +138,45 @@ contains
          call compare_heat_flux(self, model, e, 1/scale, smooth, values, errors(e))
       end do
       estimate = sum_up(model, scale, errors)
+      if (.not. any(estimate%body > unsmooth)) return
+      least = largest_term(model%mesh, self%of_temperature, temperature)
+      call drop_rounding(model, self%samples%first, samples, rounding*least, estimate%body)
    end subroutine recover_heat_flux
+
+   !> The largest of the terms whose sum a field is.
+   pure real(dp) function largest_term(mesh, factor, on_nodes)
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: factor(:)       ! (elements)
+      real(dp), intent(in) :: on_nodes(:)     ! (nodes)
+      integer :: e
+
+      largest_term = 0.0_dp
+      do e = 1, size(factor)
+         associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+            largest_term = max(largest_term, factor(e)*maxval(abs(on_nodes(nodes))))
+         end associate
+      end do
+   end function largest_term
+
+   !> Bodies in which no sample is above rounding have no error.
+   pure subroutine drop_rounding(model, first, samples, least, error)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: first(:)             ! (elements + 1) first of the samples of each
+      real(dp), intent(in) :: samples(:, :)
+      real(dp), intent(in) :: least               ! rounding
+      real(dp), intent(inout) :: error(:)         ! (bodies)
+      logical :: is_there(size(error))
+      integer :: e
+
+      is_there = .false.
+      do e = 1, size(first) - 1
+         associate (b => model%mesh%element_body(e))
+            if (.not. is_there(b)) is_there(b) = &
+               maxval(abs(samples(:, first(e):first(e + 1) - 1))) > least
+         end associate
+      end do
+      where (.not. is_there) error = 0.0_dp
+   end subroutine drop_rounding
 
    !> What values are divided by, so that squares neither overflow nor vanish.
    pure real(dp) function scale_of(samples)

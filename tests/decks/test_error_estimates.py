@@ -3,7 +3,8 @@
 import h5py
 import numpy as np
 import pytest
-from deck_runs import run, solve
+from deck_runs import COUPLED, copy_deck, run, solve
+from physics import material, mesh
 
 COLUMNS, ROWS = 4, 3
 VOLUME = 1.0 / (COLUMNS * ROWS)   # of an element of the unit square
@@ -145,3 +146,30 @@ def test_body_of_one_element_estimates_nothing(tmp_path):
 """)
     process = run("run", "--quiet", deck, "--out", tmp_path)
     assert process.returncode == 0, process.stderr
+
+
+def test_a_body_that_only_rounding_stresses_has_no_error(tmp_path):
+    """The base of the coupled twin, which does not expand, before anything touches it."""
+    with h5py.File(solve(copy_deck(COUPLED, tmp_path / "twin.inp"))) as file:
+        is_open = file["contact/FACE/normal_force"][:] <= 0.0
+        upper, base = file["history/stress_error"][:].T
+    assert is_open[0] and not is_open[-1]
+    assert not base[is_open].any() and np.all(base[~is_open] > 0.0) and np.all(upper > 0.0)
+
+
+@pytest.mark.parametrize("shift", [0.0, 300.0])
+@pytest.mark.parametrize("kind", ["CPS8", "CPS4", "CPS6", "CPS3", "CAX8"])
+def test_a_body_that_expands_freely_has_no_error_of_stress_nor_of_heat_flux(tmp_path, kind, shift):
+    """It is as hot everywhere: all strain is thermal, and no heat flows."""
+    cards = [*mesh("A", np.linspace(1.0, 2.0, 4), [0.0, 0.4, 0.7], kind, skew=0.05),
+             *material("A", (2e5, 0.3), expansion=1.2e-5, conductivity=0.05),
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"A, {shift}"]
+    held = ["A.BOTTOM, 2"] + (["A.LEFT, 1"] if kind != "CAX8" else [])
+    deck = tmp_path / "free.inp"
+    deck.write_text("\n".join([
+        *cards, "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.5, 1.", "*BOUNDARY",
+        *held, f"A, 11, 11, {shift + 100.0}", "*END STEP"]) + "\n")
+    with h5py.File(solve(deck)) as file:
+        assert np.abs(file["VTKHDF/PointData/displacement"][:]).max() > 1e-4
+        for name in ("stress_error", "heat_flux_error"):
+            assert not file[f"history/{name}"][:].any(), name
