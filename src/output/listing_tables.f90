@@ -12,7 +12,7 @@ module listing_tables
    use run_summaries, only: or_blank
    use solution_report, only: iteration_record_type
    use text, only: to_text
-   use verification, only: outcome_type
+   use verification, only: bound_words, outcome_type
    implicit none
    private
    public :: print_contact_table, print_iterations, print_verdicts
@@ -111,6 +111,8 @@ contains
          merge(' PASS', ' FAIL', outcome%passed)
       if (or_blank(check%source) /= '') write (unit, '(8x, 2a)') 'source: ', check%source
       if (outcome%reason /= '') write (unit, '(8x, 2a)') 'failed: ', outcome%reason
+      if (allocated(outcome%bound)) write (unit, '(8x, 3a)') 'found:  ', to_text(outcome%found), &
+         bound_words(outcome)
    end subroutine print_verdict
 
 end module listing_tables

@@ -2,15 +2,17 @@
 module verification
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
+   use contact_quantities, only: estimated
    use due_output, only: is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type
+   use quantity_types, only: find_quantity
    use records, only: increment_record_type
-   use text, only: percent, to_text
+   use text, only: few_digits, percent, to_text, to_upper
    use verify_values, only: values_asked_for
    implicit none
    private
-   public :: verifier_type, outcome_type, failure_words
+   public :: verifier_type, outcome_type, failure_words, bound_words
 
    !> What came of one check.
    type :: outcome_type
@@ -19,6 +21,8 @@ module verification
       real(dp) :: time = 0.0_dp                 !! total time at which it was judged [time]
       real(dp) :: found = 0.0_dp                !! value found, the worst of a set
       real(dp) :: deviation = 0.0_dp            !! magnitude of its deviation, relative for REL
+      !> Bound of the error of the value, NaN where it is uncertain; unallocated where it has none
+      real(dp), allocatable :: bound
       character(:), allocatable :: reason       !! why there is no value; else empty
    end type outcome_type
 
@@ -64,8 +68,30 @@ contains
             values, reason)
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
+         if (allocated(record%errors) .and. len(self%outcomes(i)%reason) == 0) call take_bound( &
+            model%verifications(i), record, interfaces, self%outcomes(i))
       end do
    end subroutine judge
+
+   !> Takes the bound of what a check is about: of a quantity of an interface, or of the largest
+   !> pressure of the only one.
+   subroutine take_bound(check, record, interfaces, outcome)
+      type(verify_type), intent(in) :: check
+      type(increment_record_type), intent(in) :: record
+      type(contact_points_type), intent(in) :: interfaces(:)
+      type(outcome_type), intent(inout) :: outcome
+      integer :: i, q
+
+      q = find_quantity(estimated, check%quantity)
+      if (to_upper(check%quantity) == 'PRESSURE' .and. to_upper(check%where) == 'MAX' .and. &
+         size(interfaces) == 1) q = find_quantity(estimated, 'peak_pressure')
+      if (q == 0) return
+      do i = 1, size(interfaces)
+         if (to_upper(interfaces(i)%name) == to_upper(check%where) .or. size(interfaces) == 1) then
+            outcome%bound = record%errors(i)%bound(q)
+         end if
+      end do
+   end subroutine take_bound
 
    !> Number of checks that passed.
    pure function passed_count(self) result(number)
@@ -103,15 +129,26 @@ contains
       if (len(outcome%reason) > 0) then
          words = words//'expected '//to_text(check%value)//', but '//outcome%reason
       else if (check%relative .and. abs(check%value) > 0.0_dp) then
-         words = words//to_text(outcome%found)//', expected '//to_text(check%value)// &
-            ' (off by '//percent(outcome%deviation, digits=6)//', allowed '// &
+         words = words//to_text(outcome%found)//bound_words(outcome)//', expected '// &
+            to_text(check%value)//' (off by '//percent(outcome%deviation, digits=6)//', allowed '// &
             percent(check%tolerance, digits=6)//')'
       else
-         words = words//to_text(outcome%found)//', expected '//to_text(check%value)// &
-            ' (off by '//to_text(outcome%deviation)//', allowed '// &
+         words = words//to_text(outcome%found)//bound_words(outcome)//', expected '// &
+            to_text(check%value)//' (off by '//to_text(outcome%deviation)//', allowed '// &
             to_text(merge(0.0_dp, check%tolerance, check%relative))//')'
       end if
    end function failure_words
+
+   !> How far the value may be from the exact one; nothing where that is not bounded.
+   pure function bound_words(outcome) result(words)
+      type(outcome_type), intent(in) :: outcome
+      character(:), allocatable :: words            !! with a blank before them
+
+      words = ''
+      if (.not. allocated(outcome%bound)) return
+      words = ' (uncertain)'
+      if (.not. ieee_is_nan(outcome%bound)) words = ' +- '//few_digits(outcome%bound)
+   end function bound_words
 
    pure function outcome_of(check, values, reason) result(outcome)
       type(verify_type), intent(in) :: check

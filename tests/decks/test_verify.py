@@ -5,12 +5,13 @@ face, friction mu p while the upper one (the slave) slides to the right, and S11
 expansion the heat is q = T/(2 h/k + 1/omega), omega = C0 + C1 p.
 """
 
+import re
 from math import sqrt
 
 import h5py
 import pytest
 from blocks import block, solid, write
-from deck_runs import run, solve
+from deck_runs import CYLINDER, copy_deck, run, solve
 
 WIDTH, YOUNG, POISSON, CONDUCTIVITY = 2.0, 1000.0, 0.25, 5.0
 PRESSURE, FRICTION, ALONG, SLIP, HOT = 3.0, 0.5, 2.0, 0.01, 100.0
@@ -227,3 +228,24 @@ def test_times_are_landed_on(tmp_path):
     # The increments are 0.5 long.
     check = f"pressure, Face, 0.3, {0.3 * PRESSURE!r}, 1.E-6"
     assert verdicts(solve(verify(tmp_path / "time.inp", model(), [check]))) == (1, 0)
+
+
+@pytest.mark.parametrize(("quantity", "where", "name"), [
+    ("normal_force", "FACE", "normal_force"), ("heat_rate", "", "heat_rate"),
+    ("edge_contact", "face", "edge_contact"), ("pressure", "MAX", "peak_pressure")])
+def test_values_are_told_with_the_bounds_of_their_errors(tmp_path, quantity, where, name):
+    """At the end of a step, passed or failed; in the middle of it nothing is bounded."""
+    checks = [f"{quantity}, {where}, {when}, {value}" for when, value in (
+        ("LAST", "1., 1.E-3"), ("LAST", "1., 1.E9"), ("180.", "1., 1.E-3"))]
+    (tmp_path / "plain.txt").write_text(CYLINDER.read_text().split("*VERIFY")[0])
+    deck = copy_deck(tmp_path / "plain.txt", tmp_path / "told.inp", ["*VERIFY, KIND=FIGURE", *checks])
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    assert process.returncode == 4
+    with h5py.File(tmp_path / "told.vtkhdf") as file:
+        value, bound = file[f"errors/FACE/{name}"][-1, :2]
+    last, middle = [line for line in process.stderr.splitlines() if "check failed" in line]
+    found, said = re.search(r": (\S+) \+- (\S+), expected", last).groups()
+    assert float(found) == pytest.approx(value, rel=1e-6)
+    assert float(said) == pytest.approx(bound, rel=0.06)
+    assert "+-" not in middle
+    assert (tmp_path / "told.lst").read_text().count(f"found:  {found} +- {said}\n") == 2
