@@ -5,7 +5,7 @@ module shape_functions
    use kinds, only: dp
    implicit none
    private
-   public :: element_shape, element_gradients, side_shape, side_slope
+   public :: element_shape, element_gradients, local_gradients, side_shape, side_slope
    public :: node_position, is_triangle
 
    !> xi, eta of the eight nodes: corners anticlockwise, then the midsides of 1-2, 2-3, 3-4, 4-1.
@@ -87,8 +87,8 @@ contains
 
    !> Derivatives of psi^q by xi and eta.
    pure function local_gradients(kind, point) result(slope)
-      integer, intent(in) :: kind
-      real(dp), intent(in) :: point(2)
+      integer, intent(in) :: kind                          !! kind of the element
+      real(dp), intent(in) :: point(2)                     !! xi, eta
       real(dp) :: slope(2, element_node_count(kind))
       real(dp) :: area(3)
       integer :: q, next

@@ -33,7 +33,7 @@ contains
       type(sparse_matrix_type), intent(in) :: a, b
       logical, intent(in) :: only_lower
       type(sparse_matrix_type) :: c
-      integer :: columns(b%column_count), i, k, n, row_of(b%column_count)
+      integer :: columns(b%column_count), i, k, l, n, row_of(b%column_count)
       real(dp) :: row(b%column_count)
 
       c%row_count = a%row_count
@@ -52,20 +52,24 @@ contains
       do i = 1, a%row_count
          call find_columns(a, b, i, only_lower, row_of, columns, n)
          do k = a%row_start(i), a%row_start(i + 1) - 1
-            associate (first => b%row_start(a%column(k)), last => b%row_start(a%column(k) + 1) - 1)
-               row(b%column(first:last)) = row(b%column(first:last)) + &
-                  a%value(k)*b%value(first:last)
-            end associate
+            ! A loop: sections with these subscripts would take memory for each.
+            do l = b%row_start(a%column(k)), b%row_start(a%column(k) + 1) - 1
+               row(b%column(l)) = row(b%column(l)) + a%value(k)*b%value(l)
+            end do
          end do
          associate (first => c%row_start(i), last => c%row_start(i + 1) - 1)
             c%column(first:last) = columns(:n)
             ! Most rows come in order, and sorting takes memory for each.
             if (any(columns(2:n) < columns(:n - 1))) c%column(first:last) = &
                columns(sort_order(columns(:n)))
-            c%value(first:last) = row(c%column(first:last))
+            do k = first, last
+               c%value(k) = row(c%column(k))
+            end do
          end associate
          do k = a%row_start(i), a%row_start(i + 1) - 1
-            row(b%column(b%row_start(a%column(k)):b%row_start(a%column(k) + 1) - 1)) = 0.0_dp
+            do l = b%row_start(a%column(k)), b%row_start(a%column(k) + 1) - 1
+               row(b%column(l)) = 0.0_dp
+            end do
          end do
       end do
    end function product_of
