@@ -16,6 +16,7 @@ module deck_run
    use interruption, only: end_after_grace, end_at_once, end_by_increments
    use kinds, only: dp
    use messages, only: print_error
+   use model, only: model_type
    use records, only: increment_record_type
    use run_description, only: describe_run
    use run_ending, only: check_signals, prepare_end, report_failure, run_type, say_when
@@ -75,9 +76,15 @@ contains
       type(rounds_type), intent(inout) :: rounds
       type(deck_outcome_type), intent(inout) :: outcome
       type(run_type) :: self
+      type(model_type), target :: model
+      type(simulation_type), target :: simulation
+      type(run_output_type), target :: output
       type(error_type), allocatable :: error
       real(dp) :: since
 
+      self%model => model
+      self%simulation => simulation
+      self%output => output
       since = wall_seconds()
       call cpu_time(self%cpu_start)
       self%path = path

@@ -17,13 +17,14 @@ module run_ending
    private
    public :: run_type, prepare_end, say_when, check_signals, report_failure
 
-   !> The run of a deck, or one round of it.
+   !> The run of a deck, or one round of it. What it points to is the round's: held by value, the
+   !> copying and freeing of all of it, which nothing calls, would be most of the code of deck_run.
    type :: run_type
       character(:), allocatable :: path       !! the deck as given
       type(command_type) :: command           !! options of the command line
-      type(model_type) :: model
-      type(simulation_type) :: simulation
-      type(run_output_type) :: output
+      type(model_type), pointer :: model
+      type(simulation_type), pointer :: simulation
+      type(run_output_type), pointer :: output
       type(run_end_type) :: end               !! of an increment that takes too long
       type(round_indicators_type) :: indicators   !! what another round should vary
       real(dp) :: cpu_start = 0.0_dp          !! CPU seconds of the process at its start [s]
