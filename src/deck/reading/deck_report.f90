@@ -1,10 +1,10 @@
 !> What is wrong with a deck: all its errors and warnings, with their places, printed in one go.
 module deck_report
+   use card_echo, only: column_of, print_card
    use deck_source, only: deck_source_type, place_type
    use sorting, only: sort_order
    use messages, only: print_line
    use text, only: append, string_type, to_text, to_upper
-   use utf8, only: character_count, first_byte, printable
    implicit none
    private
    public :: deck_report_type
@@ -12,9 +12,6 @@ module deck_report
    integer, parameter :: severity_error = 1     !! the deck cannot be solved
    integer, parameter :: severity_warning = 2   !! the deck can be solved, perhaps not as meant
    integer, parameter :: most_errors = 50       !! errors that are printed
-   integer, parameter :: longest_echo = 200     !! characters of a card that are printed
-   integer, parameter :: echo_before = 100      !! of these, before the place that is meant
-   character(*), parameter :: gap = '...'       !! where characters are left out
 
    !> One error or warning.
    type :: diagnostic_type
@@ -119,11 +116,9 @@ contains
       if (explanation_of(self, place) > 0) return
       if (first_error_of(self, place) > 0 .and. .not. present(group)) then
          call self%explain(place, message)
-      else if (present(group)) then
-         call add(self, severity_warning, place, message, group)
       else
-         call add(self, severity_warning, place, message)
-         self%diagnostics(self%count)%explains = .true.
+         call add(self, severity_warning, place, message, group)
+         if (.not. present(group)) self%diagnostics(self%count)%explains = .true.
       end if
    end subroutine suspect
 
@@ -185,13 +180,11 @@ contains
       character(*), intent(in) :: message             !! what, in plain words
       character(*), intent(in), optional :: noun      !! kind of what is not there, such as node set
       character(*), intent(in), optional :: name      !! its name
+      character(:), allocatable :: group
 
       if (self%has_lost(noun, name)) return
-      if (present(noun) .and. present(name)) then
-         call self%error(place, message, noun//' '//to_upper(name))
-      else
-         call self%error(place, message)
-      end if
+      if (present(noun) .and. present(name)) group = noun//' '//to_upper(name)
+      call self%error(place, message, group)
    end subroutine missing
 
    !> Remembers that a reported error may hide the definition of things of a kind, or of a name.
@@ -315,43 +308,6 @@ contains
       end associate
    end subroutine print_diagnostic
 
-   !> Prints a card, or the part of a long one about a byte, and below it a caret under this byte.
-   !> Each tab is shown as one blank.
-   subroutine print_card(unit, image, column)
-      integer, intent(in) :: unit
-      character(*), intent(in) :: image
-      integer, intent(in) :: column
-      character(:), allocatable :: before, behind
-      integer :: room
-
-      before = shown(image(:column - 1))
-      behind = shown(image(column:))
-      room = longest_echo
-      if (character_count(before) + character_count(behind) > longest_echo) then
-         if (character_count(before) > echo_before) before = gap//before(first_byte(before, &
-            character_count(before) - echo_before + len(gap) + 1):)
-         room = longest_echo - character_count(before)
-         if (character_count(behind) > room) behind = behind(:first_byte(behind, &
-            room - len(gap) + 1) - 1)//gap
-      end if
-      call print_line(unit, before//behind)
-      call print_line(unit, repeat(' ', character_count(before))//'^')
-   end subroutine print_card
-
-   !> Part of a card as it is printed.
-   pure function shown(part) result(string)
-      character(*), intent(in) :: part
-      character(:), allocatable :: string
-      character(len(part)) :: untabbed
-      integer :: i
-
-      untabbed = part
-      do i = 1, len(part)
-         if (part(i:i) == achar(9)) untabbed(i:i) = ' '
-      end do
-      string = printable(untabbed)
-   end function shown
-
    !> `path:line:column: severity: message`, or `path: severity: message` for the deck as a whole.
    function first_line(self, diagnostic) result(line)
       class(deck_report_type), intent(in) :: self
@@ -372,15 +328,6 @@ contains
       end associate
       if (diagnostic%places > 1) line = line//' ('//to_text(diagnostic%places)//' such places)'
    end function first_line
-
-   !> Column of a byte, which may be behind the line: a character of several bytes is one column.
-   pure integer function column_of(image, byte)
-      character(*), intent(in) :: image
-      integer, intent(in) :: byte
-
-      column_of = character_count(image(:min(byte - 1, len(image)))) + 1 + &
-         max(0, byte - 1 - len(image))
-   end function column_of
 
    !> The order of the diagnostics by image, then column, then as reported.
    function order_of(self) result(order)
@@ -415,14 +362,7 @@ contains
       if (.not. allocated(self%diagnostics)) allocate(self%diagnostics(most_errors))
       if (self%count == size(self%diagnostics)) then
          allocate(more(2*self%count))
-         do i = 1, self%count
-            more(i)%severity = self%diagnostics(i)%severity
-            more(i)%place = self%diagnostics(i)%place
-            more(i)%places = self%diagnostics(i)%places
-            more(i)%explains = self%diagnostics(i)%explains
-            call move_alloc(self%diagnostics(i)%message, more(i)%message)
-            call move_alloc(self%diagnostics(i)%group, more(i)%group)
-         end do
+         more(:self%count) = self%diagnostics
          call move_alloc(more, self%diagnostics)
       end if
       self%count = self%count + 1
