@@ -1,5 +1,6 @@
 !> What the program asks of the file system beyond Fortran's own statements, with the system's
-!> reason where it refuses. The calls themselves are in file_calls.c.
+!> reason where it refuses. What is open has a descriptor, see open_files. The calls themselves are
+!> in file_calls.c.
 module file_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_long, c_null_char, c_ptr
    use errors, only: error_type, set_error, status_internal
@@ -9,13 +10,9 @@ module file_calls
    private
    public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file
    public :: try_file, try_growth, create_working_file, remove_working_files, survive_file_limits
-   public :: write_file, open_new_file, lock_file, unlock_file, append_to_file, empty_file
-   public :: overwrite_in_file
-   public :: close_descriptor, open_in_memory, cannot_write, print_text, check_printed
+   public :: cannot_write, reason_of, print_text, check_printed
 
-   integer(c_int), parameter :: locked_by_another = -1_c_int   !! as in file_calls.c
-   integer(c_int), parameter :: not_lockable = -2_c_int        !! alike
-   integer(c_int), parameter :: too_long = -3_c_int            !! alike
+   integer(c_int), parameter :: too_long = -3_c_int   !! as in file_calls.c
    integer, parameter :: reason_length = 200
    integer, parameter :: number_length = 24   !! of what a working file's name adds, at most
 
@@ -95,62 +92,6 @@ module file_calls
          import :: c_char
          character(kind=c_char), intent(in) :: stem(*)
       end subroutine c_remove_working
-
-      function c_open_new(path, descriptor) bind(c, name='file_open_new') result(number)
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), intent(out) :: descriptor
-         integer(c_int) :: number
-      end function c_open_new
-
-      function c_lock(path, descriptor) bind(c, name='file_lock') result(number)
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), intent(out) :: descriptor
-         integer(c_int) :: number
-      end function c_lock
-
-      subroutine c_unlock(path, descriptor) bind(c, name='file_unlock')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), value :: descriptor
-      end subroutine c_unlock
-
-      function c_in_memory(descriptor) bind(c, name='file_in_memory') result(number)
-         import :: c_int
-         integer(c_int), intent(out) :: descriptor
-         integer(c_int) :: number
-      end function c_in_memory
-
-      function c_append(descriptor, text, count) bind(c, name='file_append') result(number)
-         import :: c_char, c_int, c_long
-         integer(c_int), value :: descriptor
-         character(kind=c_char), intent(in) :: text(*)
-         integer(c_long), value :: count
-         integer(c_int) :: number
-      end function c_append
-
-      function c_overwrite(descriptor, position, text, count) bind(c, name='file_overwrite') &
-         result(number)
-         import :: c_char, c_int, c_long
-         integer(c_int), value :: descriptor
-         integer(c_long), value :: position
-         character(kind=c_char), intent(in) :: text(*)
-         integer(c_long), value :: count
-         integer(c_int) :: number
-      end function c_overwrite
-
-      function c_empty(descriptor) bind(c, name='file_empty') result(number)
-         import :: c_int
-         integer(c_int), value :: descriptor
-         integer(c_int) :: number
-      end function c_empty
-
-      function c_close(descriptor) bind(c, name='file_close') result(number)
-         import :: c_int
-         integer(c_int), value :: descriptor
-         integer(c_int) :: number
-      end function c_close
 
       function c_copy(from, to, is_source) bind(c, name='file_copy') result(number)
          import :: c_char, c_int
@@ -318,127 +259,6 @@ contains
       call c_remove_working(path//c_null_char)
    end subroutine remove_working_files
 
-   !> Makes a file anew, to write at its end.
-   !> Error: status_internal, when the system refuses.
-   subroutine open_new_file(path, descriptor, error)
-      character(*), intent(in) :: path                     !! the file
-      integer, intent(out) :: descriptor                   !! the open file, -1 after an error
-      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number, opened
-
-      number = c_open_new(path//c_null_char, opened)
-      descriptor = int(opened)
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
-   end subroutine open_new_file
-
-   !> Makes a file of a text.
-   !> Error: status_internal, when the system refuses.
-   subroutine write_file(path, string, error)
-      character(*), intent(in) :: path                     !! the file
-      character(*), intent(in) :: string                   !! the text, with its ends of line
-      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer :: descriptor
-
-      call open_new_file(path, descriptor, error)
-      if (allocated(error)) return
-      call append_to_file(descriptor, path, string, error)
-      call close_descriptor(descriptor)
-   end subroutine write_file
-
-   !> Opens a file to write at its end, and locks it: the system frees the lock with the descriptor,
-   !> at the latest when the process ends, however it ends.
-   !> Errors, status_internal: the file cannot be written; another run has the lock.
-   subroutine lock_file(path, descriptor, has_lock, error)
-      character(*), intent(in) :: path                     !! the file; made if it is missing
-      integer, intent(out) :: descriptor                   !! the open file, -1 after an error
-      logical, intent(out) :: has_lock                     !! false where there are no locks
-      type(error_type), allocatable, intent(out) :: error
-      integer(c_int) :: number, opened
-
-      number = c_lock(path//c_null_char, opened)
-      descriptor = int(opened)
-      has_lock = number == 0
-      select case (number)
-      case (0, not_lockable)
-         return
-      case (locked_by_another)
-         call set_error(error, status_internal, cannot_write(path, 'another run writes here'))
-      case default
-         call set_error(error, status_internal, cannot_write(path, reason_of(number)))
-      end select
-   end subroutine lock_file
-
-   !> Closes a locked file; one in which nothing was written is removed.
-   subroutine unlock_file(path, descriptor)
-      character(*), intent(in) :: path      !! the file
-      integer, intent(in) :: descriptor     !! as from lock_file
-
-      call c_unlock(path//c_null_char, int(descriptor, c_int))
-   end subroutine unlock_file
-
-   !> Opens a file in memory, whose end comes with that of its descriptor.
-   !> Error: status_internal, when the system opens none.
-   subroutine open_in_memory(descriptor, path, error)
-      integer, intent(out) :: descriptor                   !! of the file
-      character(:), allocatable, intent(out) :: path       !! by which it can be opened
-      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number, opened
-
-      number = c_in_memory(opened)
-      descriptor = int(opened)
-      path = '/proc/self/fd/'//to_text(descriptor)
-      if (number /= 0) call set_error(error, status_internal, &
-         'cannot open a file in memory: '//reason_of(number))
-   end subroutine open_in_memory
-
-   !> Writes text at the end of an open file.
-   !> Error: status_internal, when the system refuses.
-   subroutine append_to_file(descriptor, path, string, error)
-      integer, intent(in) :: descriptor                    !! the open file
-      character(*), intent(in) :: path                     !! its path, for the message
-      character(*), intent(in) :: string                   !! what is written
-      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number
-
-      number = c_append(int(descriptor, c_int), string, len(string, kind=c_long))
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
-   end subroutine append_to_file
-
-   !> Writes text over what is at a position of an open file.
-   !> Error: status_internal, when the system refuses.
-   subroutine overwrite_in_file(descriptor, path, position, string, error)
-      integer, intent(in) :: descriptor                    !! the open file
-      character(*), intent(in) :: path                     !! its path, for the message
-      integer, intent(in) :: position                      !! bytes before the text
-      character(*), intent(in) :: string                   !! what is written
-      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number
-
-      number = c_overwrite(int(descriptor, c_int), int(position, c_long), string, &
-         len(string, kind=c_long))
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
-   end subroutine overwrite_in_file
-
-   !> Empties an open file.
-   !> Error: status_internal, when the system refuses.
-   subroutine empty_file(descriptor, path, error)
-      integer, intent(in) :: descriptor                    !! the open file
-      character(*), intent(in) :: path                     !! its path, for the message
-      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number
-
-      number = c_empty(int(descriptor, c_int))
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
-   end subroutine empty_file
-
-   !> Closes what was opened here.
-   subroutine close_descriptor(descriptor)
-      integer, intent(in) :: descriptor   !! the open file
-      integer(c_int) :: ignored
-
-      ignored = c_close(int(descriptor, c_int))
-   end subroutine close_descriptor
-
    !> Reads a file, which may be a pipe, to its end.
    subroutine read_file(path, most, contents, reason)
       character(*), intent(in) :: path                         !! the file
@@ -471,7 +291,7 @@ contains
 
    !> The system's words on an error number.
    function reason_of(number) result(reason)
-      integer(c_int), intent(in) :: number
+      integer(c_int), intent(in) :: number      !! as from errno of C
       character(:), allocatable :: reason
       character(reason_length, kind=c_char) :: buffer
 

@@ -8,8 +8,7 @@ module listing
    use contact_points, only: contact_points_type, never_approached
    use due_output, only: table_is_due
    use errors, only: error_type
-   use file_calls, only: append_to_file, close_descriptor, copy_file, empty_file, lock_file, &
-      open_in_memory, overwrite_in_file, unlock_file
+   use file_calls, only: copy_file
    use listing_errors, only: print_body_errors, print_interface_errors
    use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
@@ -18,6 +17,8 @@ module listing
    use listing_summary, only: checks, ending, summary_block, warnings_below
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type
+   use open_files, only: append_to_file, close_descriptor, empty_file, lock_file, open_in_memory, &
+      overwrite_in_file, unlock_file
    use printed_text, only: printed_text_type
    use records, only: increment_record_type
    use run_summaries, only: or_blank, run_summary_type

@@ -2,7 +2,8 @@
 !> then finds room in a file is seen in one place, and so are its control characters.
 module printed_text
    use errors, only: error_type, set_error, status_internal
-   use file_calls, only: close_descriptor, open_in_memory, read_file
+   use file_calls, only: read_file
+   use open_files, only: close_descriptor, open_in_memory
    use utf8, only: printable
    implicit none
    private

@@ -2,9 +2,10 @@
 !> here until the result file that holds their increments is in place.
 module status_files
    use errors, only: error_type
-   use file_calls, only: append_to_file, close_descriptor, open_new_file, try_file
+   use file_calls, only: try_file
    use increment_quantities, only: history_value, pass_value
    use listing_text, only: column, table_cell, table_head
+   use open_files, only: append_to_file, close_descriptor, open_new_file
    use quantity_types, only: of_passes, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: quantities

@@ -2,8 +2,8 @@
 module trade_file
    use csv_fields, only: quoted
    use errors, only: error_type
-   use file_calls, only: write_file
    use kinds, only: dp
+   use open_files, only: write_file
    use reported_quantities, only: traded
    use text, only: to_text
    use trade_quantities, only: is_there, quantity_count
