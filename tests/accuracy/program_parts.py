@@ -3,12 +3,12 @@ that all decks need, which exist for that part only."""
 
 CONTACT_FOLDER = {
     "active_set", "contact_tractions", "chain_geometry", "closing_instant", "lemke_path",
-    "contact_pairs", "contact_rows", "contact_states", "contact_system", "contact_tangent",
+    "contact_factors", "contact_pairs", "contact_states", "contact_system", "contact_tangent",
     "contact_workspace", "friction", "interface_checks", "interface_warnings", "surface_chains",
     "unconstrained_motions", "zone_edges",
 }
 COUPLING = {
-    "accelerators", "anderson", "conductance_graph", "contact_operator:contact_operator_pass",
+    "accelerators", "arnoldi", "conductance_graph", "contact_operator:contact_operator_pass",
     "contact_operator:residual_floor", "contact_tangent", "coupled_increment", "coupling_gains",
     "fixed_point", "increment_iteration", "jump_loads", "newton",
     "opening_derivatives", "resting_points",
@@ -51,7 +51,7 @@ PARTS = {
         "result_fields:find_faces", "zone_diagram",
     },
     "friction": {
-        "contact_rows:combine", "friction", "zone_edges:stick_edges",
+        "contact_system:combine", "friction", "zone_edges:stick_edges",
     },
     "coupling": COUPLING,
     "rings of pairs": {"contact_constraints:stiffness_alone", "linear_constraints:links",
@@ -68,7 +68,7 @@ PARTS = {
                    "mesh_division", "refinement"},
     "printed tables": {"element_points", "listing_prints",
                                 "listing_tables:print_contact_table"},
-    "checks of the deck": {"deck_builder_verify", "verification", "verify_positions",
-                           "verify_values"},
+    "checks of the deck": {"deck_builder_verify", "interface_reports:check_arc_lengths",
+                           "verification", "verify_values"},
     "MUMPS": {"metis", "mumps_solver"},
 }
