@@ -22,9 +22,9 @@ module run_ending
    type :: run_type
       character(:), allocatable :: path       !! the deck as given
       type(command_type) :: command           !! options of the command line
-      type(model_type), pointer :: model
-      type(simulation_type), pointer :: simulation
-      type(run_output_type), pointer :: output
+      type(model_type), pointer :: model => null()
+      type(simulation_type), pointer :: simulation => null()
+      type(run_output_type), pointer :: output => null()
       type(run_end_type) :: end               !! of an increment that takes too long
       type(round_indicators_type) :: indicators   !! what another round should vary
       real(dp) :: cpu_start = 0.0_dp          !! CPU seconds of the process at its start [s]
