@@ -20,10 +20,10 @@ module memory_needs
    real(dp), parameter :: real_bytes = 8.0_dp          !! of a number
    real(dp), parameter :: base = 30.0e6_dp             !! of the program and its libraries [byte]
    real(dp), parameter :: per_entry = 30.0_dp          !! of an entry of element matrices [byte]
-   real(dp), parameter :: per_fine_entry = 23.0_dp     !! of one on the mesh of the estimates [byte]
-   real(dp), parameter :: mumps_factor = 2.0_dp        !! MUMPS's memory in that of its factors
+   real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one on the mesh of the estimates [byte]
+   real(dp), parameter :: mumps_factor = 1.25_dp       !! MUMPS's memory in that of its factors
    real(dp), parameter :: waiting = 70.0e6_dp          !! most of results that wait [byte]
-   real(dp), parameter :: field_values = 25.0_dp       !! of a node and an increment that wait
+   real(dp), parameter :: field_values = 25.0_dp       !! of a node and written increment that wait
    real(dp), parameter :: dense_matrices = 12.0_dp     !! of the contact unknowns, held at a time
 
 contains
@@ -34,7 +34,7 @@ contains
       integer, intent(in) :: levels           !! refinements that are to come
       integer, intent(in) :: order            !! 1 where midside nodes are to be dropped, else 2
       real(dp) :: bytes                       !! [byte]
-      real(dp) :: entries, increments, nodes, points
+      real(dp) :: entries, nodes, points, written
       integer, allocatable :: kinds(:)
       integer :: solver
       logical :: heat, mechanics
@@ -46,12 +46,15 @@ contains
       nodes = size(model%mesh%node_number)*4.0_dp**levels
       points = contact_point_count(model)*2.0_dp**levels
       entries = entries_of(kinds, heat, mechanics)*4.0_dp**levels
-      increments = sum(min(planned_increments(model%steps), &
-         real(model%steps%max_increments, dp)))
-      bytes = base + per_entry*entries + min(waiting, real_bytes*field_values*nodes*increments) + &
+      ! Every n-th increment of a step and its last are written, of n = 0 the last alone.
+      written = sum(1 + merge(min(planned_increments(model%steps), &
+         real(model%steps%max_increments, dp))/max(model%steps%field_frequency, 1), 0.0_dp, &
+         model%steps%field_frequency > 0))
+      bytes = base + per_entry*entries + min(waiting, real_bytes*field_values*nodes*written) + &
          dense_matrices*real_bytes*(3*points)**2
+      ! The estimates have room for both fields.
       if (model%estimates_errors .and. size(model%contacts) > 0) bytes = bytes + &
-         4*per_fine_entry*entries
+         4*per_fine_entry*entries_of(kinds, .true., .true.)*4.0_dp**levels
       solver = model%solver
       if (solver == solver_by_size) solver = default_solver(merge(2, 1, mechanics)*nodes)
       if (solver == solver_mumps) then
