@@ -15,6 +15,8 @@ module contact_factors
    public :: contact_factors_type
 
    integer, parameter :: rows_per_change = 16   !! free rows for each one that may change
+   !> Entry of 1 + D M^-1 E from which the first set is too near to a singular one.
+   real(dp), parameter :: most_growth = 1.0e6_dp
 
    !> Factors of one set, and what makes them those of another.
    type :: contact_factors_type
@@ -111,7 +113,8 @@ contains
       type(contact_factors_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system
       type(contact_rows_type), intent(in) :: rows
-      logical, intent(out) :: failed               !! too many rows change, or the set is singular
+      !> Too many rows change, or one of the sets is all but singular
+      logical, intent(out) :: failed
       logical, dimension(size(rows%own)) :: is_free, was_free
       integer, allocatable :: changed(:)
       real(dp), allocatable :: columns(:, :), matrix(:, :)
@@ -148,7 +151,8 @@ contains
       do j = 1, size(changed)
          matrix(j, j) = matrix(j, j) + 1.0_dp
       end do
-      call self%correction%factor(matrix, failed)
+      failed = any(abs(matrix) > most_growth)
+      if (.not. failed) call self%correction%factor(matrix, failed)
    end subroutine change_rows
 
    !> Whether rows have other factors.

@@ -105,7 +105,7 @@ def estimate(folder, solver, level):
     """Return the memory that the program says a run will need [MB], from a check or where it
     refuses the deck for want of memory."""
     process = run("check", refined(folder, level, f"*SOLVER, TYPE={solver}"), folder=folder)
-    found = re.search(r"memory of a run\W+(\d+) MB|it needs about (\d+) MB",
+    found = re.search(r"memory of a run\W+(\d+) MB|needs about (\d+) MB",
                       process.stdout + process.stderr)
     return int(found[1] or found[2])
 
