@@ -234,9 +234,9 @@ void thercon_hold_end(int holds)
    if (!is_held && caught != 0 && ends == at_once) end_by_signal();
 }
 
-/* Memory: the linker has the calls of the program itself, not those of its libraries, come here
- * (--wrap). Fortran's ALLOCATE would end in a backtrace where there is no memory, and arrays that
- * the compiler makes in SIGSEGV. */
+/* Memory: the linker has the calls of the program itself and of archives in it, not those of shared
+ * libraries, come here (--wrap). Fortran's ALLOCATE would end in a backtrace where there is no memory,
+ * and arrays that the compiler makes in SIGSEGV. */
 void *__real_malloc(size_t bytes);
 void *__real_calloc(size_t count, size_t bytes);
 void *__real_realloc(void *address, size_t bytes);

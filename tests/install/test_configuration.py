@@ -1,4 +1,4 @@
-"""CMake takes what it is told, and the shared libraries of HDF5."""
+"""CMake takes what it is told, and the shared libraries of HDF5 unless archives are asked for."""
 
 import subprocess
 from pathlib import Path
@@ -26,7 +26,7 @@ def test_flags_of_the_release_are_those_named(default, tmp_path):
     named = configure(tmp_path, "-DCMAKE_Fortran_FLAGS_RELEASE=-O1 -g",
                       "-DCMAKE_C_FLAGS_RELEASE=-O1")
     assert "FLAGS = -O1 -g " in named
-    assert "-O3" not in named
+    assert "-O3" not in named and "-O2" not in named
     assert "-ffp-contract" not in named
 
 
@@ -34,3 +34,12 @@ def test_shared_libraries_of_hdf5_are_preferred(default):
     assert "/libhdf5_fortran.so" in default
     assert "/libhdf5.so" in default
     assert "hdf5.a" not in default
+
+
+def test_archives_of_hdf5_are_linked_where_that_is_asked_for_and_works(tmp_path):
+    shared, archive = "/libhdf5_fortran.so", "/libhdf5_fortran.a"
+    asked = configure(tmp_path / "asked", "-DFortranHDF5_PREFER_ARCHIVES=ON")
+    assert archive in asked and shared not in asked
+    failing = configure(tmp_path / "failing", "-DFortranHDF5_PREFER_ARCHIVES=ON",
+                        "-DFortranHDF5_ARCHIVES_LINK=NO")
+    assert shared in failing and archive not in failing
