@@ -19,7 +19,7 @@ module memory_needs
 
    real(dp), parameter :: real_bytes = 8.0_dp          !! of a number
    real(dp), parameter :: base = 30.0e6_dp             !! of the program and its libraries [byte]
-   real(dp), parameter :: per_entry = 30.0_dp          !! of an entry of element matrices [byte]
+   real(dp), parameter :: per_entry = 33.0_dp          !! of an entry of element matrices [byte]
    real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one on the mesh of the estimates [byte]
    real(dp), parameter :: mumps_factor = 1.25_dp       !! MUMPS's memory in that of its factors
    real(dp), parameter :: waiting = 70.0e6_dp          !! most of results that wait [byte]

@@ -19,9 +19,9 @@ The cost of a run, its growth with the mesh, and where the time goes. In short:
 
 - The published cylinder takes about a tenth of a second. Half of its instructions are those of error
   estimates and of writing.
-- Each uniform refinement multiplies the displacements by four, and the time by 2 to 8: 142,336
-  displacements take 19 s and 0.8 GB, 567,296 take 2 minutes and 3 GB. From the second refinement on
-  MUMPS is the faster solver, and the program chooses it.
+- Each uniform refinement multiplies the displacements by four, and the time by 2 to 6: 142,336
+  displacements take some 12 s and 0.6 GB, 567,296 about a minute and 2 GB. From the second
+  refinement on MUMPS is the faster solver, and the program chooses it.
 - Contact iterations factor only the columns of the contact again: below 2 % of the operations of a
   full factorisation.
 
