@@ -1,11 +1,17 @@
 !> A step as solutions beside the run take it.
 module companion_steps
-   use controls, only: start_type
+   use controls, only: implicit_scheme, start_type
+   use errors, only: error_type
+   use increment_data, only: increment_workspace_type
+   use increment_solution, only: recover_fields, solve_points
+   use increments, only: simulation_type
    use kinds, only: dp
-   use steps, only: step_type
+   use model, only: model_type
+   use solution_state, only: solution_state_type
+   use steps, only: solves_heat, step_type
    implicit none
    private
-   public :: companion_step
+   public :: companion_step, implicit_state, implicit_step
 
    real(dp), parameter :: tolerance = 1.0e-6_dp   !! of the fixed point; errors are far larger
 
@@ -21,5 +27,35 @@ contains
       companion%fixed_point%finds_gain = .false.
       companion%fixed_point%tolerance = max(tolerance, step%fixed_point%tolerance)
    end function companion_step
+
+   !> The same in the equilibrium of heat.
+   pure function implicit_step(step)
+      type(step_type), intent(in) :: step
+      type(step_type) :: implicit_step
+
+      implicit_step = companion_step(step)
+      implicit_step%scheme = implicit_scheme
+   end function implicit_step
+
+   !> Solves the end of an increment.
+   !> Error: it has no solution.
+   subroutine implicit_state(simulation, model, step, previous, state, error)
+      type(simulation_type), intent(inout) :: simulation     !! its films change
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step                    !! from implicit_step
+      type(solution_state_type), intent(in) :: previous      !! at the start of the increment
+      type(solution_state_type), intent(inout) :: state      !! guess in, solution out
+      type(error_type), allocatable, intent(out) :: error
+      type(increment_workspace_type) :: workspace
+
+      if (solves_heat(step%analysis)) then
+         call simulation%bodies%set_film(state%film, model, error)
+         if (allocated(error)) return
+      end if
+      call solve_points(simulation%bodies, simulation%loads, step, previous, workspace, state, &
+         error)
+      if (allocated(error)) return
+      call recover_fields(simulation%bodies, simulation%loads, step, workspace, previous, state)
+   end subroutine implicit_state
 
 end module companion_steps

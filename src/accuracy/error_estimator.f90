@@ -5,6 +5,7 @@ module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_definitions, only: pairing_surfaces
    use contact_quantities, only: estimated
+   use divided_faces, only: divided_faces_type
    use doubled_increments, only: doubled_increments_type
    use errors, only: error_type
    use increment_quantities, only: history_value
@@ -31,14 +32,17 @@ module error_estimator
    !> What the bounds are made with.
    type :: error_estimator_type
       private
+      !> Whether the finer mesh is relaxed; else its increments are solved, with divided faces
+      logical :: relaxes = .true.
       type(refined_model_type) :: refined          !! the model with divided elements
+      type(divided_faces_type) :: divided          !! the one with divided faces
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
       type(value_courses_type) :: courses          !! quantities at the increments before
       real(dp), allocatable :: stuck(:)            !! (interfaces) largest stuck_forces so far
       integer :: step = 0                          !! step of the present increment
       logical :: is_on = .false.                   !! whether there is anything to estimate
-      character(:), allocatable :: why_not         !! why the mesh cannot be refined; else ''
+      character(:), allocatable :: why_not         !! why there is no finer mesh; else ''
    contains
       procedure :: start
       procedure :: begin_increment
@@ -57,13 +61,16 @@ contains
       self%is_on = model%estimates_errors .and. size(model%contacts) > 0
       if (.not. self%is_on) return
       self%why_not = ''
-      call self%refined%prepare(model, simulation%bodies%points, error)
+      self%relaxes = .not. (any(simulation%bodies%interfaces%pairing == pairing_surfaces) .or. &
+         size(model%ties) > 0)
+      if (size(model%equations) > 0) then
+         self%why_not = 'it has nodes that the equations do not name'
+      else if (self%relaxes) then
+         call self%refined%prepare(model, simulation%bodies%points, error)
+      else
+         call self%divided%start(model, error)
+      end if
       if (allocated(error)) self%why_not = error%message
-      if (any(simulation%bodies%interfaces%pairing == pairing_surfaces)) self%why_not = &
-         'it relaxes node pairs, and there are faces whose nodes do not match'
-      if (size(model%ties) > 0) self%why_not = 'it relaxes nodes that are free, and there are ties'
-      if (size(model%equations) > 0) self%why_not = &
-         'it relaxes nodes that are free, and there are equations'
       allocate (self%stuck(size(model%contacts)), source=0.0_dp)
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
@@ -86,12 +93,7 @@ contains
       integer :: i
 
       if (.not. self%is_on) return
-      if (record%step /= self%step .and. self%why_not == '') then
-         associate (refined => self%refined, before => self%before)
-            call refined%loads%begin_step(refined%model%steps(record%step), &
-               refined%prolong(before%displacement, 2), refined%prolong(before%temperature, 1))
-         end associate
-      end if
+      if (record%step /= self%step .and. self%why_not == '') call begin_step(self, record%step)
       self%step = record%step
       call self%doubled%follow(model, simulation%bodies, simulation%loads, simulation%state, &
          record)
@@ -116,6 +118,23 @@ contains
       if (self%why_not /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
          'estimated on one with elements of half the size: '//self%why_not)
    end subroutine end_increment
+
+   !> Enters a step on the finer mesh.
+   subroutine begin_step(self, step)
+      type(error_estimator_type), intent(inout) :: self
+      integer, intent(in) :: step
+      type(error_type), allocatable :: error
+
+      associate (refined => self%refined, before => self%before)
+         if (self%relaxes) then
+            call refined%loads%begin_step(refined%model%steps(step), &
+               refined%prolong(before%displacement, 2), refined%prolong(before%temperature, 1))
+         else
+            call self%divided%begin_step(step, before, error)
+            if (allocated(error)) self%why_not = error%message
+         end if
+      end associate
+   end subroutine begin_step
 
    subroutine store(values, errors)
       real(dp), intent(in) :: values(:, :)
@@ -145,15 +164,20 @@ contains
       clock%period = model%steps(self%step)%period
       clock%step_time = clock%period
       clock%ramped = model%steps(self%step)%ramped
-      call find_change_by_refinement(self%refined, simulation, model, clock, self%before, change, &
-         error)
+      if (self%relaxes) then
+         call find_change_by_refinement(self%refined, simulation, model, clock, self%before, &
+            change, error)
+      else
+         call self%divided%find_change(simulation, model, clock, self%before, change, error)
+      end if
       if (allocated(error)) then
          call append(record%notes, 'the errors of the mesh cannot be estimated: '//error%message)
          return
       end if
       do i = 1, size(record%errors)
          record%errors(i)%mesh = bounds_of_mesh(simulation%bodies%interfaces(i), &
-            record%contacts(i), change(:, i), self%courses%scatter(i), self%stuck(i))
+            record%contacts(i), change(:, i), self%courses%scatter(i), self%stuck(i), &
+            .not. self%relaxes)
       end do
    end subroutine bound_mesh
 

@@ -10,6 +10,7 @@
 !> docs/accuracy.md says on which decks the constants were chosen and which judge them.
 module mesh_bounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use contact_states, only: contact_stick
@@ -22,33 +23,37 @@ module mesh_bounds
    public :: bounds_of_mesh, stuck_forces
 
    !> Error in the change that halved elements make: that of errors that fall with h; and where too
-   !> few increments tell no scatter.
+   !> few increments tell no scatter, or only elements at the faces are halved.
    real(dp), parameter :: of_change = 2.0_dp, of_change_alone = 3.0_dp
    !> Error of shear force and peak pressure in what friction locked in.
    real(dp), parameter :: of_locked = 0.6_dp, of_locked_in_peak = 0.15_dp
    !> Errors of edges in the spacing: one at a node itself, and one of stick where contact ends too;
    !> of others the table of quantities tells.
    real(dp), parameter :: at_node = 0.25_dp, of_both = 0.15_dp
+   !> Error of an edge of contact that means with hats tell, in that which gaps of nodes tell.
+   real(dp), parameter :: of_hats = 4.0_dp
    real(dp), parameter :: same_place = 1.0e-6_dp    !! of the spacing
 
 contains
 
    !> The bounds, for the quantities with an estimate; NaN where none can be given.
-   pure function bounds_of_mesh(points, contact, change, scatter, stuck) result(bounds)
+   pure function bounds_of_mesh(points, contact, change, scatter, stuck, of_faces) result(bounds)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       type(contact_record_type), intent(in) :: contact   !! its state
       real(dp), intent(in) :: change(:)                  !! of the quantities by halved elements
       real(dp), intent(in) :: scatter(:)                 !! over increments; NaN: unknown
       real(dp), intent(in) :: stuck                      !! largest of stuck_forces so far
+      logical, intent(in) :: of_faces                    !! whether only faces were halved
       real(dp) :: bounds(size(estimated))
       real(dp) :: known_scatter(size(estimated)), length, locked, shift
       integer :: q
 
       known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter))
-      bounds = merge(of_change_alone, of_change, ieee_is_nan(scatter))*abs(change) + known_scatter
+      bounds = merge(of_change_alone, of_change, of_faces .or. ieee_is_nan(scatter))* &
+         abs(change) + known_scatter
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
-      if (length > 0.0_dp) locked = stuck*edge_spacing(points, contact%edge_contact)/length
+      if (length > 0.0_dp) locked = stuck*nodal_spacing(points, contact%edge_contact)/length
       shift = 0.0_dp
       if (contact%normal_force > 0.0_dp) shift = length/contact%normal_force* &
          bounds(find_quantity(estimated, 'normal_force'))
@@ -60,8 +65,8 @@ contains
             if (locked > 0.0_dp) bounds(q) = bounds(q) + of_locked_in_peak*locked* &
                maxval(contact%pressure)/contact%normal_force
          case ('edge_contact')
-            bounds(q) = edge_bound(points, contact%edge_contact, estimated(q)%resolution, &
-               change(q)) + shift
+            bounds(q) = edge_bound(points, contact%edge_contact, estimated(q)%resolution* &
+               merge(of_hats, 1.0_dp, points%pairing == pairing_surfaces), change(q)) + shift
          case ('edge_stick')
             if (ends_with_contact(points, contact)) then
                bounds(q) = edge_bound(points, contact%edge_stick, of_both, change(q)) + shift
@@ -85,12 +90,20 @@ contains
       ! Where there is no edge, or none on the finer mesh, nothing is known.
       bound = change + edge
       if (ieee_is_nan(bound)) return
-      spacing = edge_spacing(points, edge)
+      spacing = nodal_spacing(points, edge)
       bound = part*spacing
       if (any(abs(points%arc_length - edge) <= same_place*spacing)) bound = max(part, at_node)* &
          spacing
       bound = bound + of_change*max(0.0_dp, abs(change) - max(part, at_node)*spacing)
    end function edge_bound
+
+   !> Spacing of the slave's nodes at an edge.
+   pure real(dp) function nodal_spacing(points, edge)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: edge
+
+      nodal_spacing = edge_spacing(points, edge)/points%node_spacings
+   end function nodal_spacing
 
    !> Whether all that is closed up to its outer edge sticks.
    pure logical function ends_with_contact(points, contact)

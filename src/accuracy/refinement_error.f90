@@ -10,7 +10,7 @@
 module refinement_error
    use all_contact_points, only: all_contact_points_type
    use balances, only: heat_residual
-   use companion_steps, only: companion_step
+   use companion_steps, only: implicit_state, implicit_step
    use contact_operator, only: kept_contact, unstrained_forces
    use contact_states, only: contact_open
    use controls, only: implicit_scheme
@@ -97,15 +97,6 @@ contains
       change = change - values
    end subroutine find_change_by_refinement
 
-   !> The step as the estimate takes it, in the equilibrium of heat.
-   pure function implicit_step(step)
-      type(step_type), intent(in) :: step
-      type(step_type) :: implicit_step
-
-      implicit_step = companion_step(step)
-      implicit_step%scheme = implicit_scheme
-   end function implicit_step
-
    !> Prolongs the solution on the old mesh, brought to the equilibrium of heat.
    !> Error: it has no solution there.
    subroutine begin(refined, simulation, model, clock, previous, fields, error)
@@ -116,7 +107,6 @@ contains
       type(solution_state_type), intent(in) :: previous
       type(corrected_type), intent(out) :: fields
       type(error_type), allocatable, intent(out) :: error
-      type(increment_workspace_type) :: workspace
 
       associate (step => model%steps(simulation%control%step), loads => simulation%loads, &
          bodies => simulation%bodies)
@@ -139,13 +129,9 @@ contains
             fields%conduction = refined%conduction_with(fields%film)
             call bodies%set_film(simulation%state%film, model, error)
             if (allocated(error)) return
-         end if
-         if (solves_heat(step%analysis) .and. has_memory(step%scheme)) then
-            call solve_points(bodies, loads, implicit_step(step), previous, workspace, &
-               fields%coarse, error)
+            if (has_memory(step%scheme)) call implicit_state(simulation, model, &
+               implicit_step(step), previous, fields%coarse, error)
             if (allocated(error)) return
-            call recover_fields(bodies, loads, implicit_step(step), workspace, previous, &
-               fields%coarse)
          end if
       end associate
       fields%displacement = refined%prolong(fields%coarse%displacement, 2)

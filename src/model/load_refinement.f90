@@ -1,12 +1,13 @@
 !> Loads of a model that is refined: on a face they go to the two children at it, on an element to
-!> all four; those on nodes stay there, but for temperatures, which have values at new nodes too.
+!> all four; those on nodes stay there, but for temperatures and prescribed values, which new nodes
+!> have too.
 module load_refinement
    use element_kinds, only: element_corner_count
    use kinds, only: dp
    use mesh_division, only: child_element, division_type, refined_members
-   use steps, only: load_body_force, load_body_heat, load_centrifugal, load_face_heat, &
-      load_film_coefficient, load_film_sink, load_force, load_gravity, load_nodal_heat, &
-      load_pressure, load_temperature, load_traction, load_type, step_type
+   use steps, only: boundary_type, load_body_force, load_body_heat, load_centrifugal, &
+      load_face_heat, load_film_coefficient, load_film_sink, load_force, load_gravity, &
+      load_nodal_heat, load_pressure, load_temperature, load_traction, load_type, step_type
    implicit none
    private
    public :: refine_loads
@@ -22,6 +23,7 @@ contains
       integer :: s
 
       do s = 1, size(steps)
+         if (allocated(steps(s)%boundaries)) call add_boundaries(division, steps(s)%boundaries)
          if (.not. allocated(steps(s)%loads)) cycle
          call refine_step(division, kinds, steps(s)%loads, refined)
          call move_alloc(refined, steps(s)%loads)
@@ -105,13 +107,56 @@ contains
             members(loads(i)%item) = .true.
             waiting(i) = .false.
          end do
-         values = division%weights%multiply(values)
-         members = refined_members(division, members)
-         members(:division%nodes) = .false.
+         call spread_over_sides(division, values, members)
          call append(pack([(node, node=1, size(members))], members), values, loads(first), added)
          deallocate(values, members)
       end do
    end subroutine add_temperatures
+
+   !> Prescribed values of the new nodes, likewise.
+   subroutine add_boundaries(division, boundaries)
+      type(division_type), intent(in) :: division
+      type(boundary_type), allocatable, intent(inout) :: boundaries(:)
+      type(boundary_type), allocatable :: added(:), more(:)
+      logical, allocatable :: waiting(:), members(:)
+      real(dp), allocatable :: values(:)
+      integer, allocatable :: nodes(:)
+      integer :: first, i, node
+
+      allocate(waiting(size(boundaries)), source=.true.)
+      allocate(added(0))
+      do while (any(waiting))
+         first = findloc(waiting, .true., dim=1)
+         allocate(values(division%nodes), source=0.0_dp)
+         allocate(members(division%nodes), source=.false.)
+         do i = first, size(boundaries)
+            if (boundaries(i)%dof /= boundaries(first)%dof) cycle
+            if (boundaries(i)%amplitude /= boundaries(first)%amplitude) cycle
+            values(boundaries(i)%node) = boundaries(i)%value
+            members(boundaries(i)%node) = .true.
+            waiting(i) = .false.
+         end do
+         call spread_over_sides(division, values, members)
+         nodes = pack([(node, node=1, size(members))], members)
+         allocate(more(size(nodes)), source=boundaries(first))
+         more%node = nodes
+         more%value = values(nodes)
+         added = [added, more]
+         deallocate(values, members, more)
+      end do
+      boundaries = [boundaries, added]
+   end subroutine add_boundaries
+
+   !> Values at the new nodes of sides and elements whose nodes all have one.
+   subroutine spread_over_sides(division, values, members)
+      type(division_type), intent(in) :: division
+      real(dp), allocatable, intent(inout) :: values(:)   ! (nodes), then of the divided mesh
+      logical, allocatable, intent(inout) :: members(:)   ! likewise; which have one, then new ones
+
+      values = division%weights%multiply(values)
+      members = refined_members(division, members)
+      members(:division%nodes) = .false.
+   end subroutine spread_over_sides
 
    subroutine append(nodes, values, like, loads)
       integer, intent(in) :: nodes(:)

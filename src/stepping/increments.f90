@@ -50,6 +50,7 @@ module increments
       real(dp) :: runaway_time = 0.0_dp             !! where this attempt would have ended [time]
    contains
       procedure :: start
+      procedure :: enter_step
       procedure :: assemble
       procedure :: reduce
       procedure :: finished
@@ -81,8 +82,9 @@ contains
    end subroutine start
 
    !> Enters the next step.
+   !> Errors: as reduced_bodies' number.
    subroutine enter_step(self, model, error)
-      class(simulation_type), intent(inout) :: self
+      class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
 

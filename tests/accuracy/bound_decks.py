@@ -2,7 +2,7 @@
 geometry and loads are drawn at random with a fixed seed."""
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +60,20 @@ def known_decks():
 def all_decks():
     """Return the known decks, then those of the seeds."""
     return known_decks() + [drawn_deck(seed) for seed in SEEDS]
+
+
+def mismatched_deck(seed):
+    """Return the drawn deck with mortar points: nodes of the base moved along x, by a power that is drawn,
+    so that they lie beside those of the other body. Not for rings."""
+    deck, power = drawn_deck(seed), np.random.default_rng(1000 + seed).uniform(0.88, 1.15)
+    cards, is_base = [], False
+    for card in deck.text.replace("PAIRING=NODES", "PAIRING=SURFACES").splitlines():
+        is_base = card == "*NODE, NSET=BASE" or is_base and not card.startswith("*")
+        if is_base and not card.startswith("*"):
+            number, x, y = card.split(",")
+            card = f"{number}, {make_decks.WIDTH * (float(x) / make_decks.WIDTH) ** power:.12g},{y}"
+        cards.append(card)
+    return replace(deck, name=f"{deck.name}, mortar", text="\n".join(cards) + "\n")
 
 
 def log_uniform(draw, low, high):

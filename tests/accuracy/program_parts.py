@@ -61,8 +61,8 @@ PARTS = {
                                   "unconstrained_motions"},
     "films": {"films", "loads:film_matrix", "loads:integrate_films"},
     "estimated errors": {
-        "companion_steps", "doubled_increments", "error_estimator", "interface_quantities", "linked_relaxation",
-        "mesh_bounds", "refined_model", "refined_points", "refinement_error", "value_courses",
+        "companion_steps", "divided_faces", "doubled_increments", "error_estimator",
+        "interface_quantities", "linked_relaxation", "mesh_bounds", "refined_model", "refined_points", "refinement_error", "value_courses",
     },
     "refinement": {"child_elements", "hanging_nodes", "load_refinement", "local_refinement",
                    "mesh_division", "refinement"},

@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import held_bounds
 import numpy as np
-from bound_decks import FITTED, SEEDS, all_decks, drawn_deck
+from bound_decks import FITTED, SEEDS, all_decks, drawn_deck, mismatched_deck
 from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT, solve
 from instructions import profile
 from program_parts import PARTS
@@ -40,10 +40,19 @@ each step: value, bound, and the parts of the bound by mesh, increments and iter
   increments of twice the size is solved in parallel on the contact points alone. The bound is the
   difference.
 - **Iteration.** Residual of the fixed point over the distance of the coupling gain from 1.
-- **Uncertain.** No bound is given with ties, equations and faces whose nodes do not match, because the
-  finer mesh cannot be relaxed there, and for a single increment with friction. Listing and summary say
-  *uncertain*, the result file NaN. Where a pressure grows without limit as the mesh is refined, at the
-  corner of a punch, no error of it is finite; the bound is only large.
+- **Mortar points and ties.** With them the finer mesh is not relaxed but solved: only the elements
+  at the faces are divided, so its factors take little, and the last increment of a step is solved
+  there. That changes contact quantities as much as dividing all elements does, and counts three
+  times. The spacing of friction and edges is that of the slave's nodes, and an edge of contact is
+  taken to be four times as far off as that of node pairs. On 13 decks whose faces do not match
+  (`mismatched_deck`), against meshes refined four times at the faces with the same increments, these
+  bounds hold in 98 % of 48 forces, 100 % of 39 shear forces, 94 % of 33 heat rates and 100 % of 48
+  peak pressures, 48 edges of contact and 38 of stick; the medians of bound over error are 3.6, 8.3,
+  2.9, 4.3, 3.4 and 3.8.
+- **Uncertain.** No bound is given with equations, couplings and transformed axes, because the finer
+  mesh has nodes that they do not name, and for a single increment with friction. Listing and summary
+  say *uncertain*, the result file NaN. Where a pressure grows without limit as the mesh is refined, at
+  the corner of a punch, no error of it is finite; the bound is only large.
 
 The constants were fitted to one part of the decks below; the others are kept aside and judge them.
 Decks with a number have materials, friction, geometry and loads drawn at random
@@ -246,6 +255,20 @@ def test_bounds_of_decks_kept_aside_hold_as_the_document_tells(tmp_path):
         known = [row for row in missed if row["deck"] == deck.name and row["refinements"] != "2"]
         found = [[str(cell) for cell in row[:5]] for row in misses(cases).rows]
         assert found == [list(row.values())[:5] for row in known]
+
+
+def test_bounds_of_mortar_points_hold_on_faces_that_do_not_match(tmp_path):
+    """Against a finer mesh with the same increments: at most one of all bounds does not hold."""
+    cases = []
+    for seed in (4, 5, 7):
+        deck = mismatched_deck(seed)
+        with h5py.File(held_bounds.run(deck, 1, 1, tmp_path)) as file:
+            times = file["errors/time"][:]
+        exact = held_bounds.values_of(deck, held_bounds.FINE, 1, times, tmp_path)
+        cases += held_bounds.judged(deck, tmp_path, (0, 1), (1,), exact)
+    assert len(cases) > 20 and not any(case.is_uncertain for case in cases)
+    assert sum(not case.is_held for case in cases) < 2
+    assert np.median([case.bound / abs(case.error) for case in cases]) < 10
 
 
 def test_the_document_counts_right():
