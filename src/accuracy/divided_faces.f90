@@ -10,6 +10,7 @@ module divided_faces
    use contact_states, only: contact_open
    use errors, only: error_type
    use increments, only: simulation_type
+   use initial_state, only: make_initial_state
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
    use load_histories, only: step_clock_type
@@ -39,8 +40,8 @@ module divided_faces
 
 contains
 
-   !> Divides the elements.
-   !> Errors: as simulation_type's start.
+   !> Divides the elements, and prepares what solving increments takes of a run.
+   !> Errors: as reduced_bodies' prepare.
    subroutine start(self, model, error)
       class(divided_faces_type), intent(inout) :: self    !! fresh
       type(model_type), intent(in) :: model
@@ -60,8 +61,12 @@ contains
       self%model = model
       call refine_chosen(self%model, chosen)
       call find_bodies(self%model%mesh)
-      call self%run%start(self%model, error)
-      if (.not. allocated(error)) self%initial = self%run%state
+      call self%run%bodies%prepare(self%model, error)
+      if (allocated(error)) return
+      call self%run%loads%prepare(self%model)
+      call self%run%bodies%points%enter_step(self%model, 1)
+      self%initial = make_initial_state(self%model, self%run%bodies)
+      self%run%state = self%initial
    end subroutine start
 
    !> Enters a step as the run did.
