@@ -194,7 +194,7 @@ def in_a_later_round(folder, seconds):
     """Start a run whose later rounds take seconds; return it so long after the first one."""
     deck = copy_deck(CYLINDER, folder / "deck.inp", ["*REFINE, LEVELS=1"])
     process = subprocess.Popen(
-        [PROGRAM, "run", "--accuracy", "0.05%", deck, "--out", folder], text=True,
+        [PROGRAM, "run", "--accuracy", "0.01%", deck, "--out", folder], text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     listing, until = folder / "deck.lst", time.monotonic() + 60.0
     while not (listing.exists() and "REQUESTED ACCURACY" in listing.read_text()):
@@ -204,7 +204,7 @@ def in_a_later_round(folder, seconds):
     return process
 
 
-@pytest.mark.parametrize("seconds", [0.0, 0.3, 1.0, 1.6, 2.5])
+@pytest.mark.parametrize("seconds", [0.0, 0.3, 1.2])
 def test_a_signal_in_a_later_round_keeps_the_last_whole_one(tmp_path, seconds):
     """Wherever it comes: while the next round is prepared, reduced, or solved."""
     process = in_a_later_round(tmp_path, seconds)
@@ -255,7 +255,7 @@ def test_a_later_round_without_memory_keeps_the_last_whole_one(tmp_path):
     assert kept, "no limit ends a later round"
 
 
-@pytest.mark.parametrize("seconds", [0.0, 0.5, 1.0, 1.5, 2.0])
+@pytest.mark.parametrize("seconds", [0.0, 0.5, 1.2])
 def test_memory_that_runs_out_in_a_later_round_keeps_the_last_whole_one(tmp_path, seconds):
     """As where others take it meanwhile, which no estimate can foresee."""
     process = in_a_later_round(tmp_path, seconds)
