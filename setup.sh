@@ -225,25 +225,26 @@ run_ctest() {
 
 # The tests on the program as users have it come last, so that their summary closes the output; before
 # that the sources, and the unit tests and the cylinder with run-time checks. Unit tests run with these
-# checks only: to compile them once more would take as long as most of the tests below. Python
-# packages, most of whose time is that of the network, are installed during the first build.
+# checks only: to compile them once more would take as long as most of the tests below. Both programs
+# are built side by side, and the Python packages, most of whose time is that of the network, are
+# installed meanwhile: neither keeps all processors busy.
 run_test() {
-   local status=0 installed
+   local status=0 job jobs=()
    install_packages "${build_packages[@]}" "${test_packages[@]}"
    trap wait EXIT
    install_python_packages &
-   installed=($!)
+   jobs+=($!)
    make_venv "$build/sweep" "${sweep_requirements[@]}" & # Snakemake, for the test of input/sweep
-   installed+=($!)
+   jobs+=($!)
+   build_preset release thercon &
+   jobs+=($!)
    build_preset debug
-   wait "${installed[0]}"
-   wait "${installed[1]}"
-   build_preset release thercon & # the check of the sources keeps one processor busy
-   local built=$!
+   for job in "${jobs[@]}"; do
+      wait "$job"
+   done
    run_lint || status=1
    say "tests with run-time checks"
    run_ctest debug --label-regex 'unit|standin|memory' || status=1
-   wait "$built"
    ((status == 0)) || say "something above has failed"
    say "tests on the program"
    run_ctest release --label-exclude 'unit|standin' || status=1
