@@ -1,5 +1,6 @@
 """CMake takes what it is told, and the shared libraries of HDF5 unless archives are asked for."""
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -43,3 +44,10 @@ def test_archives_of_hdf5_are_linked_where_that_is_asked_for_and_works(tmp_path)
     failing = configure(tmp_path / "failing", "-DFortranHDF5_PREFER_ARCHIVES=ON",
                         "-DFortranHDF5_ARCHIVES_LINK=NO")
     assert shared in failing and archive not in failing
+
+
+def test_the_program_looks_for_no_library_in_the_working_folder(default):
+    """An empty entry of the path stands for that folder."""
+    paths = re.findall(r"-Wl,-rpath,([^\s\"]*)", default)
+    assert all(Path(entry).is_absolute() for path in paths for entry in path.split(":")), paths
+    assert paths
