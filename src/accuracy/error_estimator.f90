@@ -103,7 +103,7 @@ contains
             self%stuck(i) = max(self%stuck(i), stuck_forces(points, contact))
          end associate
       end do
-      call self%courses%follow(record%increment_in_step == 1, values)
+      call self%courses%follow(record%increment_in_step == 1, record%time, values)
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
       call store(values, record%errors)

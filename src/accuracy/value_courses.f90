@@ -8,13 +8,12 @@ module value_courses
 
    integer, parameter :: needed = 9                !! values that tell a scatter
    integer, parameter :: kept = 2*needed - 1       !! as many of every second increment
-   !> Standard deviation of the fourth difference of independent values, over theirs.
-   real(dp), parameter :: of_difference = sqrt(70.0_dp)
 
    !> The quantities of all interfaces at the last increments of a step.
    type :: value_courses_type
       private
-      !> (kept, quantities, interfaces) the newest last; NaN before the step
+      real(dp) :: time(kept) = 0.0_dp              !! ends of the increments, the newest last
+      !> (kept, quantities, interfaces) likewise; NaN before the step
       real(dp), allocatable :: values(:, :, :)
    contains
       procedure :: follow
@@ -24,14 +23,16 @@ module value_courses
 contains
 
    !> Takes the values at the end of an increment.
-   pure subroutine follow(self, begins_step, values)
+   pure subroutine follow(self, begins_step, time, values)
       class(value_courses_type), intent(inout) :: self
       logical, intent(in) :: begins_step          !! whether it is the first of a step
+      real(dp), intent(in) :: time                !! that end [time]
       real(dp), intent(in) :: values(:, :)        !! (quantities, interfaces)
 
       if (.not. allocated(self%values)) allocate (self%values(kept, size(values, 1), &
          size(values, 2)))
       if (begins_step) self%values = ieee_value(1.0_dp, ieee_quiet_nan)
+      self%time = [self%time(2:), time]
       self%values(:kept - 1, :, :) = self%values(2:, :, :)
       self%values(kept, :, :) = values
    end subroutine follow
@@ -44,32 +45,49 @@ contains
       integer :: q
 
       do q = 1, size(scatter)
-         scatter(q) = scatter_of(self%values(:, q, interface))
+         scatter(q) = scatter_of(self%time, self%values(:, q, interface))
       end do
    end function scatter
 
    !> How much the last values scatter about a smooth course. Increments so short that an edge of
    !> contact passes a node only in several of them tell it over every second one.
-   pure real(dp) function scatter_of(values)
-      real(dp), intent(in) :: values(:)   !! (17) the newest last; NaN where there is none
+   pure real(dp) function scatter_of(time, values)
+      real(dp), intent(in) :: time(:)     !! (17) the newest last [time]
+      real(dp), intent(in) :: values(:)   !! (17) likewise; NaN where there is none
       real(dp) :: longer
 
-      scatter_of = deviation(values(needed:))
-      longer = deviation(values(::2))
+      scatter_of = deviation(time(needed:), values(needed:))
+      longer = deviation(time(::2), values(::2))
       if (.not. ieee_is_nan(longer)) scatter_of = max(scatter_of, longer)
    end function scatter_of
 
-   !> The standard deviation that fourth differences tell, in which a cubic course vanishes.
-   pure real(dp) function deviation(values)
-      real(dp), intent(in) :: values(:)
-      real(dp) :: difference(size(values) - 4)
+   !> The standard deviation that fourth divided differences tell, in which a course that is cubic
+   !> in time vanishes, whatever the increments; NaN where a value is missing.
+   pure real(dp) function deviation(time, values)
+      real(dp), intent(in) :: time(:), values(:)
+      real(dp) :: difference(size(values) - 4), weight(5)
       integer :: k
 
+      deviation = ieee_value(1.0_dp, ieee_quiet_nan)
+      if (any(ieee_is_nan(values))) return
       do k = 1, size(difference)
-         difference(k) = values(k) - 4*values(k + 1) + 6*values(k + 2) - 4*values(k + 3) + &
-            values(k + 4)
+         weight = difference_weights(time(k:k + 4))
+         ! Of independent values the difference has norm2(weight) times their standard deviation.
+         difference(k) = dot_product(weight, values(k:k + 4) - values(k + 4))/norm2(weight)
       end do
-      deviation = sqrt(sum(difference**2)/size(difference))/of_difference
+      deviation = sqrt(sum(difference**2)/size(difference))
    end function deviation
+
+   !> Weights of the values in their divided difference, but for a factor.
+   pure function difference_weights(time) result(weight)
+      real(dp), intent(in) :: time(5)
+      real(dp) :: weight(5)
+      integer :: i, j
+
+      do i = 1, 5
+         weight(i) = product([(time(5) - time(1), j=1, i - 1), (time(5) - time(1), j=i + 1, 5)]/ &
+            [(time(i) - time(j), j=1, i - 1), (time(i) - time(j), j=i + 1, 5)])
+      end do
+   end function difference_weights
 
 end module value_courses
