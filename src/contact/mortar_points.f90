@@ -4,7 +4,7 @@
 module mortar_points
    use chain_geometry, only: arc_lengths, edge_lengths
    use contact_definitions, only: pairing_surfaces
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, small_offset
    use edge_segments, only: edge_segments_of, hats_of
    use face_interpolation, only: interpolate_on_faces
    use kinds, only: dp
@@ -75,6 +75,9 @@ contains
       allocate (points%master_node, mold=points%slave_node)
       if (size(kept) > 0 .and. .not. master%closed) points%to_end = ends_beyond(mesh%coordinates( &
          :, master%nodes([1, size(master%nodes)])), points)
+      if (size(kept) > 0 .and. .not. slave%closed) points%at_corner = master%closed .or. &
+         ends_apart(mesh%coordinates(:, slave%nodes([1, size(slave%nodes)])) - &
+         mesh%coordinates(:, master%nodes([1, size(master%nodes)])), points)
       do c = 1, size(kept)
          points%master_node(c) = master%nodes(minloc(norm2(mesh%coordinates(:, master%nodes) - &
             spread(points%position(:, c), 2, size(master%nodes)), dim=1), dim=1))
@@ -212,6 +215,18 @@ contains
       distance = max(0.0_dp, [dot_product(points%tangent(:, 1), points%position(:, 1) - &
          ends(:, 1)), dot_product(points%tangent(:, m), ends(:, 2) - points%position(:, m))])
    end function ends_beyond
+
+   !> Whether the faces end at different places, as a punch on a wider body.
+   pure function ends_apart(apart, points) result(are_apart)
+      real(dp), intent(in) :: apart(2, 2)              ! slave's ends less master's [length]
+      type(contact_points_type), intent(in) :: points
+      logical :: are_apart(2)
+
+      associate (last => [1, size(points%slave_node)])
+         are_apart = abs(sum(points%tangent(:, last)*apart, dim=1)) > small_offset* &
+            points%edge(last)
+      end associate
+   end function ends_apart
 
    !> Mean distance of master and slave along the normals.
    pure function initial_gaps(points, x) result(gap)

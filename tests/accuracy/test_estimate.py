@@ -51,8 +51,9 @@ each step: value, bound, and the parts of the bound by mesh, increments and iter
   2.9, 4.3, 3.4 and 3.8.
 - **Uncertain.** No bound is given with equations, couplings and transformed axes, because the finer
   mesh has nodes that they do not name, and for a single increment with friction. Listing and summary
-  say *uncertain*, the result file NaN. Where a pressure grows without limit as the mesh is refined, at
-  the corner of a punch, no error of it is finite; the bound is only large.
+  say *uncertain*, the result file NaN. At a corner, where one face ends and the other goes on, the
+  pressure of a punch grows without limit as the mesh is refined: no error of it is finite. With mortar
+  points a peak there is uncertain; with node pairs the bound is only large.
 
 The constants were fitted to one part of the decks below; the others are kept aside and judge them.
 Decks with a number have materials, friction, geometry and loads drawn at random
