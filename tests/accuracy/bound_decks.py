@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT
+from test_mortar_curved import cylinder, hertz
 
 sys.path.insert(0, str(INPUT / "cylinder"))
 
@@ -17,6 +18,7 @@ FINE, HEIGHT = make_decks.FINE, make_decks.HEIGHT
 FAMILIES = ("plane", "ball", "ring", "punch")
 SEEDS = range(20)
 FITTED = range(16)   # of these every second one of a family chose the constants
+MISMATCHED = [seed for seed in range(20, 52) if FAMILIES[seed % len(FAMILIES)] != "ring"]
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,19 @@ def mismatched_deck(seed):
             card = f"{number}, {make_decks.WIDTH * (float(x) / make_decks.WIDTH) ** power:.12g},{y}"
         cards.append(card)
     return replace(deck, name=f"{deck.name}, mortar", text="\n".join(cards) + "\n")
+
+
+def mismatched_decks():
+    """Return the decks with mortar points on which no constant was chosen: those of seeds, then the
+    published cylinder with 30 sides on 22 and Hertz with 3 on 2, each face as the slave."""
+    decks = [mismatched_deck(seed) for seed in MISMATCHED]
+    for slave in ("CYLINDER", "BASE"):
+        decks.append(BoundDeck(f"cylinder 30 to 22, slave {slave}", "\n".join(cylinder(30, 22, slave))
+                               + "\n", "FACE", False, True))
+    for slave, sides in (("CURVED", (24, 16)), ("FLAT", (16, 24))):
+        decks.append(BoundDeck(f"Hertz 3 to 2, slave {slave}", "\n".join(hertz(*sides, slave)[0]) + "\n",
+                               "FACE", False, False))
+    return decks
 
 
 def log_uniform(draw, low, high):

@@ -51,8 +51,11 @@ class Case:
 
 def run(deck, level, part, folder, estimates=True):
     """Solve a deck with other elements and increments; return the result file."""
-    slave = re.search(r"^\*CONTACT PAIR.*\n([^,\n]+)", deck.text, re.M)[1].strip()
-    cards = {0: [], FINE: ["*REFINE, LEVELS=2", f"*REFINE, LEVELS=2, SURFACE={slave}"]}.get(
+    pair, faces = re.search(r"^(\*CONTACT PAIR.*)\n(.+)", deck.text, re.M).groups()
+    # The faces of node pairs are divided together, those of mortar points each for itself.
+    divided = faces.split(",")[:2 if "PAIRING=SURFACES" in pair else 1]
+    cards = {0: [], FINE: ["*REFINE, LEVELS=2", *(f"*REFINE, LEVELS=2, SURFACE={face.strip()}"
+                                                  for face in divided)]}.get(
         level, [f"*REFINE, LEVELS={level}"])
     cards.append(f"*OPTIONS, ERRORS={'YES' if estimates else 'NO'}")
     text = re.sub(r"^\*REFINE.*\n", "", deck.text.split("*VERIFY")[0], flags=re.M)
@@ -118,3 +121,11 @@ def judged(deck, folder, levels=LEVELS, parts=PARTS, told=None):
                         cases.append(Case(deck.name, deck.is_fitted, level, part, step, quantity, true,
                                           true - value, row[1]))
     return cases
+
+
+def judged_with_same_increments(deck, folder, levels=LEVELS):
+    """Return the cases of a deck as written, with the values of the finer mesh with the same increments
+    as the converged ones."""
+    with h5py.File(run(deck, 0, 1, folder)) as file:
+        times = file["errors/time"][:]
+    return judged(deck, folder, levels, (1,), values_of(deck, FINE, 1, times, folder))

@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import held_bounds
 import numpy as np
-from bound_decks import FITTED, SEEDS, all_decks, drawn_deck, mismatched_deck
+from bound_decks import FITTED, SEEDS, all_decks, drawn_deck, mismatched_deck, mismatched_decks
 from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT, solve
 from instructions import profile
 from program_parts import PARTS
@@ -44,11 +44,12 @@ each step: value, bound, and the parts of the bound by mesh, increments and iter
   at the faces are divided, so its factors take little, and the last increment of a step is solved
   there. That changes contact quantities as much as dividing all elements does, and counts three
   times. The spacing of friction and edges is that of the slave's nodes, and an edge of contact is
-  taken to be four times as far off as that of node pairs. On 13 decks whose faces do not match
-  (`mismatched_deck`), against meshes refined four times at the faces with the same increments, these
-  bounds hold in 98 % of 48 forces, 100 % of 39 shear forces, 94 % of 33 heat rates and 100 % of 48
-  peak pressures, 48 edges of contact and 38 of stick; the medians of bound over error are 3.6, 8.3,
-  2.9, 4.3, 3.4 and 3.8.
+  taken to be four times as far off as that of node pairs. These two factors were chosen on decks of
+  seeds below 20 with faces that do not match (`mismatched_deck`). The decks of seeds 20 to 51, the
+  published cylinder with 30 sides on 22 and Hertz with 3 on 2 are kept aside. The same increments mean
+  that true errors are those to a mesh refined four times at both faces, without the error of the
+  increments; with shorter ones the drawn decks are judged as node pairs are. With the same increments
+  only forces miss the goal of 95 %, with shorter ones all but heat rates and edges of contact.
 - **Uncertain.** No bound is given with equations, couplings and transformed axes, because the finer
   mesh has nodes that they do not name, and for a single increment with friction. Listing and summary
   say *uncertain*, the result file NaN. At a corner, where one face ends and the other goes on, the
@@ -81,6 +82,9 @@ FINEST_PARTS = 8
 LATE = {drawn_deck(seed).name for seed in SEEDS if seed not in FITTED}
 DECKS = {"chosen on": lambda case: case.is_fitted, "kept aside": lambda case: not case.is_fitted,
          "of these from 16 on": lambda case: case.deck in LATE, "all": lambda case: True}
+MORTAR = {"drawn": lambda case: "mortar" in case.deck,
+          "cylinder 30 to 22": lambda case: "cylinder" in case.deck,
+          "Hertz 3 to 2": lambda case: "Hertz" in case.deck}
 ANALYSIS = re.compile(r"^(\*(?:STATIC|COUPLED|HEAT).*\n)\s*([0-9.eE+-]+)", re.M | re.I)
 
 
@@ -167,19 +171,31 @@ def told_value(value):
     return "-" if np.isnan(value) else f"{value:.10g}"
 
 
-def shares(cases):
-    """Return the table of how many bounds hold."""
-    table = Table("Bounds that hold", ["quantity", "decks", "cases", "uncertain", "hold", "% hold",
-                                       "median of bound/error"])
-    for name, title in held_bounds.QUANTITIES.items():
-        for decks, is_in in DECKS.items():
-            some = [case for case in cases if case.quantity == name and is_in(case)]
+def shares(cases, name="Bounds that hold", groups=DECKS):
+    """Return the table of how many bounds hold, of groups of decks."""
+    table = Table(name, ["quantity", "decks", "cases", "uncertain", "hold", "% hold",
+                         "median of bound/error"])
+    for quantity, title in held_bounds.QUANTITIES.items():
+        for decks, is_in in groups.items():
+            some = [case for case in cases if case.quantity == quantity and is_in(case)]
             known = [case for case in some if not case.is_uncertain]
+            if not known:
+                continue
             held = sum(case.is_held for case in known)
             median = np.median([case.bound / abs(case.error) for case in known])
             table.rows.append([title, decks, len(some), len(some) - len(known), held,
                                f"{100 * held / len(known):.0f}", f"{median:.1f}"])
     return table
+
+
+def mismatched(folder):
+    """Return the tables of how many bounds hold on faces that do not match, against the finer mesh with
+    the same increments and with shorter ones."""
+    decks = mismatched_decks()
+    same = [case for deck in decks for case in held_bounds.judged_with_same_increments(deck, folder)]
+    drawn = [case for deck in decks if "mortar" in deck.name for case in held_bounds.judged(deck, folder)]
+    return [shares(same, "Faces that do not match, same increments", MORTAR),
+            shares(drawn, "Faces that do not match, shorter increments", MORTAR)]
 
 
 def misses(cases):
@@ -230,7 +246,7 @@ def tables(folder):
     """Run all decks; return shares, misses, costs and converged values."""
     decks = all_decks()
     cases = [case for deck in decks for case in held_bounds.judged(deck, folder)]
-    return [shares(cases), misses(cases), costs(folder), converged_table(decks, folder),
+    return [shares(cases), misses(cases), *mismatched(folder), costs(folder), converged_table(decks, folder),
             five_decks(folder)]
 
 
@@ -262,11 +278,7 @@ def test_bounds_of_mortar_points_hold_on_faces_that_do_not_match(tmp_path):
     """Against a finer mesh with the same increments: at most one of all bounds does not hold."""
     cases = []
     for seed in (4, 5, 7):
-        deck = mismatched_deck(seed)
-        with h5py.File(held_bounds.run(deck, 1, 1, tmp_path)) as file:
-            times = file["errors/time"][:]
-        exact = held_bounds.values_of(deck, held_bounds.FINE, 1, times, tmp_path)
-        cases += held_bounds.judged(deck, tmp_path, (0, 1), (1,), exact)
+        cases += held_bounds.judged_with_same_increments(mismatched_deck(seed), tmp_path, (0, 1))
     assert len(cases) > 20 and not any(case.is_uncertain for case in cases)
     assert sum(not case.is_held for case in cases) < 2
     assert np.median([case.bound / abs(case.error) for case in cases]) < 6
