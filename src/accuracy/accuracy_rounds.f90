@@ -66,7 +66,7 @@ module accuracy_rounds
    type :: accuracy_rounds_type
       logical :: is_on = .false.                             !! whether anything is requested
       logical :: goes_on = .false.                           !! whether another round follows
-      logical :: has_checks = .false.                        !! whether round 1 judged *VERIFY cards
+      integer :: checks_passed = 0, checks_failed = 0        !! *VERIFY checks, judged in round 1
       type(demand_type), allocatable :: demands(:)
       type(accuracy_round_type), allocatable :: rounds(:)    !! the last is the present one
       real(dp), allocatable :: largest(:)                    !! (demands) largest scale so far

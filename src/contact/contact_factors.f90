@@ -1,6 +1,6 @@
-!> Factors of the rows of an active set (contact_system). From set to set only a few rows change. Let
-!> M be the matrix of all rows of the tail, those that are not sought being sigma_i d_i = 0. Another
-!> set has
+!> Factors of the rows of an active set (contact_system). From set to set only a few rows change.
+!> Let M be the matrix of all rows of the tail, those that are not sought being sigma_i d_i = 0.
+!> Another set has
 !>
 !>    M + E D,   E the unit columns of the changed rows, D their differences,
 !>

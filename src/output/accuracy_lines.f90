@@ -33,7 +33,8 @@ contains
       do d = 1, size(accuracy%demands)
          call append(lines, target_words(accuracy, d, interfaces))
       end do
-      if (size(accuracy%rounds) > 1 .and. accuracy%has_checks) call append(lines, &
+      if (size(accuracy%rounds) > 1 .and. accuracy%checks_passed + &
+         accuracy%checks_failed > 0) call append(lines, &
          '   the *VERIFY checks were judged in round 1, on the deck as written')
       call append(lines, '   round   CPU seconds    unknowns    elements  increments  '// &
          'largest bound/target')

@@ -266,9 +266,9 @@ contains
       if (allocated(error)) return
       allocate (lines(0), missed(0))
       call add_missed(run%accuracy, interfaces, missed)
-      call append(lines, ending(allocated(self%failure), self%summary%increment, verifier, &
-         size(missed)))
-      call append(lines, checks(verifier))
+      call append(lines, ending(allocated(self%failure), self%summary%increment, &
+         run%verify_failed, size(missed)))
+      call append(lines, checks(verifier, run))
       call append(lines, warnings_below(size(warnings)))
       call self%summary%add_lines(model, interfaces, lines)
       block = summary_block(lines, size(interfaces))

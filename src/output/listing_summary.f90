@@ -1,6 +1,7 @@
 !> The summary at the head of the listing.
 module listing_summary
    use listing_text, only: page_width
+   use run_summaries, only: run_summary_type
    use summary, only: summary_type
    use text, only: counted, string_type, to_text
    use verification, only: verifier_type
@@ -13,29 +14,33 @@ module listing_summary
 contains
 
    !> How the run ended.
-   pure function ending(has_failed, increments, verifier, missed) result(line)
+   pure function ending(has_failed, increments, failed_checks, missed) result(line)
       logical, intent(in) :: has_failed          !! whether it ended early
       integer, intent(in) :: increments          !! accepted ones
-      type(verifier_type), intent(in) :: verifier
+      integer, intent(in) :: failed_checks
       integer, intent(in) :: missed              !! targets of accuracy that are not met
       character(:), allocatable :: line
 
       line = 'solved'
       if (missed > 0) line = 'accuracy not reached'
-      if (verifier%failed_count() > 0) line = 'check failed'
+      if (failed_checks > 0) line = 'check failed'
       line = line//', '//counted(increments, 'increment')
       if (has_failed) line = 'ended early after '//counted(increments, 'increment')// &
          ', see ENDED EARLY below'
    end function ending
 
    !> How many checks passed.
-   pure function checks(verifier) result(line)
-      type(verifier_type), intent(in) :: verifier
+   pure function checks(verifier, run) result(line)
+      type(verifier_type), intent(in) :: verifier  !! of this round
+      type(run_summary_type), intent(in) :: run
       character(:), allocatable :: line
 
       line = 'no *VERIFY checks'
-      if (size(verifier%outcomes) > 0) line = counted(verifier%passed_count(), 'check')// &
-         ' passed, '//to_text(verifier%failed_count())//' failed'
+      if (run%verify_passed + run%verify_failed > 0) then
+         line = counted(run%verify_passed, 'check')//' passed, '//to_text(run%verify_failed)// &
+            ' failed'
+         if (size(verifier%outcomes) == 0) line = line//' in round 1'
+      end if
       if (verifier%unjudged_count() > 0) line = line//', '// &
          to_text(verifier%unjudged_count())//' not judged'
    end function checks

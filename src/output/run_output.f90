@@ -164,8 +164,14 @@ contains
       real(dp) :: since
 
       since = wall_seconds()
-      self%run%verify_passed = self%verifier%passed_count()
-      self%run%verify_failed = self%verifier%failed_count()
+      associate (accuracy => self%run%accuracy)
+         if (size(self%verifier%outcomes) > 0) then
+            accuracy%checks_passed = self%verifier%passed_count()
+            accuracy%checks_failed = self%verifier%failed_count()
+         end if
+         self%run%verify_passed = accuracy%checks_passed
+         self%run%verify_failed = accuracy%checks_failed
+      end associate
       call self%results%finish(model, interfaces, self%run, self%failed, error)
       if (allocated(error)) then
          call self%break_off(error%message)

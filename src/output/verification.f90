@@ -130,8 +130,8 @@ contains
          words = words//'expected '//to_text(check%value)//', but '//outcome%reason
       else if (check%relative .and. abs(check%value) > 0.0_dp) then
          words = words//to_text(outcome%found)//bound_words(outcome)//', expected '// &
-            to_text(check%value)//' (off by '//percent(outcome%deviation, digits=6)//', allowed '// &
-            percent(check%tolerance, digits=6)//')'
+            to_text(check%value)//' (off by '//percent(outcome%deviation, digits=6)// &
+            ', allowed '//percent(check%tolerance, digits=6)//')'
       else
          words = words//to_text(outcome%found)//bound_words(outcome)//', expected '// &
             to_text(check%value)//' (off by '//to_text(outcome%deviation)//', allowed '// &

@@ -300,7 +300,6 @@ contains
             call cpu_time(now)
             round%cpu_seconds = now - self%cpu_start
             round%is_whole = .true.
-            accuracy%has_checks = accuracy%has_checks .or. size(self%model%verifications) > 0
          end associate
          call accuracy%name_idle()
          accuracy%goes_on = size(accuracy%rounds) < self%model%accuracy%rounds .and. .not. &
@@ -330,8 +329,9 @@ contains
 
       associate (output => self%output)
          outcome%failed_checks = [outcome%failed_checks, output%failed_checks(self%model)]
-         outcome%verify_passed = outcome%verify_passed + output%run%verify_passed
-         outcome%verify_failed = outcome%verify_failed + output%run%verify_failed
+         ! Later rounds tell the verdicts of the first one, unless they end early.
+         outcome%verify_passed = max(outcome%verify_passed, output%run%verify_passed)
+         outcome%verify_failed = max(outcome%verify_failed, output%run%verify_failed)
          if (outcome%status /= status_ok .or. output%run%accuracy%goes_on) return
          allocate (missed(0))
          call add_missed(output%run%accuracy, self%simulation%bodies%interfaces, missed)

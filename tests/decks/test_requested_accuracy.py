@@ -223,6 +223,21 @@ def test_a_signal_in_a_later_round_keeps_the_last_whole_one(tmp_path, seconds):
         assert "deck.inp: interrupted, 45 increments" in output
 
 
+def test_files_of_a_later_round_hold_the_verdicts_of_the_first(tmp_path):
+    check = ['*VERIFY, KIND=ANALYTIC, SOURCE="wrong on purpose"', "time, , LAST, 2., 1.E-6",
+             "time, , LAST, 900., 1.E-6"]
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", changes={"*VERIFY": "** VERIFY"})
+    deck.write_text(deck.read_text().split("** VERIFY")[0] + "\n".join(check) + "\n")
+    process = run("run", deck, "--out", tmp_path, "--accuracy", "1%")
+    assert process.returncode == 4 and "reached after 2 rounds" in process.stdout
+    assert "\n  1 check passed, 1 failed" in process.stdout
+    listing = (tmp_path / "deck.lst").read_text()
+    assert "check failed, 45 increments" in listing
+    assert "1 check passed, 1 failed in round 1" in listing
+    with h5py.File(tmp_path / "deck.vtkhdf") as file:
+        assert file["run"].attrs["verify_passed"] == file["run"].attrs["verify_failed"] == 1
+
+
 def test_a_later_round_that_does_not_converge_keeps_the_last_whole_one(tmp_path):
     """With as many iterations as the mesh of the deck needs, and no cut-backs."""
     deck = copy_deck(COUPLED, tmp_path / "deck.inp", changes={
