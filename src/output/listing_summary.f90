@@ -36,7 +36,7 @@ contains
       character(:), allocatable :: line
 
       line = 'no *VERIFY checks'
-      if (run%verify_passed + run%verify_failed > 0) then
+      if (size(verifier%outcomes) > 0 .or. run%verify_passed + run%verify_failed > 0) then
          line = counted(run%verify_passed, 'check')//' passed, '//to_text(run%verify_failed)// &
             ' failed'
          if (size(verifier%outcomes) == 0) line = line//' in round 1'
