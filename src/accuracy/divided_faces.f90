@@ -121,14 +121,9 @@ contains
       type(divided_faces_type), intent(in) :: self
       type(solution_state_type), intent(in) :: state
       type(solution_state_type), intent(inout) :: divided
-      integer :: c
 
-      associate (weights => self%division%weights)
-         divided%temperature = weights%multiply(state%temperature)
-         do c = 1, 2
-            divided%displacement(c::2) = weights%multiply(state%displacement(c::2))
-         end do
-      end associate
+      divided%temperature = self%division%prolong(state%temperature, 1)
+      divided%displacement = self%division%prolong(state%displacement, 2)
    end subroutine take_fields
 
    !> The state of the run on the divided mesh: fields, and contact states of the nearest contact

@@ -128,7 +128,8 @@ contains
       associate (refined => self%refined, before => self%before)
          if (self%relaxes) then
             call refined%loads%begin_step(refined%model%steps(step), &
-               refined%prolong(before%displacement, 2), refined%prolong(before%temperature, 1))
+               refined%division%prolong(before%displacement, 2), &
+               refined%division%prolong(before%temperature, 1))
          else
             call self%divided%begin_step(step, before, error)
             if (allocated(error)) self%why_not = error%message

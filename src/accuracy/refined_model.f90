@@ -36,7 +36,6 @@ module refined_model
    contains
       procedure :: prepare
       procedure :: assemble
-      procedure :: prolong
       procedure :: prolong_points
       procedure :: restrict
       procedure :: prolong_set
@@ -130,19 +129,6 @@ contains
          end if
       end associate
    end subroutine assemble
-
-   !> A field of the old mesh as one of the new mesh.
-   pure function prolong(self, values, components) result(refined)
-      class(refined_model_type), intent(in) :: self
-      real(dp), intent(in) :: values(:)               !! (components*old nodes)
-      integer, intent(in) :: components               !! values of a node
-      real(dp) :: refined(components*self%division%nodes_after)
-      integer :: c
-
-      do c = 1, components
-         refined(c::components) = self%division%weights%multiply(values(c::components))
-      end do
-   end function prolong
 
    !> The mean of a quantity of the old contact points about each contact point.
    pure function prolong_points(self, values) result(refined)

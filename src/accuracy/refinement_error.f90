@@ -134,8 +134,8 @@ contains
             if (allocated(error)) return
          end if
       end associate
-      fields%displacement = refined%prolong(fields%coarse%displacement, 2)
-      fields%temperature = refined%prolong(fields%coarse%temperature, 1)
+      fields%displacement = refined%division%prolong(fields%coarse%displacement, 2)
+      fields%temperature = refined%division%prolong(fields%coarse%temperature, 1)
       allocate (fields%heat, source=0.0_dp*fields%temperature)
       call fields%points%begin(refined, kept_contact(fields%coarse%contact, &
          fields%coarse%has_mechanics))
@@ -154,7 +154,8 @@ contains
          call points%take_old(refined, kept_contact(fields%coarse%contact, &
             fields%coarse%has_mechanics))
          if (solves_mechanics(step%analysis)) then
-            call points%mechanical_joints(refined, refined%prolong(fields%coarse%displacement, 2), &
+            call points%mechanical_joints(refined, &
+               refined%division%prolong(fields%coarse%displacement, 2), &
                joints)
             load = mechanical_load(refined, fields)
             slip_forces = points%slip_forces(refined)
@@ -210,9 +211,9 @@ contains
       call solve_points(bodies, loads, step, previous, workspace, trial, error)
       if (allocated(error)) return
       call recover_fields(bodies, loads, step, workspace, previous, trial)
-      fields%displacement = fields%displacement + refined%prolong(trial%displacement - &
+      fields%displacement = fields%displacement + refined%division%prolong(trial%displacement - &
          fields%displacement(:size(trial%displacement)), 2)
-      fields%temperature = fields%temperature + refined%prolong(trial%temperature - &
+      fields%temperature = fields%temperature + refined%division%prolong(trial%temperature - &
          fields%temperature(:size(trial%temperature)), 1)
       fields%coarse = trial
    end subroutine correct

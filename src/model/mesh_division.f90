@@ -52,10 +52,24 @@ module mesh_division
       !> (nodes_after, nodes) of the old nodes in the values at all nodes; columns in any order
       type(sparse_matrix_type) :: weights
    contains
+      procedure :: prolong
       procedure, private :: elements_at
    end type division_type
 
 contains
+
+   !> A field at the old nodes as one at all nodes.
+   pure function prolong(self, values, components) result(field)
+      class(division_type), intent(in) :: self
+      real(dp), intent(in) :: values(:)               !! (components*nodes) node by node
+      integer, intent(in) :: components               !! values of a node
+      real(dp) :: field(components*self%nodes_after)
+      integer :: c
+
+      do c = 1, components
+         field(c::components) = self%weights%multiply(values(c::components))
+      end do
+   end function prolong
 
    !> Divides some elements of a mesh; where an element is divided, so must be the ones beside it
    !> whose sides are twice as long.
