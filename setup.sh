@@ -227,13 +227,13 @@ run_ctest() {
 # that the sources, and the unit tests and the cylinder with run-time checks. Unit tests run with these
 # checks only: to compile them once more would take as long as most of the tests below. Both programs
 # are built side by side, and the Python packages, most of whose time is that of the network, are
-# installed meanwhile: neither keeps all processors busy.
+# installed and the sources checked meanwhile: none of these keeps all processors busy.
 run_test() {
-   local status=0 job jobs=()
+   local status=0 job jobs=() lint
    install_packages "${build_packages[@]}" "${test_packages[@]}"
    trap wait EXIT
-   install_python_packages &
-   jobs+=($!)
+   run_lint &
+   lint=$!
    make_venv "$build/sweep" "${sweep_requirements[@]}" & # Snakemake, for the test of input/sweep
    jobs+=($!)
    build_preset release thercon &
@@ -242,7 +242,7 @@ run_test() {
    for job in "${jobs[@]}"; do
       wait "$job"
    done
-   run_lint || status=1
+   wait "$lint" || status=1
    say "tests with run-time checks"
    run_ctest debug --label-regex 'unit|standin|memory' || status=1
    ((status == 0)) || say "something above has failed"
