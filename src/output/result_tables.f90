@@ -12,46 +12,26 @@ module result_tables
    use increment_quantities, only: body_values, history_value, pass_value
    use kinds, only: dp
    use model, only: unit_labels_type
-   use quantity_types, only: of_bodies, of_history, of_interface, of_contact_points, of_passes, &
-      quantity_type
+   use quantity_types, only: of_bodies, of_contact_points, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
-   use reported_quantities, only: datasets, quantities
+   use reported_quantities, only: quantities
    use solution_report, only: iteration_record_type
    use unit_labels, only: load_unit, unit_in_words
    implicit none
    private
-   public :: history_results_type, convergence_results_type, contact_results_type
-   public :: error_results_type
+   public :: result_table_type, error_results_type, write_contact_points, write_load_label
 
-   !> Group `/history`: one row an increment.
-   type :: history_results_type
-      integer :: bodies = 0                                !! number of bodies
-      type(quantity_type), allocatable :: quantities(:)    !! those that grow
-      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of them
+   !> A group with one dataset for each quantity: `/history` and `/contact/<name>` with one row an
+   !> increment, `/convergence` with one row a pass.
+   type :: result_table_type
+      private
+      type(quantity_type), allocatable :: quantities(:)            !! those that grow
+      type(growing_dataset_type), allocatable, public :: sets(:)   !! one for each of them
    contains
-      procedure :: start => start_history
-      procedure :: append => append_history
-      procedure, nopass :: write_static => write_history_static
-   end type history_results_type
-
-   !> Group `/convergence`: one row an iteration.
-   type :: convergence_results_type
-      type(quantity_type), allocatable :: quantities(:)    !! those that grow
-      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of them
-   contains
-      procedure :: start => start_convergence
-      procedure :: append => append_convergence
-   end type convergence_results_type
-
-   !> Group `/contact/<name>` of one interface: one row an increment.
-   type :: contact_results_type
-      type(quantity_type), allocatable :: quantities(:)    !! those that grow
-      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of them
-   contains
-      procedure :: start => start_contact
-      procedure :: append => append_contact
-      procedure, nopass :: write_static => write_contact_static
-   end type contact_results_type
+      procedure :: start => start_table
+      generic :: append => append_increment, append_passes, append_contact
+      procedure, private :: append_increment, append_passes, append_contact
+   end type result_table_type
 
    integer, parameter :: error_columns = 5   !! value, bound, its parts
 
@@ -67,121 +47,63 @@ module result_tables
 
 contains
 
-   !> Prepares the datasets.
-   subroutine start_history(self, has, bodies, expected, labels)
-      class(history_results_type), intent(inout) :: self  !! the group
-      logical, intent(in) :: has(0:)                      !! what the deck solves, by needs_*
-      integer, intent(in) :: bodies                       !! number of bodies
-      integer, intent(in) :: expected                     !! increments that are expected
+   !> Prepares the datasets of a group.
+   subroutine start_table(self, group, quantities, places, expected, labels)
+      class(result_table_type), intent(inout) :: self
+      character(*), intent(in) :: group                   !! its path, with a slash at the end
+      type(quantity_type), intent(in) :: quantities(:)
+      integer, intent(in) :: places                       !! bodies or contact points
+      integer, intent(in) :: expected                     !! rows that are expected
       type(unit_labels_type), intent(in) :: labels        !! units of the deck
-      integer :: i
+      integer :: i, width
 
-      self%bodies = bodies
-      self%quantities = [datasets(of_history, has), datasets(of_bodies, has)]
-      allocate(self%sets(size(self%quantities)))
-      do i = 1, size(self%sets)
-         self%sets(i) = dataset('/history/', self%quantities(i), &
-            merge(bodies, 0, self%quantities(i)%kind == of_bodies), expected, labels)
+      self%quantities = quantities
+      allocate(self%sets(size(quantities)))
+      do i = 1, size(quantities)
+         associate (quantity => quantities(i), set => self%sets(i))
+            width = merge(quantity%values, 0, quantity%values > 1)
+            if (any(quantity%kind == [of_bodies, of_contact_points])) width = places
+            set = growing_dataset(group//trim(quantity%name), merge(as_integer, as_real, &
+               quantity%is_integer), width, 1, expected)
+            call set%describe_as(trim(quantity%description), unit_in_words(quantity%unit, &
+               labels), trim(quantity%components))
+         end associate
       end do
-   end subroutine start_history
+   end subroutine start_table
 
-   !> The dataset of a quantity: rows of `width` numbers, of single ones where that is 0.
-   pure function dataset(group, quantity, width, expected, labels) result(set)
-      character(*), intent(in) :: group
-      type(quantity_type), intent(in) :: quantity
-      integer, intent(in) :: width, expected
-      type(unit_labels_type), intent(in) :: labels
-      type(growing_dataset_type) :: set
-
-      set = growing_dataset(group//trim(quantity%name), merge(as_integer, as_real, &
-         quantity%is_integer), width, 1, expected)
-      call set%describe_as(trim(quantity%description), unit_in_words(quantity%unit, labels), &
-         trim(quantity%components))
-   end function dataset
-
-   !> Adds an increment.
-   subroutine append_history(self, record)
-      class(history_results_type), intent(inout) :: self  !! the group
+   !> Adds an increment of a model with as many bodies.
+   subroutine append_increment(self, record, bodies)
+      class(result_table_type), intent(inout) :: self     !! `/history`
       type(increment_record_type), intent(in) :: record
+      integer, intent(in) :: bodies
       real(dp), allocatable :: values(:)
       integer :: i
 
       do i = 1, size(self%sets)
          if (self%quantities(i)%kind == of_bodies) then
             values = body_values(self%quantities(i)%name, record)
-            if (size(values) == 0) values = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, &
-               self%bodies)
+            if (size(values) == 0) values = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, bodies)
          else
             values = [history_value(self%quantities(i)%name, record)]
          end if
          call self%sets(i)%append(values)
       end do
-   end subroutine append_history
+   end subroutine append_increment
 
-   !> Labels the load axis.
-   !> Error: status_internal, when HDF5 refuses.
-   subroutine write_history_static(file, load_label, labels, error)
-      integer(hid_t), intent(in) :: file                  !! the open file
-      character(*), intent(in) :: load_label              !! label of the load axis
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
-      character(*), parameter :: path = '/history/load'
-
-      call write_attribute(file, path, 'label', load_label, error)
-      if (allocated(error)) return
-      call write_attribute(file, path, 'unit', unit_in_words(load_unit(load_label), labels), error)
-   end subroutine write_history_static
-
-   !> Prepares the datasets.
-   subroutine start_convergence(self, has, expected, labels)
-      class(convergence_results_type), intent(inout) :: self  !! the group
-      logical, intent(in) :: has(0:)                          !! what the deck solves, by needs_*
-      integer, intent(in) :: expected                         !! iterations that are expected
-      type(unit_labels_type), intent(in) :: labels            !! units of the deck
-      integer :: i
-
-      self%quantities = datasets(of_passes, has)
-      allocate(self%sets(size(self%quantities)))
-      do i = 1, size(self%sets)
-         self%sets(i) = dataset('/convergence/', self%quantities(i), 0, expected, labels)
-      end do
-   end subroutine start_convergence
-
-   !> Adds iterations.
-   subroutine append_convergence(self, iterations)
-      class(convergence_results_type), intent(inout) :: self   !! the group
+   !> Adds passes of the fixed point.
+   subroutine append_passes(self, iterations)
+      class(result_table_type), intent(inout) :: self          !! `/convergence`
       type(iteration_record_type), intent(in) :: iterations(:) !! passes, in their order
       integer :: i
 
       do i = 1, size(self%sets)
          call self%sets(i)%append(pass_value(self%quantities(i)%name, iterations))
       end do
-   end subroutine append_convergence
+   end subroutine append_passes
 
-   !> Prepares the datasets.
-   subroutine start_contact(self, points, has, expected, labels)
-      class(contact_results_type), intent(inout) :: self  !! the group
-      type(contact_points_type), intent(in) :: points     !! contact points of the interface
-      logical, intent(in) :: has(0:)                      !! what the deck solves, by needs_*
-      integer, intent(in) :: expected                     !! increments that are expected
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
-      integer :: i, width
-
-      self%quantities = [datasets(of_contact_points, has), datasets(of_interface, has)]
-      allocate(self%sets(size(self%quantities)))
-      do i = 1, size(self%sets)
-         associate (quantity => self%quantities(i))
-            width = merge(quantity%values, 0, quantity%values > 1)
-            if (quantity%kind == of_contact_points) width = size(points%slave_node)
-            self%sets(i) = dataset('/contact/'//points%name//'/', quantity, width, expected, &
-               labels)
-         end associate
-      end do
-   end subroutine start_contact
-
-   !> Adds an increment.
+   !> Adds the contact points of an increment.
    subroutine append_contact(self, points, contact)
-      class(contact_results_type), intent(inout) :: self  !! the group
+      class(result_table_type), intent(inout) :: self     !! `/contact/<name>`
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! their state
       integer :: i
@@ -191,9 +113,23 @@ contains
       end do
    end subroutine append_contact
 
+   !> Labels the load axis.
+   !> Error: status_internal, when HDF5 refuses.
+   subroutine write_load_label(file, load_label, labels, error)
+      integer(hid_t), intent(in) :: file                  !! the open file
+      character(*), intent(in) :: load_label              !! label of the load axis
+      type(unit_labels_type), intent(in) :: labels        !! units of the deck
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      character(*), parameter :: path = '/history/load'
+
+      call write_attribute(file, path, 'label', load_label, error)
+      if (allocated(error)) return
+      call write_attribute(file, path, 'unit', unit_in_words(load_unit(load_label), labels), error)
+   end subroutine write_load_label
+
    !> Creates the group, with the geometry of the contact points.
    !> Error: status_internal, when HDF5 refuses.
-   subroutine write_contact_static(file, points, node_number, friction, labels, error)
+   subroutine write_contact_points(file, points, node_number, friction, labels, error)
       integer(hid_t), intent(in) :: file                  !! the open file
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
@@ -225,7 +161,7 @@ contains
             unit_in_words(quantities(i)%unit, labels), error)
          if (allocated(error)) return
       end do
-   end subroutine write_contact_static
+   end subroutine write_contact_points
 
    !> Prepares the datasets; none without an interface or without estimates.
    subroutine start_errors(self, has_estimates, interfaces, steps, labels)

@@ -16,14 +16,15 @@ module results
    use kinds, only: dp, long
    use model, only: model_type
    use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, needs_nothing, &
-      needs_temperature
+      needs_temperature, of_bodies, of_contact_points, of_history, of_interface, of_passes
    use records, only: increment_record_type
+   use reported_quantities, only: datasets
    use result_accuracy, only: write_accuracy
    use result_fields, only: field_results_type
    use result_mesh, only: write_result_mesh
    use result_run, only: write_run
-   use result_tables, only: contact_results_type, convergence_results_type, error_results_type, &
-      history_results_type
+   use result_tables, only: error_results_type, result_table_type, write_contact_points, &
+      write_load_label
    use run_summaries, only: or_blank, run_summary_type
    use solution_report, only: iteration_record_type
    use status_files, only: status_file_type
@@ -44,9 +45,9 @@ module results
       type(status_file_type) :: increments                    !! `.sta`
       type(status_file_type) :: passes                        !! `.cvg`
       type(field_results_type) :: fields                      !! `/VTKHDF`
-      type(history_results_type) :: history                   !! `/history`
-      type(convergence_results_type) :: convergence           !! `/convergence`
-      type(contact_results_type), allocatable :: contacts(:)  !! `/contact/<name>`
+      type(result_table_type) :: history                      !! `/history`
+      type(result_table_type) :: convergence                  !! `/convergence`
+      type(result_table_type), allocatable :: contacts(:)     !! `/contact/<name>`
       type(error_results_type) :: errors                      !! `/errors`
       type(working_file_type) :: contact_file                 !! `NAME.contact.vtkhdf`
       type(contact_grid_type) :: contact_grid                 !! its contents
@@ -110,14 +111,18 @@ contains
       has = what_is_solved(model, size(interfaces) > 0)
       expected = expected_increments(model)
       call self%fields%start(model, interfaces, point_node, has, expected)
-      call self%history%start(has, model%mesh%body_count, expected, model%units)
-      call self%convergence%start(has, 8*expected, model%units)
+      call self%history%start('/history/', [datasets(of_history, has), datasets(of_bodies, has)], &
+         model%mesh%body_count, expected, model%units)
+      call self%convergence%start('/convergence/', datasets(of_passes, has), 0, 8*expected, &
+         model%units)
       call self%errors%start(model%estimates_errors, interfaces, size(model%steps), model%units)
       allocate(self%contacts(size(interfaces)))
       self%has_contact = size(interfaces) > 0
       if (self%has_contact) call self%contact_grid%start(interfaces, has, expected, model%units)
       do i = 1, size(interfaces)
-         call self%contacts(i)%start(interfaces(i), has, expected, model%units)
+         call self%contacts(i)%start('/contact/'//interfaces(i)%name//'/', &
+            [datasets(of_contact_points, has), datasets(of_interface, has)], &
+            size(interfaces(i)%slave_node), expected, model%units)
       end do
    end subroutine open_results
 
@@ -137,7 +142,7 @@ contains
 
       since = wall_seconds()
       self%accepted = self%accepted + 1
-      call self%history%append(record)
+      call self%history%append(record, model%mesh%body_count)
       call self%increments%add_increment(record)
       if (allocated(record%iterations)) then
          call self%convergence%append(record%iterations)
@@ -343,8 +348,8 @@ contains
       end do
       if (is_new) call self%fields%write_links(self%file%id, error)
       if (allocated(error)) return
-      if (is_new) call self%history%write_static(self%file%id, or_blank(model%load_label), &
-         model%units, error)
+      if (is_new) call write_load_label(self%file%id, or_blank(model%load_label), model%units, &
+         error)
    end subroutine flush_all
 
    subroutine write_heads(self, model, interfaces, error)
@@ -368,7 +373,7 @@ contains
       call self%errors%create_groups(self%file%id, interfaces, error)
       if (allocated(error)) return
       do i = 1, size(interfaces)
-         call self%contacts(i)%write_static(self%file%id, interfaces(i), model%mesh%node_number, &
+         call write_contact_points(self%file%id, interfaces(i), model%mesh%node_number, &
             model%interactions(model%contacts(i)%interaction)%friction%coefficient, &
             model%units, error)
          if (allocated(error)) return
