@@ -218,12 +218,13 @@ contains
       end associate
    end subroutine add_change
 
-   !> Whether a bound is inside its target.
+   !> Whether a bound is inside its target; an uncertain one is not.
    elemental logical function is_met(self)
       class(finding_type), intent(in) :: self
 
       is_met = .not. self%is_there
-      if (.not. is_met) is_met = self%bound <= self%allowed
+      if (is_met .or. ieee_is_nan(self%bound)) return
+      is_met = self%bound <= self%allowed
    end function is_met
 
    !> Whether the present round meets all targets.
