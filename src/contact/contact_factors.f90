@@ -101,7 +101,9 @@ contains
          do j = 1, f
             matrix(:f, j) = self%scale*matrix(:f, j)
          end do
-         self%border = max(maxval(abs(matrix)), tiny(1.0_dp))
+         ! A body that nothing holds has no stiffness to compare with.
+         self%border = maxval(abs(matrix))
+         if (self%border < tiny(1.0_dp)) self%border = 1.0_dp
          matrix(:f, f + 1:) = self%border*unconstrained
          matrix(f + 1:, :f) = self%border*transpose(unconstrained)
       end associate
