@@ -205,14 +205,16 @@ contains
    !> Bounds of the errors of the fixed point: its residual, through the gain that is nearest to 1.
    subroutine bound_iteration(record)
       type(increment_record_type), intent(inout) :: record
-      real(dp) :: relative
+      real(dp) :: distance, relative
       integer :: i
 
       if (.not. allocated(record%iterations)) return
       if (size(record%iterations) == 0) return
       if (ieee_is_nan(record%coupling_gain)) return
-      relative = history_value('residual', record)/max(tiny(1.0_dp), &
-         min(1.0_dp, abs(1.0_dp - record%coupling_gain), abs(1.0_dp - record%coupling_gain_max)))
+      distance = min(1.0_dp, abs(1.0_dp - record%coupling_gain))
+      if (.not. ieee_is_nan(record%coupling_gain_max)) distance = min(distance, &
+         abs(1.0_dp - record%coupling_gain_max))
+      relative = history_value('residual', record)/max(tiny(1.0_dp), distance)
       do i = 1, size(record%errors)
          record%errors(i)%iteration = relative*abs(record%errors(i)%value)
       end do

@@ -75,7 +75,7 @@ contains
    pure subroutine match_points(self, points)
       class(refined_model_type), intent(inout) :: self
       type(all_contact_points_type), intent(in) :: points
-      integer :: after, before, first, i, k, last, old, old_last
+      integer :: first, i, k, last, old, old_last
 
       allocate (self%old_point(size(self%points%slave)), source=0)
       allocate (self%neighbours(2, size(self%points%slave)))
@@ -93,17 +93,36 @@ contains
                self%points%slave(k), dim=1)
          end do
          do k = first, last
-            before = k
-            after = k
-            if (self%old_point(k) == 0) then
-               ! On a closed face the first and the last contact point are neighbours.
-               before = merge(last, k - 1, k == first)
-               after = merge(first, k + 1, k == last)
-            end if
-            self%neighbours(:, k) = [self%old_point(before), self%old_point(after)]
+            self%neighbours(:, k) = self%old_point(k)
+            ! On a closed face the first and the last contact point are neighbours.
+            if (self%old_point(k) == 0) self%neighbours(:, k) = beside(self, points, k, &
+               [merge(last, k - 1, k == first), merge(first, k + 1, k == last)])
          end do
       end do
    end subroutine match_points
+
+   !> Old contact points on both sides of a new one, which are at nodes of the old side that it lies
+   !> on. At the tip of a crack, a node that both faces share, there is only the other one.
+   pure function beside(self, points, k, places) result(neighbours)
+      type(refined_model_type), intent(in) :: self
+      type(all_contact_points_type), intent(in) :: points
+      integer, intent(in) :: k            !! the new one
+      integer, intent(in) :: places(2)    !! contact points before and after it
+      integer :: neighbours(2)
+      integer :: i
+
+      neighbours = self%old_point(places)
+      associate (weights => self%division%weights, node => self%points%slave(k))
+         associate (nodes => weights%column(weights%row_start(node): &
+            weights%row_start(node + 1) - 1))
+            do i = 1, 2
+               if (neighbours(i) == 0) cycle
+               if (all(nodes /= points%slave(neighbours(i)))) neighbours(i) = 0
+            end do
+         end associate
+      end associate
+      where (neighbours == 0) neighbours = neighbours([2, 1])
+   end function beside
 
    !> Assembles the matrices that are asked for.
    subroutine assemble(self, with_mechanics, with_heat, with_strain)

@@ -1,7 +1,7 @@
 !> An increment in which heat and mechanics are solved together: where its fixed point starts, and
 !> what is said of the solution.
 module coupled_increment
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use arnoldi, only: arnoldi_type
    use contact_heat, only: jump_derivatives, jump_derivatives_type
    use controls, only: method_picard, start_both, start_closed, start_given, start_open, &
@@ -180,7 +180,7 @@ contains
          if (record%coupling_gain < -1.0_dp .and. is_plain) call record%warn( &
             'the coupling gain is ', record%coupling_gain, &
             ', below -1: plain iteration (4.1) would diverge')
-         if (abs(record%coupling_gain_max - 1.0_dp) <= near_turning_point) call record%warn( &
+         if (is_near_turning_point(record%coupling_gain_max)) call record%warn( &
             'the largest real gain is ', record%coupling_gain_max, ', near 1: a turning point, '// &
             'where solutions meet and small changes of the load have large effects', &
             severity=-abs(record%coupling_gain_max - 1.0_dp))
@@ -192,6 +192,14 @@ contains
          end if
       end associate
    end subroutine judge
+
+   !> Whether the largest real gain is near 1; there may be none.
+   pure logical function is_near_turning_point(gain)
+      real(dp), intent(in) :: gain    ! NaN for none
+
+      is_near_turning_point = .not. ieee_is_nan(gain)
+      if (is_near_turning_point) is_near_turning_point = abs(gain - 1.0_dp) <= near_turning_point
+   end function is_near_turning_point
 
    !> Whether det(I - U') < 0.
    logical function is_unstable(bodies, data, workspace, next)

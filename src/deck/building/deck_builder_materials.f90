@@ -133,9 +133,10 @@ contains
          call read_constants(cards, card, names(:n), context, report, constants(:n), valid)
          if (n == 3) call context%note('*CONDUCTIVITY: K33 is ignored')
          if (valid) call refuse_not_positive(cards, card, names, constants, [1, 2], report)
-         ! Across the plane most materials conduct as along one of its axes.
-         if (valid .and. n == 3 .and. all(abs(constants(:2) - constants(3)) > 0.0_dp)) then
-            call check_unneeded(cards%data(card%first_data), 3, 'K33', report)
+         if (valid .and. n == 3) then
+            ! Across the plane most materials conduct as along one of its axes.
+            if (all(abs(constants(:2) - constants(3)) > 0.0_dp)) call check_unneeded( &
+               cards%data(card%first_data), 3, 'K33', report)
          end if
          material%conductivity = constants(:2)
          call set_constants(material, card%name, names(:2), constants(:2))
