@@ -261,10 +261,11 @@ contains
    pure subroutine eliminate(self, rows, columns, x)
       class(column_panels_type), intent(in) :: self      !! factors
       integer, intent(in) :: rows                        !! pivots and border
-      integer, intent(in) :: columns                     !! right-hand sides
+      integer, intent(in) :: columns                     !! right-hand sides, 0 or more
       real(dp), intent(inout) :: x(rows, columns)
       integer :: above, first, p, width
 
+      if (columns == 0) return
       if (columns == 1) then
          call eliminate_one(self, rows, x)
          return
@@ -307,10 +308,11 @@ contains
    pure subroutine substitute(self, rows, columns, x)
       class(column_panels_type), intent(in) :: self      !! factors
       integer, intent(in) :: rows                        !! pivots and border
-      integer, intent(in) :: columns                     !! right-hand sides
+      integer, intent(in) :: columns                     !! right-hand sides, 0 or more
       real(dp), intent(inout) :: x(rows, columns)
       integer :: above, first, j, p, width
 
+      if (columns == 0) return
       do j = 1, columns
          x(:self%pivots, j) = x(:self%pivots, j)/self%pivot
       end do
