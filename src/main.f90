@@ -7,7 +7,7 @@ program thercon
    use batch, only: run_batch
    use deck_check, only: check_deck
    use deck_outcomes, only: deck_outcome_type
-   use deck_run, only: base_name, run_deck
+   use deck_run, only: results_of, run_deck
    use deck_trade, only: trade_deck
    use errors, only: error_type, status_deck
    use file_calls, only: check_printed, print_text, survive_file_limits
@@ -82,8 +82,8 @@ contains
       call catch_signals(outlives_pipes=.false.)
       call run_deck(path, command, outcome)
       deck_status = outcome%status
-      if (.not. command%quiet .and. deck_status /= status_deck) call outcome%print( &
-         command%folder//'/'//base_name(path))
+      if (.not. command%quiet .and. deck_status /= status_deck) call outcome%print(results_of( &
+         path, command))
       call outcome%print_failed_checks()
    end subroutine run_one
 

@@ -14,7 +14,8 @@ def draw(result, options):
     """Draw the rounds of a result; return the files written."""
     rounds = result.file.get("accuracy")
     if rounds is None:
-        raise UserError(f"{result.path}: no accuracy was requested (*ACCURACY, --accuracy)")
+        raise UserError(f"{result.path}: no accuracy was requested (*ACCURACY, --accuracy), or its "
+                        "first round did not come to its end")
     cost = np.cumsum(rounds["cpu_seconds"][:])
     series = list(targets(rounds))
     if not series:

@@ -55,7 +55,6 @@ module accuracy_rounds
       integer :: elements = 0
       integer :: increments = 0
       real(dp) :: cpu_seconds = 0.0_dp     !! [s]
-      logical :: is_whole = .false.        !! whether all steps were solved
       type(finding_type), allocatable :: findings(:, :)   !! (demands, steps)
    contains
       procedure :: worst_step
@@ -72,6 +71,7 @@ module accuracy_rounds
       real(dp), allocatable :: largest(:)                    !! (demands) largest scale so far
    contains
       procedure :: begin_round
+      procedure :: drop_round
       procedure :: follow
       procedure :: is_reached
       procedure :: stands_still
@@ -105,6 +105,13 @@ contains
       call move_alloc(rounds, self%rounds)
       if (.not. allocated(self%largest)) allocate (self%largest(size(self%demands)), source=0.0_dp)
    end subroutine begin_round
+
+   !> Drops the present round, which did not come to its end.
+   subroutine drop_round(self)
+      class(accuracy_rounds_type), intent(inout) :: self
+
+      if (self%is_on) self%rounds = self%rounds(:size(self%rounds) - 1)
+   end subroutine drop_round
 
    !> Adds the target of one interface or of all.
    subroutine add_demands(target, interfaces, demands)
@@ -227,12 +234,12 @@ contains
       is_met = self%bound <= self%allowed
    end function is_met
 
-   !> Whether the present round meets all targets.
+   !> Whether the last round meets all targets; there is one.
    pure logical function is_reached(self)
       class(accuracy_rounds_type), intent(in) :: self
 
       associate (last => self%rounds(size(self%rounds)))
-         is_reached = last%is_whole .and. all(last%findings%is_met())
+         is_reached = all(last%findings%is_met())
       end associate
    end function is_reached
 

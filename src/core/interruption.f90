@@ -6,7 +6,8 @@
 module interruption
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use errors, only: error_type, set_error, status_interrupted
-   use system_processes, only: c_catch_signals, c_hold_end, c_prepare_end, c_signals
+   use system_processes, only: c_catch_signals, c_hold_end, c_prepare_end, c_prepare_summary, &
+      c_signals
    implicit none
    private
    public :: catch_signals, caught_signal, caught_times, check_overdue
@@ -22,12 +23,14 @@ module interruption
       logical :: shows_progress = .false.        !! whether there is a progress line to be cleared
       character(:), allocatable :: deck          !! path as given
       character(:), allocatable :: where         !! such as ' after increment 3'
+      character(:), allocatable :: holds         !! what is printed behind it of the results, or nothing
       character(:), allocatable :: listing       !! path of the listing, empty for none
-      character(:), allocatable :: kept          !! what the results hold, one sentence; empty
-      !! where the listing is not begun
+      character(:), allocatable :: kept          !! what the results hold, one sentence for the
+      !! listing; empty where that is not begun
       character(:), allocatable :: working       !! path of the working file, empty for none
    contains
       procedure :: prepare
+      procedure, nopass :: prepare_summary
       procedure, nopass :: hold
    end type run_end_type
 
@@ -75,9 +78,16 @@ contains
       class(run_end_type), intent(in) :: self
 
       call c_prepare_end(int(self%when, c_int), merge(1_c_int, 0_c_int, self%shows_progress), &
-         self%deck//c_null_char, self%where//c_null_char, self%listing//c_null_char, &
-         self%kept//c_null_char, self%working//c_null_char)
+         self%deck//c_null_char, self%where//c_null_char, self%holds//c_null_char, &
+         self%listing//c_null_char, self%kept//c_null_char, self%working//c_null_char)
    end subroutine prepare
+
+   !> From now on this is printed on standard output behind `deck: interrupted`.
+   subroutine prepare_summary(words)
+      character(*), intent(in) :: words   !! lines with their ends
+
+      call c_prepare_summary(words//c_null_char)
+   end subroutine prepare_summary
 
    !> While files are written no signal ends the run.
    subroutine hold(holds)

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -38,7 +39,9 @@ struct process_end {
 };
 
 static volatile sig_atomic_t caught, times, is_overdue, is_held, ends;
-static char deck[longest], where[longest], listing[longest], kept[longest], working[longest];
+static char deck[longest], where[longest], holds[longest], listing[longest], kept[longest],
+   working[longest];
+static char *volatile summary;   /* of the files in place, for standard output; NULL for none */
 static int shows_progress, report_file = -1;
 static struct report filed;   /* what a child has reported */
 
@@ -118,8 +121,13 @@ static void put(int file, const char *words)
    }
 }
 
+static void add_reason(const char *words)
+{
+   if (strlen(filed.reason) + strlen(words) < sizeof filed.reason) strcat(filed.reason, words);
+}
+
 /* Says why, leaves the files in order and ends the process. */
-static _Noreturn void end_run(int status, const char *reason, const char *more)
+static _Noreturn void end_run(int status, const char *reason)
 {
    struct stat found;
    int file;
@@ -129,12 +137,13 @@ static _Noreturn void end_run(int status, const char *reason, const char *more)
    put(2, deck[0] ? deck : "thercon");
    put(2, ": error: ");
    put(2, reason);
-   put(2, more);
+   put(2, where);
+   put(2, holds);
    put(2, "\n");
    if (listing[0] && kept[0] && (file = open(listing, O_WRONLY | O_APPEND)) >= 0) {
       put(file, "\nENDED EARLY\n-----------\n   ");
       put(file, reason);
-      put(file, more);
+      put(file, where);
       put(file, "\n   ");
       put(file, kept);
       put(file, "\n");
@@ -142,17 +151,23 @@ static _Noreturn void end_run(int status, const char *reason, const char *more)
    /* One that the run had not begun yet holds an earlier run, or nothing at all. */
    if (listing[0] && !kept[0] && stat(listing, &found) == 0 && found.st_size == 0) unlink(listing);
    if (working[0]) unlink(working);
+   if (summary && report_file < 0) {
+      put(1, deck);
+      put(1, status == status_interrupted ? ": interrupted" : ": out of memory");
+      put(1, summary);
+   }
    filed.is_whole = 1;
    filed.status = status;
    strcpy(filed.reason, reason);
-   if (strlen(reason) + strlen(more) < sizeof filed.reason) strcat(filed.reason, more);
+   add_reason(where);
+   add_reason(holds);
    if (report_file >= 0) (void)!pwrite(report_file, &filed, sizeof filed, 0);
    _exit(status);
 }
 
 static _Noreturn void end_by_signal(void)
 {
-   end_run(status_interrupted, caught == SIGINT ? "ended by SIGINT" : "ended by SIGTERM", where);
+   end_run(status_interrupted, caught == SIGINT ? "ended by SIGINT" : "ended by SIGTERM");
 }
 
 static void take_signal(int number)
@@ -210,7 +225,8 @@ static void take_words(char *buffer, const char *words)
 
 /* When a signal may end the run from now on, and what is then to be said and done. */
 void thercon_prepare_end(int when, int shows, const char *deck_path, const char *where_words,
-   const char *listing_path, const char *kept_words, const char *working_path)
+   const char *holds_words, const char *listing_path, const char *kept_words,
+   const char *working_path)
 {
    sigset_t all, before;
 
@@ -218,6 +234,7 @@ void thercon_prepare_end(int when, int shows, const char *deck_path, const char 
    sigprocmask(SIG_SETMASK, &all, &before);
    take_words(deck, deck_path);
    take_words(where, where_words);
+   take_words(holds, holds_words);
    take_words(listing, listing_path);
    take_words(kept, kept_words);
    take_words(working, working_path);
@@ -225,6 +242,15 @@ void thercon_prepare_end(int when, int shows, const char *deck_path, const char 
    ends = when;
    if (caught != 0 && ends == at_once && !is_held) end_by_signal();
    sigprocmask(SIG_SETMASK, &before, NULL);
+}
+
+/* What is printed of the files in place where a run ends like that, behind its outcome. */
+void thercon_prepare_summary(const char *words)
+{
+   char *former = summary;
+
+   summary = strdup(words);
+   free(former);
 }
 
 /* While files are written no signal ends the run. */
@@ -247,7 +273,7 @@ _Noreturn void thercon_end_without_memory(double bytes)
 
    snprintf(words, sizeof words, "memory ran out: %.0f MB more are not available", bytes / 1e6);
    filed.lacks_memory = 1;
-   end_run(status_internal, words, where);
+   end_run(status_internal, words);
 }
 
 static void *checked(void *address, double bytes)

@@ -5,7 +5,8 @@ module system_processes
    private
    public :: report_type, process_end_type, longest_reason
    public :: c_start_child, c_collect_child, c_signal_child, c_read, c_file_report
-   public :: c_catch_signals, c_signals, c_prepare_end, c_hold_end, c_end_without_memory
+   public :: c_catch_signals, c_signals, c_prepare_end, c_prepare_summary, c_hold_end
+   public :: c_end_without_memory
    public :: c_close, c_exit_at_once, c_sleep
 
    integer, parameter :: longest_reason = 4096   !! characters, with the 0 at the end
@@ -74,12 +75,18 @@ module system_processes
          integer(c_int), intent(out) :: name, number, overdue
       end subroutine c_signals
 
-      subroutine c_prepare_end(when, shows, deck, where, listing, kept, working) &
+      subroutine c_prepare_end(when, shows, deck, where, holds, listing, kept, working) &
          bind(c, name='thercon_prepare_end')
          import :: c_char, c_int
          integer(c_int), value :: when, shows
-         character(c_char), intent(in) :: deck(*), where(*), listing(*), kept(*), working(*)
+         character(c_char), intent(in) :: deck(*), where(*), holds(*), listing(*), kept(*), &
+            working(*)
       end subroutine c_prepare_end
+
+      subroutine c_prepare_summary(words) bind(c, name='thercon_prepare_summary')
+         import :: c_char
+         character(c_char), intent(in) :: words(*)
+      end subroutine c_prepare_summary
 
       subroutine c_hold_end(holds) bind(c, name='thercon_hold_end')
          import :: c_int

@@ -6,7 +6,7 @@ module batch
    use clock, only: wall_seconds
    use command_line, only: command_type
    use deck_outcomes, only: deck_outcome_type
-   use deck_run, only: base_name
+   use deck_run, only: base_name, results_of
    use deck_task, only: deck_task_type
    use errors, only: error_type, status_deck, status_internal, status_interrupted
    use file_calls, only: make_folder
@@ -187,7 +187,7 @@ contains
             call self%progress%clear()
             if (len(printed) > 0) call pass_on(printed)
             if (.not. self%command%quiet .and. outcome%status /= status_deck) then
-               call outcome%print(self%command%folder//'/'//base_name(outcome%path))
+               call outcome%print(results_of(outcome%path, self%command))
             end if
          end associate
          self%slots(s)%deck = 0
@@ -212,7 +212,6 @@ contains
       associate (child => slot%child)
          outcome%cpu_seconds = child%end%cpu_seconds
          outcome%peak_bytes = child%end%peak_bytes
-         if (report%lacks_memory == 1) outcome%ending = 'out of memory'
          if (child%end%signal == 0 .and. report%is_whole == 1) return
          outcome%status = status_internal
          outcome%reason = child%sudden_end()

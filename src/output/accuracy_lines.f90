@@ -24,6 +24,10 @@ contains
       integer :: d, i
 
       if (.not. accuracy%is_on) return
+      if (size(accuracy%rounds) == 0) then
+         call append(lines, 'requested accuracy not reached: round 1 did not come to its end')
+         return
+      end if
       verdict = 'requested accuracy '//trim(merge('reached    ', 'not reached', &
          accuracy%is_reached()))//' after '//counted(size(accuracy%rounds), 'round')
       ! Read only while another round is solved, or where that did not come to its end.
@@ -51,6 +55,7 @@ contains
       integer :: d
 
       if (.not. accuracy%is_on) return
+      if (size(accuracy%rounds) == 0) return
       associate (last => accuracy%rounds(size(accuracy%rounds)))
          do d = 1, size(accuracy%demands)
             if (all(last%findings(d, :)%is_met())) cycle

@@ -8,7 +8,8 @@ module deck_outcomes
    use messages, only: print_line
    use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
-   use text, only: counted, string_type, to_text, with_decimals
+   use text, only: append, counted, string_type, to_text, with_decimals
+   use utf8, only: printable
    implicit none
    private
    public :: deck_outcome_type
@@ -53,6 +54,7 @@ module deck_outcomes
       procedure :: fail
       procedure :: words
       procedure :: print => print_outcome
+      procedure :: round_summary
       procedure :: print_failed_checks
    end type deck_outcome_type
 
@@ -122,6 +124,7 @@ contains
       type(report_type), intent(in) :: report
 
       self%status = int(report%status)
+      self%lacks_memory = report%lacks_memory == 1
       self%increments = int(report%increments)
       self%iterations = int(report%iterations)
       self%verify_passed = int(report%verify_passed)
@@ -160,6 +163,7 @@ contains
          string = 'not converged'
       case (status_internal)
          string = 'internal/I-O error'
+         if (self%lacks_memory) string = 'out of memory'
       case (status_verify)
          string = 'check failed'
          if (self%verify_failed == 0) string = 'accuracy not reached'
@@ -175,6 +179,7 @@ contains
       class(deck_outcome_type), intent(in) :: self    !! the run
       character(*), intent(in) :: results             !! path of its results without extension
       character(:), allocatable :: doubts
+      type(string_type), allocatable :: lines(:)
       integer :: i
 
       doubts = ''
@@ -185,18 +190,41 @@ contains
       call print_line(output_unit, self%path//': '//self%words()//', '// &
          counted(self%increments, 'increment')//' in '//with_decimals(self%seconds, 2)//' s'// &
          doubts)
-      if (allocated(self%summary)) then
-         do i = 1, size(self%summary)
-            call print_line(output_unit, '  '//self%summary(i)%value)
-         end do
-      end if
-      if (self%files > 0 .and. (self%keeps_round .or. self%status /= status_deck .and. &
-         self%status /= status_internal)) then
-         call print_line(output_unit, '  results: '//results//trim(extensions(self%files)))
-      end if
-      if (self%verify_passed + self%verify_failed > 0) call print_line(output_unit, '  '// &
-         counted(self%verify_passed, 'check')//' passed, '//to_text(self%verify_failed)//' failed')
+      lines = lines_below(self, results)
+      do i = 1, size(lines)
+         call print_line(output_unit, '  '//lines(i)%value)
+      end do
    end subroutine print_outcome
+
+   !> What is printed of the last whole round behind `deck: interrupted`.
+   function round_summary(self, results) result(words)
+      class(deck_outcome_type), intent(in) :: self    !! the run, whose last round was whole
+      character(*), intent(in) :: results             !! path of its results without extension
+      character(:), allocatable :: words              !! lines with their ends
+      type(string_type), allocatable :: lines(:)
+      integer :: i
+
+      words = ', '//counted(self%increments, 'increment')//new_line('a')
+      lines = lines_below(self, results)
+      do i = 1, size(lines)
+         words = words//printable('  '//lines(i)%value)//new_line('a')
+      end do
+   end function round_summary
+
+   !> What the run comes to, where its results are, and how many checks passed.
+   function lines_below(self, results) result(lines)
+      class(deck_outcome_type), intent(in) :: self
+      character(*), intent(in) :: results
+      type(string_type), allocatable :: lines(:)
+
+      allocate (lines(0))
+      if (allocated(self%summary)) lines = self%summary
+      if (self%files > 0 .and. (self%keeps_round .or. self%status /= status_deck .and. &
+         self%status /= status_internal)) call append(lines, 'results: '//results// &
+         trim(extensions(self%files)))
+      if (self%verify_passed + self%verify_failed > 0) call append(lines, &
+         counted(self%verify_passed, 'check')//' passed, '//to_text(self%verify_failed)//' failed')
+   end function lines_below
 
    !> Prints the checks that failed on stderr, one line each.
    subroutine print_failed_checks(self)

@@ -243,7 +243,7 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: accuracy(:), lines(:), missed(:), warnings(:)
       character(:), allocatable :: block
-      integer :: i
+      integer :: i, later_round
 
       if (size(verifier%outcomes) > 0) call print_verdicts(self%text%unit, model%verifications, &
          verifier%outcomes)
@@ -265,9 +265,11 @@ contains
       call write_text(self, error)
       if (allocated(error)) return
       allocate (lines(0), missed(0))
+      later_round = 0
+      if (run%accuracy%goes_on) later_round = size(run%accuracy%rounds) + 1
       call add_missed(run%accuracy, interfaces, missed)
       call append(lines, ending(allocated(self%failure), self%summary%increment, &
-         run%verify_failed, size(missed)))
+         run%verify_failed, size(missed), later_round))
       call append(lines, checks(verifier, run))
       call append(lines, warnings_below(size(warnings)))
       call self%summary%add_lines(model, interfaces, lines)

@@ -14,17 +14,22 @@ module listing_summary
 contains
 
    !> How the run ended.
-   pure function ending(has_failed, increments, failed_checks, missed) result(line)
+   pure function ending(has_failed, increments, failed_checks, missed, later_round) result(line)
       logical, intent(in) :: has_failed          !! whether it ended early
       integer, intent(in) :: increments          !! accepted ones
       integer, intent(in) :: failed_checks
       integer, intent(in) :: missed              !! targets of accuracy that are not met
+      integer, intent(in) :: later_round         !! round that was begun after this one; 0 for none
       character(:), allocatable :: line
 
       line = 'solved'
       if (missed > 0) line = 'accuracy not reached'
-      if (failed_checks > 0) line = 'check failed'
+      if (failed_checks > 0 .and. missed == 0) line = 'check failed'
+      if (failed_checks > 0 .and. missed > 0) line = 'check failed, '//line
       line = line//', '//counted(increments, 'increment')
+      ! Read only while that round is solved, or where it did not come to its end.
+      if (later_round > 0) line = line//'; round '//to_text(later_round)// &
+         ' is being solved, or see ENDED EARLY at the end'
       if (has_failed) line = 'ended early after '//counted(increments, 'increment')// &
          ', see ENDED EARLY below'
    end function ending

@@ -20,7 +20,7 @@ module result_accuracy
 
 contains
 
-   !> Writes the rounds, where an accuracy is requested.
+   !> Writes the rounds, where an accuracy is requested and the first one came to its end.
    !> Error: status_internal, when HDF5 refuses.
    subroutine write_accuracy(file, accuracy, interfaces, labels, error)
       integer(hid_t), intent(in) :: file                     !! the open file
@@ -31,6 +31,7 @@ contains
       integer :: d, i
 
       if (.not. accuracy%is_on) return
+      if (size(accuracy%rounds) == 0) return
       call create_group(file, group, error)
       if (allocated(error)) return
       associate (rounds => accuracy%rounds)

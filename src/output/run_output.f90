@@ -140,6 +140,7 @@ contains
       character(*), intent(in) :: reason                     !! what went wrong, one sentence
       type(increment_record_type), intent(in) :: record      !! attempts and passes; empty for none
 
+      call self%run%accuracy%drop_round()
       if (self%kept_round > 0) then
          call self%progress%clear()
          call self%results%give_up()

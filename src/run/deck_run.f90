@@ -25,7 +25,7 @@ module deck_run
    use variations, only: variation_type
    implicit none
    private
-   public :: run_deck, base_name
+   public :: run_deck, base_name, results_of
 
    !> What goes from one round to the next.
    type :: rounds_type
@@ -91,6 +91,8 @@ contains
       self%command = command
       if (allocated(rounds%variation)) self%output%kept_round = size(rounds%accuracy%rounds)
       call outcome%begin(self%output%kept_round > 0)
+      if (outcome%keeps_round .and. .not. command%quiet) call self%end%prepare_summary( &
+         outcome%round_summary(results_of(path, command)))
       call prepare_end(self, end_at_once)
       call begin_round(self, rounds, outcome)
       if (outcome%status == status_ok .and. allocated(self%model%steps)) then
@@ -163,7 +165,7 @@ contains
       self%output%run%deck_path = self%path
       call make_folder(self%command%folder)
       call self%end%hold(.true.)
-      call self%output%reserve(self%command%folder//'/'//base_name(self%path), lock, error)
+      call self%output%reserve(results_of(self%path, self%command), lock, error)
       call prepare_end(self, end_at_once)
       call self%end%hold(.false.)
    end subroutine reserve_files
@@ -299,7 +301,6 @@ contains
             round%elements = size(self%model%mesh%element_kind)
             call cpu_time(now)
             round%cpu_seconds = now - self%cpu_start
-            round%is_whole = .true.
          end associate
          call accuracy%name_idle()
          accuracy%goes_on = size(accuracy%rounds) < self%model%accuracy%rounds .and. .not. &
@@ -340,6 +341,15 @@ contains
          end do
       end associate
    end subroutine take_checks
+
+   !> Path of a deck's results without extension.
+   pure function results_of(path, command) result(results)
+      character(*), intent(in) :: path           !! the deck as given
+      type(command_type), intent(in) :: command
+      character(:), allocatable :: results       !! such as DIR/b for a/b.inp
+
+      results = command%folder//'/'//base_name(path)
+   end function results_of
 
    !> Name of a deck's results: its file name without folder and extension, or stdin where it is
    !> read from an open file, which has a number only.

@@ -45,13 +45,11 @@ contains
       self%end%listing = self%output%listing_path()
       self%end%working = self%output%working_path()
       self%end%kept = self%output%kept()
-      if (self%output%kept_round > 0) then
-         self%end%where = self%end%where//kept_words(self)
-      else if (self%output%published() < self%output%accepted()) then
-         ! Increments that wait for their publication are lost with the process.
-         self%end%where = self%end%where//'; the results hold those up to number '// &
-            to_text(self%output%published())
-      end if
+      self%end%holds = kept_words(self)
+      ! Increments that wait for their publication are lost with the process.
+      if (self%output%kept_round == 0 .and. self%output%published() < self%output%accepted()) &
+         self%end%holds = '; the results hold those up to number '// &
+         to_text(self%output%published())
       call self%end%prepare()
    end subroutine prepare_end
 
@@ -99,8 +97,10 @@ contains
       character(:), allocatable :: words   !! with a semicolon before them
 
       words = ''
-      if (self%output%published() == 0) words = '; the results are those of round '// &
-         to_text(self%output%kept_round)
+      associate (kept_round => self%output%kept_round)
+         if (kept_round > 0 .and. self%output%published() == 0) words = &
+            '; the results are those of round '//to_text(kept_round)
+      end associate
    end function kept_words
 
    !> Prints why a run ended early. That a later round did is no mistake of the deck.

@@ -186,13 +186,15 @@ def kept_round(folder, name, words):
     said = f"; the results are those of round {whole}"
     assert said in words, words
     listing = (folder / f"{name}.lst").read_text()
-    assert f"accuracy not reached, {len(times)} increments" in listing
+    assert (f"accuracy not reached, {len(times)} increments; round {whole + 1} is being solved, or "
+            "see ENDED EARLY at the end\n") in re.sub(" +\n", "\n", listing)
     assert re.search(rf"requested accuracy not reached after {whole} rounds?; round {whole + 1} was "
                      "begun", listing)
     assert listing.count("\nSECONDS\n") == 1
     reason = re.search(r"error: (?:round \d+: )?([^;\n]+)", words)[1]
     ended = " ".join(listing[listing.index("\nENDED EARLY\n"):].split())
-    assert reason in ended and f"The results are those of round {whole}" in ended
+    assert reason in ended and ended.count("esults are those of round ") == 1
+    assert f"The results are those of round {whole}" in ended
     return whole
 
 
@@ -202,12 +204,17 @@ def in_a_later_round(folder, seconds):
     process = subprocess.Popen(
         [PROGRAM, "run", "--accuracy", "0.01%", deck, "--out", folder], text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    listing, until = folder / "deck.lst", time.monotonic() + 60.0
-    while not (listing.exists() and "REQUESTED ACCURACY" in listing.read_text()):
-        assert process.poll() is None and time.monotonic() < until
-        time.sleep(0.01)
+    wait_for(process, folder / "deck.lst", "REQUESTED ACCURACY")
     time.sleep(seconds)
     return process
+
+
+def wait_for(process, path, words):
+    """Wait until a file of a run holds some words."""
+    until = time.monotonic() + 60.0
+    while not (path.exists() and words in path.read_text()):
+        assert process.poll() is None and time.monotonic() < until
+        time.sleep(0.01)
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.3, 1.2])
@@ -219,8 +226,24 @@ def test_a_signal_in_a_later_round_keeps_the_last_whole_one(tmp_path, seconds):
     assert process.returncode == 5, words
     whole = kept_round(tmp_path, "deck", words)
     assert f"ended by SIGINT in round {whole + 1} " in words
-    if "results:" in output:   # where the signal did not end the process within an increment
-        assert "deck.inp: interrupted, 45 increments" in output
+    assert "deck.inp: interrupted, 45 increments" in output and f"results: {tmp_path}/deck" in output
+    assert re.search(rf"not reached after {whole} rounds?; round {whole + 1} was begun\n", output)
+
+
+def test_a_first_round_that_is_not_whole_has_no_row(tmp_path):
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*REFINE, LEVELS=3"])
+    process = subprocess.Popen(
+        [PROGRAM, "run", "--accuracy", "1%", deck, "--out", tmp_path], text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    wait_for(process, tmp_path / "deck.sta", "\n")
+    process.send_signal(signal.SIGINT)
+    output, words = process.communicate(timeout=60.0)
+    assert process.returncode == 5, words
+    told = "requested accuracy not reached: round 1 did not come to its end\n"
+    assert told in output and told in (tmp_path / "deck.lst").read_text()
+    assert "CPU seconds" not in output
+    with h5py.File(tmp_path / "deck.vtkhdf") as file:
+        assert "accuracy" not in file
 
 
 def test_files_of_a_later_round_hold_the_verdicts_of_the_first(tmp_path):
@@ -281,9 +304,10 @@ def test_memory_that_runs_out_in_a_later_round_keeps_the_last_whole_one(tmp_path
     """As where others take it meanwhile, which no estimate can foresee."""
     process = in_a_later_round(tmp_path, seconds)
     resource.prlimit(process.pid, resource.RLIMIT_AS, (1000000, 1000000))
-    _, words = process.communicate(timeout=60.0)
+    output, words = process.communicate(timeout=60.0)
     assert process.returncode == 3, words
     assert kept_round(tmp_path, "deck", words) > 0
+    assert "deck.inp: out of memory, 45 increments" in output and "results: " in output
 
 
 def test_a_run_keeps_its_lock_from_round_to_round(tmp_path):

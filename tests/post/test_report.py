@@ -261,12 +261,50 @@ DECK
 ----
        1  *HEADING
 """)
-    found = read_listing(listing, ["*HEADING"])
+    cards = ["*HEADING"]
+    found = read_listing(listing, cards)
     assert found.outcome == "solved, 3 increments"
     (check,) = found.checks
     assert (check.verdict, check.source, check.failed) == ("FAIL", "theory", "no such time")
     assert found.warnings == ["the first, which goes on below", "the second"]
-    assert read_listing(tmp_path / "none.lst", ["*HEADING"]) is None
+    assert read_listing(tmp_path / "none.lst", cards) is None
+
+    whole = listing.read_text()
+    begun = "solved, 3 increments; round 2 is being solved"
+    listing.write_text(whole.replace("solved, 3 increments", f"{begun}, or see ENDED EARLY at the end"))
+    assert read_listing(listing, cards).outcome == begun
+    with listing.open("a") as file:
+        file.write("\nENDED EARLY\n-----------\n   memory ran out\n   The results are those of round 1."
+                   "\n\n   ITERATION HISTORY\n")
+    found = read_listing(listing, cards)
+    assert found.outcome == "solved, 3 increments"
+    assert found.ended_early == "memory ran out. The results are those of round 1."
+    assert found.warnings[1:] == ["the second"]
+
+
+def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
+    def ask(file):
+        group = file.create_group("accuracy")
+        group["cpu_seconds"], group["unknowns"] = [0.125, 0.3], [100, 900]
+        group["elements"], group["increments"] = [10, 40], [15, 30]
+        group.attrs["reached"], group.attrs["later_round_begun"] = 0, 1
+        bounds = group.create_group("bounds/CYLINDER")
+        bounds["normal_force"] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 0.25, 0.1]]
+        bounds["peak_pressure"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.1, 0.1]]
+        bounds["heat_rate"] = np.zeros((2, 4))
+
+    text = synthetic(ask).read_text()
+    assert "<dd>not reached after 2 rounds; round 3 was begun</dd>" in text
+    rounds = re.search("<caption>Rounds of the requested accuracy.*?</table>", text)[0]
+    assert re.findall(r"<td[^>]*>(.*?)</td>", rounds) == \
+        ["100", "10", "15", "0.12", "900", "40", "30", "0.30"]
+    bounds = re.search("<caption>Error bounds of each round.*?</table>", text)[0]
+    rows = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in bounds.split("</tr>")[1:-1]]
+    assert [row[0] for row in rows] == ["heat rate", "normal force", "peak pressure"]
+    assert rows[0][1:3] == ["–", "–"] and rows[0][-1].startswith("skipped")
+    assert rows[1][1:4] == ["uncertain", "0.25", "0.1"] and ">not met<" in rows[1][-1]
+    assert rows[2][1:4] == ["0.4", "0.1", "0.1"] and ">met<" in rows[2][-1]
+    assert "Rounds of the" not in synthetic().read_text()
 
 
 def test_what_is_no_result_is_refused(tmp_path, capsys):

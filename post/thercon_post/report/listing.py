@@ -1,7 +1,8 @@
-"""What the page takes from the listing of the run: outcome, checks, warnings."""
+"""What the page takes from the listing of the run: outcome, why it ended early, checks, warnings."""
 
 import re
 from dataclasses import dataclass, field
+from itertools import takewhile
 
 # card, kind, quantity, where, time, expected, found, deviation, allowed, kind of it, verdict
 CHECK = re.compile(
@@ -9,6 +10,7 @@ CHECK = re.compile(
 )
 REMARK = re.compile(r"^ {8}(source|failed): (.*)$")
 ITEM = re.compile(r"^   - (.*)$")
+POINTER = re.compile(r"(;[^;]*)?, (?:or )?see ENDED EARLY.*$")
 
 
 @dataclass
@@ -35,6 +37,7 @@ class Listing:
     """The parts of a listing."""
 
     outcome: str = ""
+    ended_early: str = ""  # why, and what the results hold
     checks: list = field(default_factory=list)
     warnings: list = field(default_factory=list)
 
@@ -48,7 +51,12 @@ def read_listing(path, cards):
     if deck_of(lines) != [card.rstrip() for card in cards]:
         return None
     summary = [line.strip() for line in section(lines, "SUMMARY")]
-    found = Listing(outcome=next((line for line in summary if line), ""))
+    ended = [line.strip() for line in section(lines, "ENDED EARLY")]
+    # Why, then a sentence on the results.
+    words = re.sub(r"(?<!\.) (The results|No increment) ", r". \1 ", " ".join(takewhile(bool, ended)))
+    found = Listing(ended_early=words)
+    # The page tells the reason beside the outcome; without one a later round is being solved.
+    found.outcome = POINTER.sub("" if ended else r"\1", next((line for line in summary if line), ""))
     for line in section(lines, "VERIFICATION", underlined=False):
         check, remark = CHECK.match(line), REMARK.match(line)
         if check:
@@ -78,10 +86,12 @@ def section(lines, title, underlined=True):
 
 
 def deck_of(lines):
-    """Return the card images that the listing ends with; wide ones go on below."""
+    """Return the card images of the listing; wide ones go on below, ENDED EARLY may follow."""
     starts = [k for k, line in enumerate(lines) if line == "DECK"]
     cards = []
     for line in lines[starts[-1] + 2 :] if starts else ():
+        if line[:1].strip():
+            break
         if line[:8].strip():
             cards.append(line[10:])
         elif cards:

@@ -19,7 +19,8 @@ def page(result):
     listing = read_listing(result.path.with_suffix(".lst"), result.deck)
     heading = text(result.file["run"].attrs.get("heading", "")) or result.name
     sections = [
-        ("summary", "Summary", tables.facts(result, listing) + tables.bounds(result)),
+        ("summary", "Summary", tables.facts(result, listing) + tables.bounds(result)
+         + tables.rounds(result)),
         *([("contact", "Contact", contact_section(result))] if result.contact_names else []),
         ("fields", "Fields", FIELDS),
         ("history", "History", '<div id="histories" class="plots"></div>'),

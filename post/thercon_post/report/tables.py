@@ -37,7 +37,10 @@ def facts(result, listing):
     run, cells = result.file["run"].attrs, result.cells
     bodies = {int(b) for group in cells.bodies.values() for b in group}
     seconds = sum(float(run[key]) for key in run if key.startswith("seconds_"))
-    rows = [("outcome", escape(listing.outcome))] if listing and listing.outcome else []
+    rows = []
+    if listing:
+        told = ("outcome", listing.outcome), ("ended early", listing.ended_early)
+        rows += [(name, escape(words)) for name, words in told if words]
     rows += [
         ("increments", result.increments),
         ("last increment", escape(last_load(result))),
@@ -47,6 +50,8 @@ def facts(result, listing):
          f"{len(bodies)} bod{'y' if len(bodies) == 1 else 'ies'}"),
     ]
     rows += [(words, escape(text(run[key]))) for key, words in FACTS.items() if key in run]
+    if "accuracy" in result.file:
+        rows += [("requested accuracy", accuracy_words(result.file["accuracy"]))]
     rows += [("time of the run", f"{seconds:.2f} s")]
     listed = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in rows)
     return f'<dl class="facts">{listed}</dl>'
@@ -94,6 +99,46 @@ def bound_row(result, name, key, value):
         share = f" ({number(100.0 * bound / abs(value), 2)} %)" if value else ""
         row[2] = f"± {number(bound, 2)}{share}"
     return row
+
+
+def accuracy_words(group):
+    """Return whether a requested accuracy is reached, after how many rounds."""
+    count = len(group["unknowns"])
+    words = f"{'' if group.attrs['reached'] else 'not '}reached after {count} round"
+    words += "" if count == 1 else "s"
+    return words + (f"; round {count + 1} was begun" if group.attrs["later_round_begun"] else "")
+
+
+def rounds(result):
+    """Return the rounds of a requested accuracy: what each cost, and its bounds."""
+    group = result.file.get("accuracy")
+    if group is None:
+        return ""
+    named = [(contact.name, words_of(key), contact.unit(key), rows[:])
+             for contact in contacts_of(result)
+             for key, rows in group["bounds"].get(contact.name, {}).items()]
+    costs = [group[key][:] for key in ("unknowns", "elements", "increments")]
+    found = [[k + 1, *(each[k] for each in costs), f"{seconds:.2f}"]
+             for k, seconds in enumerate(group["cpu_seconds"][:])]
+    head = ["round", "unknowns", "elements", "increments", "CPU seconds"]
+    told = table("Rounds of the requested accuracy", head, found, range(1, 5))
+    head = ["interface", "quantity", *(f"round {k + 1}" for k in range(len(found))), "target",
+            "unit", "verdict"]
+    rows = [[escape(name), words, *target_cells(each, unit)] for name, words, unit, each in named]
+    return told + table("Error bounds of each round against their targets", head, rows,
+                        range(2, len(found) + 3))
+
+
+def target_cells(rows, unit):
+    """Return the bounds of all rounds, target, unit and verdict of the last one."""
+    step, _, bound, allowed = rows[-1]
+    cells = ["–" if each[0] == 0 else "uncertain" if np.isnan(each[2]) else number(each[2], 2)
+             for each in rows]
+    if step == 0:
+        return [*cells, "–", unit, "skipped: the deck has none at the ends of its steps"]
+    verdict = "met" if bound <= allowed else "not met"
+    look = "pass" if bound <= allowed else "fail"
+    return [*cells, number(allowed, 2), unit, f'<span class="{look}">{verdict}</span>']
 
 
 def number(value, digits=6):
