@@ -159,7 +159,8 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(draft_type), intent(inout) :: draft
       integer, intent(in) :: set
-      integer :: first, last, step, number, missing, steps
+      character(:), allocatable :: range
+      integer :: first, last, step, number, count, found, first_missing, k
       logical :: valid
 
       valid = .true.
@@ -173,21 +174,25 @@ contains
          call report%error(field_place(data, 1), 'the numbers must ascend from first to last')
          return
       end if
-      missing = (last - first)/step - (min(last, draft%numbers%largest()) - first)/step
-      do steps = 0, (min(last, draft%numbers%largest()) - first)/step
-         number = first + steps*step
-         if (draft%numbers%find(number) > 0) then
-            call add_members(draft, set, [draft%numbers%find(number)])
-         else
-            missing = missing + 1
-         end if
+      count = (last - first)/step + 1
+      found = 0
+      first_missing = 0   ! as the offset of its number, in steps
+      do k = 0, (min(last, draft%numbers%largest()) - first)/step
+         number = draft%numbers%find(first + k*step)
+         if (number == 0) cycle
+         call add_members(draft, set, [number])
+         if (first_missing == k) first_missing = k + 1
+         found = found + 1
       end do
-      if (missing > (last - first)/step) then
-         call report%missing(field_place(data, 1), 'there is no '//draft%noun//' from '// &
-            to_text(first)//' to '//to_text(last), draft%noun)
-      else if (missing > 0 .and. .not. report%has_lost(draft%noun)) then
-         call report%warning(field_place(data, 1), 'numbers ignored, there is no such '// &
-            draft%noun//': '//to_text(missing))
+      range = 'from '//to_text(first)//' to '//to_text(last)
+      if (found == 0) then
+         call report%missing(field_place(data, 1), 'there is no '//draft%noun//' '//range, &
+            draft%noun)
+      else if (found < count .and. .not. report%has_lost(draft%noun)) then
+         if (step > 1) range = range//' in steps of '//to_text(step)
+         call report%warning(field_place(data, 1), 'missing '//draft%noun//'s are left out: '// &
+            to_text(count - found)//' of '//to_text(count)//' '//range//', the first is '// &
+            to_text(first + first_missing*step))
       end if
    end subroutine generate
 
