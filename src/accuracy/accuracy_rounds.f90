@@ -14,6 +14,7 @@ module accuracy_rounds
    use kinds, only: dp
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
+   use text, only: to_text
    implicit none
    private
    public :: accuracy_rounds_type, accuracy_round_type, finding_type
@@ -39,6 +40,7 @@ module accuracy_rounds
    !> What one demand found at the end of one step.
    type :: finding_type
       logical :: is_there = .false.        !! whether the quantity has a value and an error
+      logical :: is_at_end = .false.       !! whether it is a pressure at an end of the interface
       real(dp) :: value = 0.0_dp           !! of the quantity
       real(dp) :: change = 0.0_dp          !! what the round changed it by
       real(dp) :: mesh = 0.0_dp            !! bound of the error of the mesh; NaN: uncertain
@@ -65,6 +67,8 @@ module accuracy_rounds
    type :: accuracy_rounds_type
       logical :: is_on = .false.                             !! whether anything is requested
       logical :: goes_on = .false.                           !! whether another round follows
+      character(:), allocatable :: reason                    !! why none does; empty where it is
+      !! reached
       integer :: checks_passed = 0, checks_failed = 0        !! *VERIFY checks, judged in round 1
       type(demand_type), allocatable :: demands(:)
       type(accuracy_round_type), allocatable :: rounds(:)    !! the last is the present one
@@ -74,8 +78,8 @@ module accuracy_rounds
       procedure :: drop_round
       procedure :: follow
       procedure :: is_reached
+      procedure :: conclude
       procedure :: stands_still
-      procedure :: name_idle
    end type accuracy_rounds_type
 
 contains
@@ -158,8 +162,12 @@ contains
             if (ieee_is_nan(scale)) scale = 0.0_dp
             scale = max(scale, early*self%largest(d), beside_others*maxval(self%largest, &
                mask=self%demands%quantity == self%demands(d)%quantity))
-            self%rounds(n)%findings(d, record%step) = found(self%demands(d), points, &
-               record%errors(self%demands(d)%interface), scale)
+            associate (finding => self%rounds(n)%findings(d, record%step))
+               finding = found(self%demands(d), points, &
+                  record%errors(self%demands(d)%interface), scale)
+               finding%is_at_end = estimated(self%demands(d)%quantity)%name == 'peak_pressure' &
+                  .and. any(maxloc(contact%pressure, dim=1) == [1, size(contact%pressure)])
+            end associate
             call add_change(self%rounds, d, record%step)
          end associate
       end do
@@ -283,6 +291,26 @@ contains
       over_target = huge(1.0_dp)
       if (.not. ieee_is_nan(finding%bound)) over_target = finding%bound/finding%allowed
    end function over_target
+
+   !> Concludes a round: whether another one follows, and why not.
+   subroutine conclude(self, most_rounds, nothing_is_left)
+      class(accuracy_rounds_type), intent(inout) :: self
+      integer, intent(in) :: most_rounds
+      logical, intent(in) :: nothing_is_left     !! whether there is nothing to refine
+
+      call name_idle(self)
+      self%reason = ''
+      if (self%is_reached()) return
+      if (self%stands_still()) then
+         self%reason = 'the last two came no nearer to the targets'
+      else if (nothing_is_left) then
+         self%reason = 'there is nothing left to refine'
+      else if (size(self%rounds) >= most_rounds) then
+         self%reason = '*ACCURACY, ROUNDS='//to_text(most_rounds)//' allows no more'
+      else
+         self%goes_on = .true.
+      end if
+   end subroutine conclude
 
    !> Whether the last two rounds brought the targets no nearer, as where a pressure grows without
    !> limit.

@@ -21,6 +21,7 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), allocatable, intent(inout) :: lines(:)
       character(:), allocatable :: verdict
+      character(name_width) :: name
       integer :: d, i
 
       if (.not. accuracy%is_on) return
@@ -33,9 +34,11 @@ contains
       ! Read only while another round is solved, or where that did not come to its end.
       if (accuracy%goes_on) verdict = verdict//'; round '//to_text(size(accuracy%rounds) + 1)// &
          ' was begun'
+      if (accuracy%reason /= '') verdict = verdict//': '//accuracy%reason
       call append(lines, verdict)
       do d = 1, size(accuracy%demands)
-         call append(lines, target_words(accuracy, d, interfaces))
+         name = demand_name(accuracy, d, interfaces)
+         call append(lines, '   '//name//' '//target_words(accuracy, d))
       end do
       if (size(accuracy%rounds) > 1 .and. accuracy%checks_passed + &
          accuracy%checks_failed > 0) call append(lines, &
@@ -47,7 +50,7 @@ contains
       end do
    end subroutine add_accuracy
 
-   !> Adds one line for each target that is not met.
+   !> Adds one line for each target that is not met, and one with the reason why the rounds ended.
    subroutine add_missed(accuracy, interfaces, lines)
       type(accuracy_rounds_type), intent(in) :: accuracy
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
@@ -59,36 +62,43 @@ contains
       associate (last => accuracy%rounds(size(accuracy%rounds)))
          do d = 1, size(accuracy%demands)
             if (all(last%findings(d, :)%is_met())) cycle
-            call append(lines, 'the requested accuracy is not reached: '//trim(adjustl( &
-               target_words(accuracy, d, interfaces))))
+            call append(lines, 'the requested accuracy is not reached: '// &
+               demand_name(accuracy, d, interfaces)//' '//target_words(accuracy, d))
          end do
       end associate
+      if (size(lines) > 0 .and. accuracy%reason /= '') call append(lines, &
+         'the requested accuracy is not reached after '//counted(size(accuracy%rounds), 'round')// &
+         ': '//accuracy%reason)
    end subroutine add_missed
 
-   !> A target, and the bound at the end of the step that is furthest from it.
-   function target_words(accuracy, d, interfaces) result(words)
+   !> Interface and quantity of a target.
+   function demand_name(accuracy, d, interfaces) result(name)
       type(accuracy_rounds_type), intent(in) :: accuracy
       integer, intent(in) :: d
       type(contact_points_type), intent(in) :: interfaces(:)
+      character(:), allocatable :: name
+
+      associate (demand => accuracy%demands(d))
+         name = interfaces(demand%interface)%name//' '//words_of(estimated(demand%quantity)%name)
+      end associate
+   end function demand_name
+
+   !> The bound at the end of the step that is furthest from a target.
+   function target_words(accuracy, d) result(words)
+      type(accuracy_rounds_type), intent(in) :: accuracy
+      integer, intent(in) :: d
       character(:), allocatable :: words
       type(finding_type) :: finding
-      character(name_width) :: name
       integer :: step
 
       associate (demand => accuracy%demands(d), last => accuracy%rounds(size(accuracy%rounds)))
-         name = interfaces(demand%interface)%name//' '//words_of(estimated(demand%quantity)%name)
-         words = '   '//name
-         if (demand%idle /= '') then
-            words = words//' skipped: '//demand%idle
-            return
-         end if
+         words = 'skipped: '//demand%idle
+         if (demand%idle /= '') return
+         words = 'not judged'
          step = last%worst_step(d)
-         if (step == 0) then
-            words = words//' not judged'
-            return
-         end if
+         if (step == 0) return
          finding = last%findings(d, step)
-         words = words//trim(merge(' met:    ', ' not met:', finding%is_met()))
+         words = trim(merge('met:    ', 'not met:', finding%is_met()))
          if (ieee_is_nan(finding%bound)) then
             words = words//' uncertain'
          else
@@ -96,7 +106,10 @@ contains
          end if
          words = words//', target '//amount(finding%allowed)
          if (size(last%findings, 2) > 1) words = words//', step '//to_text(step)
-         if (.not. finding%is_met()) words = words//reason(finding)
+         if (finding%is_met()) return
+         words = words//reason(finding)
+         if (finding%is_at_end .and. accuracy%stands_still()) words = words// &
+            '; the peak is at an end of the face, where the pressure may grow without limit'
       end associate
    contains
       !> A bound, with its part of the value's scale where the target is one.

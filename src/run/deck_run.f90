@@ -302,10 +302,7 @@ contains
             call cpu_time(now)
             round%cpu_seconds = now - self%cpu_start
          end associate
-         call accuracy%name_idle()
-         accuracy%goes_on = size(accuracy%rounds) < self%model%accuracy%rounds .and. .not. &
-            (accuracy%is_reached() .or. accuracy%stands_still() .or. &
-            self%indicators%asks_for_nothing())
+         call accuracy%conclude(self%model%accuracy%rounds, self%indicators%asks_for_nothing())
       end associate
    end subroutine judge_round
 

@@ -68,7 +68,9 @@ def test_targets_that_are_missed_are_told_with_status_4(tmp_path):
     deck = copy_deck(CYLINDER, tmp_path / "one.inp", cards)
     process = run("run", deck, "--out", tmp_path)
     assert process.returncode == 4
-    assert "the requested accuracy is not reached: FACE edge of contact" in process.stderr
+    missed = "the requested accuracy is not reached"
+    assert f"{missed}: FACE edge of contact not met: bound " in process.stderr
+    assert f"{missed} after 1 round: *ACCURACY, ROUNDS=1 allows no more\n" in process.stderr
     assert f"{deck}: accuracy not reached, " in process.stdout
     assert "check failed" not in process.stdout + process.stderr
     assert "   accuracy not reached, " in deck.with_suffix(".lst").read_text()
@@ -156,6 +158,9 @@ def test_a_pressure_without_limit_is_never_reached_on_mortar_points(tmp_path, ta
         "A.TOP, 2, 2, -0.01", "*END STEP"])
     process = run("run", deck, "--out", tmp_path, "--accuracy", f"{target}%")
     assert process.returncode == 4, process.stderr
+    for words in (process.stdout, process.stderr, " ".join(deck.with_suffix(".lst").read_text().split())):
+        assert " rounds: the last two came no nearer to the targets" in words
+        assert "; the peak is at an end of the face, where the pressure may grow without limit" in words
     _, bounds, reached = rounds_of(tmp_path / "punch.vtkhdf", "P")
     peak = bounds["peak_pressure"]
     assert not reached and not np.any(peak[:, 2] <= peak[:, 3])
