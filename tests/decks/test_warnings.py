@@ -414,6 +414,25 @@ def test_initial_temperatures_of_some_nodes_only(tmp_path, given, missing):
             f"no initial temperature to {missing} nodes of the bodies, such as 101: they start at 0")
 
 
+@pytest.mark.parametrize(("bottom", "top", "start", "expansion", "warned"), [
+    ("20.", "120.", [], "1.E-5", True), ("-20.", "-5.", [], "1.E-5", True),
+    ("20.", "120.", ["A, 0."], "1.E-5", False), ("0.", "120.", [], "1.E-5", False),
+    ("-5.", "5.", [], "1.E-5", False), ("20.", "120.", [], "0.", False)])
+def test_bodies_that_expand_from_0_degrees(tmp_path, bottom, top, start, expansion, warned):
+    """A temperature of 0 or on either side of it is one that counts from there."""
+    step = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", "*BOUNDARY",
+            "A.BOTTOM, 1, 2", f"A.BOTTOM, 11, 11, {bottom}", f"A.TOP, 11, 11, {top}", "*END STEP"]
+    given = ["*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "A.BOTTOM, 1, 2", "*TEMPERATURE",
+             f"A.BOTTOM, {bottom}", f"A.TOP, {top}", "*END STEP"]
+    card = "*INITIAL CONDITIONS, TYPE=TEMPERATURE"
+    for loads, first in ((step, "A.BOTTOM, 11"), (given, "A.BOTTOM, ")):
+        found = warnings(tmp_path, [card, *start] if start else [], conducting(loads, expansion=expansion))
+        found = [each for each in found if "bodies expand from 0" in each[0]]
+        assert len(found) == warned
+        if warned:
+            assert one(found, first).endswith(f"give {card}, with the value 0 where temperatures are rises")
+
+
 def test_a_table_of_conductances_that_are_all_0(tmp_path):
     """The first column is the conductance; the law of the other tables conducts somewhere."""
     for rows, warned in ((["0., 1.", "0., 2."], True), (["0., 1.", "1., 2."], False)):

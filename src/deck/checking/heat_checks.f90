@@ -7,8 +7,10 @@ module heat_checks
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use kinds, only: dp
+   use load_requests, only: request_type
    use model, only: model_type
-   use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat
+   use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat, &
+      solves_mechanics
    use text, only: counted, to_text
    implicit none
    private
@@ -50,7 +52,10 @@ contains
       integer :: i
 
       associate (given => context%temperatures, mesh => model%mesh)
-         if (given%count == 0) return
+         if (given%count == 0) then
+            call check_no_start(context, model, report)
+            return
+         end if
          if (.not. any(abs(given%items(:given%count)%value) > 0.0_dp)) return
          if (.not. (any(solves_heat(model%steps%analysis)) .or. &
             any(model%materials%has_expansion))) return
@@ -72,6 +77,32 @@ contains
             ': they start at 0')
       end associate
    end subroutine check_starts
+
+   !> Warns where bodies that expand are heated and no initial temperature is given, unless a
+   !> temperature of 0 or on either side of it shows that they count from 0.
+   subroutine check_no_start(context, model, report)
+      type(deck_context_type), intent(in) :: context      !! *BOUNDARY, loads
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report     !! receives the warning
+      type(request_type), allocatable :: given(:)
+      integer :: i
+
+      if (.not. any(solves_mechanics(model%steps%analysis))) return
+      if (.not. any([(maxval(abs(model%materials(model%sections(i)%material)%expansion)) > &
+         0.0_dp, i=1, size(model%sections))])) return
+      associate (boundaries => context%boundaries, loads => context%loads)
+         allocate (given(0))
+         if (boundaries%count > 0) given = pack(boundaries%items(:boundaries%count), &
+            boundaries%items(:boundaries%count)%component == dof_temperature)
+         if (loads%count > 0) given = [given, pack(loads%items(:loads%count), &
+            loads%items(:loads%count)%kind == load_temperature)]
+      end associate
+      if (size(given) == 0) return
+      if (minval(given%value) <= 0.0_dp .and. maxval(given%value) >= 0.0_dp) return
+      call report%warning(given(1)%place, 'temperatures are prescribed, but no initial one is '// &
+         'given: bodies expand from 0; give *INITIAL CONDITIONS, TYPE=TEMPERATURE, with the '// &
+         'value 0 where temperatures are rises')
+   end subroutine check_no_start
 
    !> Warns of the first *EXPANSION that is too large for small strains.
    subroutine check_expansion(cards, model, report)
