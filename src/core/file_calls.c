@@ -36,7 +36,13 @@ int file_remove(const char *path)
 
 int file_make_folder(const char *path)
 {
-   return mkdir(path, 0777) == 0 ? 0 : errno;
+   return mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : errno;
+}
+
+/* Whether files can be made in a folder, whose path ends with a slash. */
+int file_check_folder(const char *path)
+{
+   return access(path, W_OK | X_OK) == 0 ? 0 : errno;
 }
 
 int file_is_terminal(int descriptor)

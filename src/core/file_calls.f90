@@ -43,6 +43,12 @@ module file_calls
          integer(c_int) :: number
       end function c_make_folder
 
+      function c_check_folder(path) bind(c, name='file_check_folder') result(number)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: number
+      end function c_check_folder
+
       function c_is_terminal(descriptor) bind(c, name='file_is_terminal') result(answer)
          import :: c_int
          integer(c_int), value :: descriptor
@@ -143,17 +149,26 @@ contains
       if (number /= 0) call set_error(error, status_internal, cannot_write(to, reason_of(number)))
    end subroutine rename_file
 
-   !> Makes a folder and those above it; one that is there already is left as it is. Whether it can
-   !> be written to shows when a file is opened in it.
-   subroutine make_folder(path)
-      character(*), intent(in) :: path   !! the folder
+   !> Makes a folder and those above it; one that is there already is left as it is.
+   !> Error: status_internal, when it cannot be made or no file can be made in it.
+   subroutine make_folder(path, error)
+      character(*), intent(in) :: path                     !! the folder
+      type(error_type), allocatable, intent(out) :: error  !! with the first reason
       integer :: i
-      integer(c_int) :: ignored
+      integer(c_int) :: made, number
 
-      do i = 2, len(path)
-         if (path(i:i) == '/') ignored = c_make_folder(path(:i - 1)//c_null_char)
+      made = 0
+      do i = 2, len(path) + 1
+         if (i <= len(path)) then
+            if (path(i:i) /= '/') cycle
+         end if
+         if (made == 0) made = c_make_folder(path(:i - 1)//c_null_char)
       end do
-      ignored = c_make_folder(path//c_null_char)
+      number = c_check_folder(path//'/'//c_null_char)
+      if (number == 0) return
+      if (made /= 0) number = made
+      call set_error(error, status_internal, 'cannot write to the folder "'//path//'": '// &
+         reason_of(number)//'; name another one with --out')
    end subroutine make_folder
 
    !> Copies a file; a file that is at the target is overwritten.

@@ -63,8 +63,9 @@ contains
       if (status /= 0) return
       call catch_signals(outlives_pipes=.true.)
       call prepare(self, command)
+      call make_folder(command%folder, error)
       ! The table of an earlier batch must not be taken for that of this one.
-      call write_batch(command%folder, self%outcomes, error)
+      if (.not. allocated(error)) call write_batch(command%folder, self%outcomes, error)
       if (allocated(error)) then
          call print_error('thercon', error%message)
          status = error%status
@@ -123,7 +124,6 @@ contains
          self%outcomes(i)%reason = ''
       end do
       call self%progress%start(command%quiet)
-      call make_folder(command%folder)
    end subroutine prepare
 
    !> Starts decks where slots are free.

@@ -184,6 +184,8 @@ contains
 
       doubts = ''
       if (self%words() == 'skipped') return
+      ! Where nothing was done the reason, which is printed already, says all.
+      if (self%status == status_internal .and. self%increments == 0 .and. self%files == 0) return
       if (self%status == status_ok .and. allocated(self%reason)) then
          if (len(self%reason) > 0) doubts = '; '//self%reason
       end if

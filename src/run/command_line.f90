@@ -132,9 +132,16 @@ contains
             return
          end if
          value = argument(i)
+         if (len_trim(value) == 0) then
+            call set_error(error, status_deck, 'option '//word//' needs a value')
+            return
+         end if
          i = i + 1
       case default
-         if (index(word, '-') == 1) then
+         if (index(word, '--') == 1 .and. index(word, '=') > 0) then
+            call set_error(error, status_deck, 'unknown option '//word//': an option and its '// &
+               'value are separate words; see thercon --help')
+         else if (index(word, '-') == 1) then
             call set_error(error, status_deck, 'unknown option '//word//'; see thercon --help')
          else
             call append(command%decks, deck_file(word))
@@ -189,8 +196,6 @@ contains
          if (.not. valid .or. command%limit <= 0.0_dp) call set_error(error, status_deck, &
             'option --limit needs a number of seconds above 0, not '//value)
       case ('--out')
-         if (len(value) == 0) call set_error(error, status_deck, &
-            'option --out needs the name of a folder')
          command%folder = value
          if (len(value) > 1 .and. index(value, '/', back=.true.) == len(value)) then
             command%folder = value(:len(value) - 1)

@@ -163,7 +163,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       self%output%run%deck_path = self%path
-      call make_folder(self%command%folder)
+      call make_folder(self%command%folder, error)
+      if (allocated(error)) return
       call self%end%hold(.true.)
       call self%output%reserve(results_of(self%path, self%command), lock, error)
       call prepare_end(self, end_at_once)

@@ -65,10 +65,10 @@ contains
          status = error%status
          return
       end if
-      call make_folder(command%folder)
+      call make_folder(command%folder, error)
       results = command%folder//'/'//base_name(path)//'.trade'
       trade%instants = common_instants(model, longest_factor)
-      call try_file(results//'.csv', error)
+      if (.not. allocated(error)) call try_file(results//'.csv', error)
       if (.not. allocated(error)) call measure(path, command, results, model, trade, error)
       call forgive_signal(trade, error, ended_early)
       if (.not. allocated(error)) then

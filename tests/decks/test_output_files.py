@@ -118,7 +118,7 @@ def test_no_name_of_a_folder_is_refused(tmp_path, small):
     for command in ("run", "trade"):
         process = run(command, small, "--out", "", folder=tmp_path)
         assert process.returncode == 1
-        assert "--out needs the name of a folder" in process.stderr
+        assert "option --out needs a value" in process.stderr
     assert names(tmp_path) == ["small.inp"]
 
 
@@ -133,8 +133,17 @@ def test_a_folder_in_place_of_a_file_is_said_before_solving(tmp_path, small, ext
 def test_a_folder_that_cannot_be_is_said_with_the_reason(tmp_path, small):
     (tmp_path / "file").write_text("")
     out = tmp_path / "file" / "out"
-    refused(run("run", small, "--out", out), out / "small.lst", "Not a directory")
-    refused(run("run", small, "--out", "/dev/full"), "/dev/full/small.lst", "Not a directory")
+    for folder, reason in ((out, "Not a directory"), ("/dev/full", "Not a directory"),
+                           ("/proc/none/out", "No such file or directory")):
+        told = f'cannot write to the folder "{folder}": {reason}; name another one with --out'
+        for command in (["run"], ["run", "--jobs", "1"], ["trade"]):
+            process = run(*command, small, "--out", folder)
+            assert process.returncode == 3
+            assert process.stderr.endswith(f"error: {told}\n") and process.stderr.count("\n") == 1
+            assert process.stdout == ""
+    folder = tmp_path / "new" / "folder"
+    assert run("run", small, "--quiet", "--out", f"{folder}/").returncode == 0
+    assert "small.vtkhdf" in names(folder)
 
 
 @pytest.mark.parametrize("extension", ["lst", "sta", "cvg"])
