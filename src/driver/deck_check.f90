@@ -21,7 +21,8 @@ module deck_check
 
 contains
 
-   !> Reads one deck and prints what was understood; nothing is solved.
+   !> Reads one deck and prints what was understood, unless it is asked to be quiet; nothing is
+   !> solved.
    subroutine check_deck(path, command, status)
       character(*), intent(in) :: path            !! the deck as given
       type(command_type), intent(in) :: command   !! options of the command line
@@ -36,7 +37,7 @@ contains
       call prepare_deck(path, command, deck, model, simulation, error)
       if (allocated(error)) then
          status = error%status
-      else if (allocated(model%steps)) then
+      else if (allocated(model%steps) .and. .not. command%quiet) then
          call describe_run(path, model, simulation, run)
          call print_deck(model, simulation, run)
       end if

@@ -33,7 +33,7 @@ contains
       if (.not. allocated(record%iterations)) return
       passes = size(record%iterations)
       if (passes == 0) return
-      write (unit, '(3x, 2(a, i0), 5a)') 'passes ', passes, '   cut-backs ', record%cut_backs, &
+      write (unit, '(3x, 2(a, i0), 5a)') 'iterations ', passes, '   cut-backs ', record%cut_backs, &
          '   residual', column(history_value('residual', record), 9, 2), '  (floor', &
          column(history_value('residual_floor', record), 9, 2), ')'
       if (.not. ieee_is_nan(record%coupling_gain)) write (unit, '(a)') &

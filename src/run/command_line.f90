@@ -31,13 +31,13 @@ module command_line
    character(*), parameter :: usage = &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]'// &
       new_line('a')//'                           [--quiet] [--accuracy P%]'//new_line('a')// &
-      '       thercon check DECK... [--width N] [--set NAME=VALUE]'//new_line('a')// &
+      '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet]'//new_line('a')// &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]'// &
       new_line('a')// &
       '                          [--limit SECONDS] [--jobs N]'//new_line('a')// &
       '       thercon --help | --version'//new_line('a')//new_line('a')// &
-      '  run      solve each deck a/b.inp; write DIR/b.vtkhdf, .lst, .sta and .cvg;'// &
-      new_line('a')// &
+      '  run      solve each deck a/b.inp; write to DIR b.vtkhdf, b.contact.vtkhdf (where there is'// &
+      new_line('a')//'           contact), b.lst, b.sta and b.cvg;'//new_line('a')// &
       '           several decks run as a batch, each in a process of its own, and are listed'// &
       new_line('a')//'           in DIR/thercon-batch.csv'//new_line('a')// &
       '  check    read each deck and report every mistake; solve nothing'// &

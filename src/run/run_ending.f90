@@ -112,7 +112,7 @@ contains
       character(:), allocatable :: words
 
       words = error%message
-      if (error%status == status_no_convergence) words = words//'; the listing shows the passes'
+      if (error%status == status_no_convergence) words = words//'; the listing shows the iterations'
       associate (kept_round => self%output%kept_round)
          if (kept_round > 0) then
             if (error%status /= status_interrupted) words = ': '//words

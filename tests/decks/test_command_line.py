@@ -72,6 +72,9 @@ def test_quiet_silences_the_summary_but_no_error(good, bad, tmp_path):
     assert "good.inp" in loud.stdout + loud.stderr
     quiet = run("run", "--quiet", good, "--out", tmp_path)
     assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
+    quiet = run("check", "--quiet", good)
+    assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
+    assert "error: " in run("check", "--quiet", bad).stderr
     refused = run("run", "--quiet", bad, "--out", tmp_path)
     assert refused.returncode == 1
     assert f"{bad}:{len(bad.read_text().splitlines())}:1: error: " in refused.stderr

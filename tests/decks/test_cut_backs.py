@@ -87,7 +87,7 @@ def test_every_attempt_is_on_record(deck):
     assert len(re.findall(r"^ +attempt \d+ of size .* failed: the conductance", listing, re.M)) \
         == cuts.sum()
     assert "attempt 1 of size 1, to time 1, failed" in listing
-    blocks = re.findall(r"passes (\d+) +cut-backs (\d+)", listing)
+    blocks = re.findall(r"iterations (\d+) +cut-backs (\d+)", listing)
     assert [(int(a), int(b)) for a, b in blocks] == list(zip(iterations, cuts, strict=True))
 
 

@@ -16,6 +16,8 @@ module deck_builder_friction
    !> Group of warnings that explain bodies which friction should hold.
    character(*), parameter, public :: frictionless = 'friction'
 
+   real(dp), parameter :: largest_usual = 5.0_dp   !! coefficient, of rubber and of rough joints
+
 contains
 
    !> Takes one card: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
@@ -60,6 +62,10 @@ contains
       else if (coefficient > rough_coefficient) then
          call report%error(field_place(data, 1), 'the coefficient of friction must not exceed '// &
             to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
+      else if (coefficient > largest_usual .and. coefficient < rough_coefficient) then
+         call report%warning(field_place(data, 1), 'a coefficient of friction of '// &
+            to_text(coefficient)//' is unusual: is it in per cent? Use ROUGH for faces that '// &
+            'never slip while closed')
       end if
       if (size(data%fields) > 1) then
          call context%note('*FRICTION: the stick slope is ignored')
