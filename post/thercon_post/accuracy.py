@@ -4,6 +4,7 @@ import numpy as np
 
 from . import style
 from .errors import UserError
+from .result import words_of
 from .style import plt
 from .tables import stack_tables
 
@@ -17,17 +18,17 @@ def draw(result, options):
         raise UserError(f"{result.path}: no accuracy was requested (*ACCURACY, --accuracy), or its "
                         "first round did not come to its end")
     cost = np.cumsum(rounds["cpu_seconds"][:])
-    series = list(targets(rounds))
+    series = list(targets(result, rounds))
     if not series:
         raise UserError(f"{result.path}: no quantity has a target")
     figure, axes = plt.subplots(
         figsize=(style.DOUBLE_COLUMN * 0.62, 3.2), layout="constrained"
     )
     tables, any_below = [], False
-    for number, (name, rows) in enumerate(series):
+    for number, (name, rows, unit) in enumerate(series):
         value, bound, allowed = rows[:, 1], rows[:, 2], rows[:, 3]
         ratio = bound / allowed
-        label = name + uncertain_words(ratio)
+        label = f"{name}, target {target_words(allowed[-1], unit)}{uncertain_words(ratio)}"
         is_below = ratio < SMALLEST
         any_below = any_below or is_below.any()
         look = style.SERIES[number % len(style.SERIES)], style.MARKERS[number % len(style.MARKERS)]
@@ -39,11 +40,13 @@ def draw(result, options):
         table = {"target": np.full(len(cost), name, dtype=object), "cpu_seconds": cost}
         table |= {"unknowns": rounds["unknowns"][:], "value": value, "bound": bound}
         tables.append(table | {"allowed": allowed})
-    axes.axhline(1.0, color=style.GREY, lw=0.8, ls="--")
+    axes.axhline(1.0, color=style.GREY, lw=0.8, ls="--", label="target")
     if any_below:
         axes.plot([], [], "v", color=style.GREY, ms=4, mfc="none", label="below the scale")
     axes.set_xscale("log")
     axes.set_yscale("log")
+    for axis in (axes.xaxis, axes.yaxis):
+        style.log_ticks(axis, *sorted(axis.get_view_interval()))
     axes.set_xlabel("CPU time of all rounds, s")
     axes.set_ylabel("bound of the error / target")
     figure.legend(loc="outside lower center", ncols=2, fontsize=7)
@@ -61,10 +64,14 @@ def uncertain_words(ratio):
     return f" (uncertain in round {', '.join(map(str, rounds))})"
 
 
-def targets(rounds):
-    """Yield name and rows (step, value, bound, target) of each quantity that is there."""
-    for face, quantities in rounds["bounds"].items():
-        for quantity, rows in quantities.items():
+def target_words(allowed, unit):
+    """Return what the target of the last round allows, in words."""
+    return f"{allowed:.2g} {unit}".rstrip()
+
+
+def targets(result, rounds):
+    """Yield name, rows (step, value, bound, target) and unit of each quantity that is there."""
+    for contact in result.contacts():
+        for quantity, rows in rounds["bounds"].get(contact.name, {}).items():
             if np.any(rows[:, 0] > 0):
-                words = quantity.replace("edge_", "edge of ").replace("_", " ")
-                yield f"{style.plain(face)} {words}", rows[:]
+                yield f"{style.plain(contact.name)} {words_of(quantity)}", rows[:], contact.unit(quantity)

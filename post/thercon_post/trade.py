@@ -111,7 +111,10 @@ def draw_panel(axes, trade, name):
             if row["pareto"] == "1"
         )
         axes.step(*zip(*best, strict=True), where="post", color=style.BLUE, lw=0.8, zorder=1)
-    if trade.uncertainty.get(name):
+    if trade.uncertainty.get(name) and is_below(trade.uncertainty[name]):
+        axes.text(0.97, 0.03, f"uncertainty below {SMALLEST:g} %", transform=axes.transAxes,
+                  ha="right", va="bottom", fontsize=6, color=style.GREY)
+    elif trade.uncertainty.get(name):
         axes.axhline(percent(trade.uncertainty[name]), color=style.GREY, lw=0.7, ls="--", zorder=1)
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -189,7 +192,8 @@ def legend(trade):
         handles.append(handle("below the scale", marker="v"))
     handles.append(handle("deck as written", marker="o", ms=8, mfc="none", color=style.VERMILION))
     handles.append(handle("Pareto-optimal", ls="-", color=style.BLUE))
-    if trade.uncertainty:
+    known = (trade.uncertainty.get(name) for name in trade.panels())
+    if any(text and not is_below(text) for text in known):
         handles.append(handle("uncertainty of the reference", ls="--", color=style.GREY))
     if trade.failed:
         handles.append(handle(f"failed, not drawn: {len(trade.failed)}", alpha=0))

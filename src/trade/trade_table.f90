@@ -3,6 +3,7 @@ module trade_table
    use heat_balance, only: sound_imbalance
    use kinds, only: dp
    use messages, only: print_line
+   use recommendation, only: same_time
    use reported_quantities, only: traded
    use text, only: few_digits, percent, to_text, with_decimals
    use trade_quantities, only: is_there, quantity_count
@@ -37,8 +38,8 @@ contains
       do q = 1, quantity_count
          write (unit, '(a9)', advance='no') cell(trade%uncertainty(q))
       end do
-      write (unit, '(/, /, a)') '* no row is both cheaper and better (worst error); = the deck '// &
-         'as written'
+      write (unit, '(/, /, 3a)') '* no row is both cheaper, by more than ', &
+         to_text(nint(1000.0_dp*same_time)), ' ms, and better (worst error); = the deck as written'
       if (any(trade%rows(:trade%count)%contact_level > 0)) write (unit, '(a)') &
          'x 1:4: sides are those of the deck''s mesh, at both contact faces divided by 4 '// &
          '(*REFINE, LEVELS=2, SURFACE=)'

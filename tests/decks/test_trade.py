@@ -26,6 +26,7 @@ import rods
 
 FIGURES = "normal_force", "heat_rate", "peak_pressure", "edge_contact", "edge_stick"
 QUANTITIES = *FIGURES, "temperature"
+SAME_TIME = 2e-3  # seconds: docs/running.md
 WISHES = {"recommended_10": 0.1, "recommended_1": 0.01, "recommended_0.1": 0.001}
 COLUMNS = [
     *("row", "default", "elements", "level", "contact_level", "increment_factor", "varied"),
@@ -233,13 +234,14 @@ def test_the_reference_row_has_the_uncertainty_that_all_errors_contain(r2):
 
 def test_optimal_rows_are_beaten_by_none(r2):
     """With the two digits that count, as Fortran and Python print them; errors below 1e-6 count
-    as 1e-6."""
+    as 1e-6, times that differ by chance as equal."""
     rows = [row for row in r2[0][:-1] if row["status"] == "0"]
     points = [tuple(float(f"{number:.1e}") for number in
                     (float(row["cpu_seconds"]), max(float(row["error_worst"]), 1e-6)))
               for row in rows]
     for row, (cost, error) in zip(rows, points, strict=True):
-        beaten = any(c <= cost and e <= error and (c, e) != (cost, error) for c, e in points)
+        beaten = any(c <= cost + SAME_TIME and e < error or c < cost - SAME_TIME and e <= error
+                     for c, e in points)
         assert row["pareto"] == str(int(not beaten)), row
 
 

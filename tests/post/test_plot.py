@@ -804,6 +804,21 @@ def test_errors_of_a_trade_below_the_scale_are_marked_as_such(kept, tmp_path):
     assert "below the scale" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
+def test_an_uncertainty_below_the_scale_is_told_and_not_drawn_elsewhere(kept, tmp_path):
+    dashed = []
+    for known in ({}, {"error_worst": 1e-3}, {"error_worst": 1e-12}):
+        unknown = dict.fromkeys(["error_normal_force", "error_peak_pressure", "error_edge_contact"], "")
+        (figure,) = kept("trade", write_trade(
+            tmp_path / "deck.trade.csv",
+            lambda rows, known=known: [*rows[:-1], changed(rows[-1], **{"error_worst": "", **unknown, **known})]))
+        lines = [line for line in figure.axes[0].lines if line.get_linestyle() == "--"]
+        words = [text.get_text() for text in figure.axes[0].texts]
+        named = [text.get_text() for text in figure.legends[0].get_texts()]
+        dashed.append((len(lines), "uncertainty below 1e-06 %" in words,
+                       "uncertainty of the reference" in named))
+    assert dashed == [(0, False, False), (1, False, True), (0, True, False)]
+
+
 def test_trade_leaves_its_table_alone(draw, tmp_path):
     table = write_trade(tmp_path / "deck.trade.csv")
     before = table.read_text()
@@ -829,17 +844,17 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
     with h5py.File(asked, "a") as file:
         group = file.create_group("accuracy")
         group["cpu_seconds"], group["unknowns"] = [0.1, 0.3], [100, 900]
-        group["bounds/FACE/normal_force"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.05, 0.1]]
-        group["bounds/FACE/heat_rate"] = np.zeros((2, 4))
+        group["bounds/CYLINDER/normal_force"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.05, 0.1]]
+        group["bounds/CYLINDER/heat_rate"] = np.zeros((2, 4))
     (figure,) = kept("accuracy", asked)
     (line, limit) = figure.axes[0].get_lines()
     np.testing.assert_allclose(line.get_xdata(), [0.1, 0.4])
     np.testing.assert_allclose(line.get_ydata(), [4.0, 0.5])
     assert list(limit.get_ydata()) == [1.0, 1.0]
     with h5py.File(asked, "a") as file:
-        file["accuracy/bounds/FACE/normal_force"][...] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 1e-9, 0.1]]
+        file["accuracy/bounds/CYLINDER/normal_force"][...] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 1e-9, 0.1]]
     (figure,) = kept("accuracy", asked)
     (_, foot, *_) = figure.axes[0].get_lines()
     assert (foot.get_marker(), list(foot.get_xdata())) == ("v", [0.4])
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        "FACE normal force (uncertain in round 1)", "below the scale"]
+        "CYLINDER normal force, target 0.1 (uncertain in round 1)", "target", "below the scale"]
