@@ -251,6 +251,12 @@ VERIFICATION
         source: theory
         failed: no such time
 
+REQUESTED ACCURACY
+------------------
+   - requested accuracy not reached after 2 rounds: the last two came
+     no nearer
+   -    FACE normal force met
+
 WARNINGS
 --------
    - the first, which goes on
@@ -264,6 +270,8 @@ DECK
     cards = ["*HEADING"]
     found = read_listing(listing, cards)
     assert found.outcome == "solved, 3 increments"
+    assert found.accuracy == \
+        "requested accuracy not reached after 2 rounds: the last two came no nearer"
     (check,) = found.checks
     assert (check.verdict, check.source, check.failed) == ("FAIL", "theory", "no such time")
     assert found.warnings == ["the first, which goes on below", "the second"]
@@ -290,7 +298,7 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
         group.attrs["reached"], group.attrs["later_round_begun"] = 0, 1
         bounds = group.create_group("bounds/CYLINDER")
         bounds["normal_force"] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 0.25, 0.1]]
-        bounds["peak_pressure"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.1, 0.1]]
+        bounds["peak_pressure"] = [[1, 5000.0, 1320.0, 0.1], [1, 5.1, 0.1, 0.1]]
         bounds["heat_rate"] = np.zeros((2, 4))
 
     text = synthetic(ask).read_text()
@@ -303,7 +311,7 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
     assert [row[0] for row in rows] == ["heat rate", "normal force", "peak pressure"]
     assert rows[0][1:3] == ["–", "–"] and rows[0][-1].startswith("skipped")
     assert rows[1][1:4] == ["uncertain", "0.25", "0.1"] and ">not met<" in rows[1][-1]
-    assert rows[2][1:4] == ["0.4", "0.1", "0.1"] and ">met<" in rows[2][-1]
+    assert rows[2][1:4] == ["1300", "0.1", "0.1"] and ">met<" in rows[2][-1]
     assert "Rounds of the" not in synthetic().read_text()
 
 

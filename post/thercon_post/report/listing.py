@@ -38,6 +38,7 @@ class Listing:
 
     outcome: str = ""
     ended_early: str = ""  # why, and what the results hold
+    accuracy: str = ""  # whether a requested one is reached, and why not
     checks: list = field(default_factory=list)
     warnings: list = field(default_factory=list)
 
@@ -63,12 +64,20 @@ def read_listing(path, cards):
             found.checks.append(Check(*(part.strip() for part in check.groups())))
         elif remark and found.checks:
             setattr(found.checks[-1], *remark.groups())
-    for line in section(lines, "WARNINGS"):
+    found.warnings = items(section(lines, "WARNINGS"))
+    found.accuracy = "".join(items(section(lines, "REQUESTED ACCURACY"))[:1])
+    return found
+
+
+def items(lines):
+    """Return the items of a list, which may go on below their first lines."""
+    found = []
+    for line in lines:
         item = ITEM.match(line)
         if item:
-            found.warnings.append(item.group(1))
-        elif line.strip() and found.warnings:
-            found.warnings[-1] += " " + line.strip()
+            found.append(item.group(1))
+        elif line.strip() and found:
+            found[-1] += " " + line.strip()
     return found
 
 

@@ -36,6 +36,7 @@ def facts(result, listing):
     """Return what the run was."""
     run, cells = result.file["run"].attrs, result.cells
     bodies = {int(b) for group in cells.bodies.values() for b in group}
+    passed, failed = (int(run.get(f"verify_{key}", 0)) for key in ("passed", "failed"))
     seconds = sum(float(run[key]) for key in run if key.startswith("seconds_"))
     rows = []
     if listing:
@@ -44,14 +45,14 @@ def facts(result, listing):
     rows += [
         ("increments", result.increments),
         ("last increment", escape(last_load(result))),
-        ("checks", f"{int(run.get('verify_passed', 0))} passed, "
-         f"{int(run.get('verify_failed', 0))} failed"),
+        ("checks", f"{passed} passed, {failed} failed" if passed + failed else "none"),
         ("mesh", f"{cells.count} elements, {len(np.unique(cells.node_id))} nodes, "
          f"{len(bodies)} bod{'y' if len(bodies) == 1 else 'ies'}"),
     ]
     rows += [(words, escape(text(run[key]))) for key, words in FACTS.items() if key in run]
     if "accuracy" in result.file:
-        rows += [("requested accuracy", accuracy_words(result.file["accuracy"]))]
+        words = listing.accuracy.removeprefix("requested accuracy ") if listing else ""
+        rows += [("requested accuracy", escape(words) or accuracy_words(result.file["accuracy"]))]
     rows += [("time of the run", f"{seconds:.2f} s")]
     listed = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in rows)
     return f'<dl class="facts">{listed}</dl>'
@@ -143,7 +144,7 @@ def target_cells(rows, unit):
 
 def number(value, digits=6):
     """Return a number in words; a dash where there is none."""
-    return "–" if np.isnan(value) else f"{value:.{digits}g}".replace("-", "−")
+    return "–" if np.isnan(value) else f"{float(f'{value:.{digits}g}'):.6g}".replace("-", "−")
 
 
 def missing(result):
