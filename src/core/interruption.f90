@@ -23,7 +23,7 @@ module interruption
       logical :: shows_progress = .false.        !! whether there is a progress line to be cleared
       character(:), allocatable :: deck          !! path as given
       character(:), allocatable :: where         !! such as ' after increment 3'
-      character(:), allocatable :: holds         !! what is printed behind it of the results, or nothing
+      character(:), allocatable :: holds         !! what the results hold, printed behind it
       character(:), allocatable :: listing       !! path of the listing, empty for none
       character(:), allocatable :: kept          !! what the results hold, one sentence for the
       !! listing; empty where that is not begun

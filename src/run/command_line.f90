@@ -36,8 +36,8 @@ module command_line
       new_line('a')// &
       '                          [--limit SECONDS] [--jobs N]'//new_line('a')// &
       '       thercon --help | --version'//new_line('a')//new_line('a')// &
-      '  run      solve each deck a/b.inp; write to DIR b.vtkhdf, b.contact.vtkhdf (where there is'// &
-      new_line('a')//'           contact), b.lst, b.sta and b.cvg;'//new_line('a')// &
+      '  run      solve each deck a/b.inp; write to DIR b.vtkhdf, b.lst, b.sta, b.cvg and, with'// &
+      new_line('a')//'           contact, b.contact.vtkhdf;'//new_line('a')// &
       '           several decks run as a batch, each in a process of its own, and are listed'// &
       new_line('a')//'           in DIR/thercon-batch.csv'//new_line('a')// &
       '  check    read each deck and report every mistake; solve nothing'// &

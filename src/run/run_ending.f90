@@ -47,9 +47,10 @@ contains
       self%end%kept = self%output%kept()
       self%end%holds = kept_words(self)
       ! Increments that wait for their publication are lost with the process.
-      if (self%output%kept_round == 0 .and. self%output%published() < self%output%accepted()) &
+      if (self%output%kept_round == 0 .and. self%output%published() < self%output%accepted()) then
          self%end%holds = '; the results hold those up to number '// &
-         to_text(self%output%published())
+            to_text(self%output%published())
+      end if
       call self%end%prepare()
    end subroutine prepare_end
 

@@ -180,7 +180,7 @@ def test_a_deck_that_does_not_exist_is_named(tmp_path):
 def test_help_and_version(tmp_path):
     usage = run("--help", folder=tmp_path)
     assert usage.returncode == 0
-    assert "thercon run DECK" in usage.stdout
+    assert "thercon run DECK" in usage.stdout and "b.contact.vtkhdf" in usage.stdout
     version = run("--version", folder=tmp_path)
     assert version.returncode == 0
     assert all(name in version.stdout for name in ("thercon", "MUMPS", "METIS", "HDF5", "LAPACK"))
