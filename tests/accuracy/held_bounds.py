@@ -2,24 +2,31 @@
 
 The converged value of a quantity at the end of a step is that on a mesh refined four times at the
 faces and twice elsewhere, with increments a quarter as long; what a sixteenth changes is added, from
-the mesh refined once. Runs that take long are kept in the folder $THERCON_CONVERGED, if that is set.
+the mesh refined once. Where the path does not matter, errors that fall steadily as the faces are
+divided are extrapolated. The file converged.csv keeps these values, which take long:
+`python tests/accuracy/held_bounds.py DECK...` writes those of the decks named anew, or of all.
 """
 
-import os
+import csv
 import re
+import sys
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import h5py
 import numpy as np
-from bound_decks import EXAMPLES
+from bound_decks import EXAMPLES, all_decks, mismatched_decks
 from deck_runs import solve
 
 QUANTITIES = {"normal_force": "normal force", "shear_force": "shear force", "heat_rate": "heat rate",
               "peak_pressure": "peak pressure", "edge_contact": "edge of contact",
               "edge_stick": "edge of stick"}
 LEVELS, PARTS = (0, 1, 2), (1, 2)
-FINE = "fine"
+FINE = (2, 2)  # divisions of all elements, and beyond that of those at the faces
+MOST = 0.7     # ratio of changes from mesh to mesh above which nothing is extrapolated
+FILE = Path(__file__).resolve().parent / "converged.csv"
+SAME = "same"  # increments
 LEAST = 1e-7   # of the value: errors that are rounding, or forces that the deck prescribes
 ANALYSIS = re.compile(r"^(\*(?:STATIC|COUPLED|HEAT).*\n)\s*([0-9.eE+-]+)", re.M | re.I)
 
@@ -50,13 +57,14 @@ class Case:
 
 
 def run(deck, level, part, folder, estimates=True):
-    """Solve a deck with other elements and increments; return the result file."""
+    """Solve a deck with other elements and increments; return the result file. The level is that of all
+    elements, or a pair with the one of those at the faces beyond it."""
     pair, faces = re.search(r"^(\*CONTACT PAIR.*)\n(.+)", deck.text, re.M).groups()
     # The faces of node pairs are divided together, those of mortar points each for itself.
     divided = faces.split(",")[:2 if "PAIRING=SURFACES" in pair else 1]
-    cards = {0: [], FINE: ["*REFINE, LEVELS=2", *(f"*REFINE, LEVELS=2, SURFACE={face.strip()}"
-                                                  for face in divided)]}.get(
-        level, [f"*REFINE, LEVELS={level}"])
+    everywhere, at_faces = level if isinstance(level, tuple) else (level, 0)
+    cards = [f"*REFINE, LEVELS={everywhere}"] if everywhere else []
+    cards += [f"*REFINE, LEVELS={at_faces}, SURFACE={face.strip()}" for face in divided if at_faces]
     cards.append(f"*OPTIONS, ERRORS={'YES' if estimates else 'NO'}")
     text = re.sub(r"^\*REFINE.*\n", "", deck.text.split("*VERIFY")[0], flags=re.M)
     text = re.sub(r"INC=\d+", "INC=100000", text)
@@ -65,50 +73,57 @@ def run(deck, level, part, folder, estimates=True):
     text = re.sub(r"^(\*(?:NODE|EL|CONTACT) FILE)(, FREQUENCY=0)?", r"\1, FREQUENCY=0", text, flags=re.M)
     for mesh in EXAMPLES.glob("*.mesh"):
         (folder / mesh.name).write_text(mesh.read_text())
-    path = folder / f"{re.sub('[^a-z0-9]+', '_', deck.name.lower())}_{level}_{part}.inp"
+    path = folder / f"{re.sub('[^a-z0-9]+', '_', deck.name.lower())}_{everywhere}_{at_faces}_{part}.inp"
     path.write_text(text)
     return solve(path, seconds=900)
 
 
-def ends_of_steps(file):
-    """Return the indices of the increments that end the steps of a result file."""
-    times = file["history/time"][:]
-    return [int(np.argmin(np.abs(times - end))) for end in file["errors/time"][:]]
-
-
 def values_of(deck, level, part, times, folder):
     """Return the quantities at times, from a run that bounds nothing."""
-    kept = Path(os.environ.get("THERCON_CONVERGED", folder))
-    name = f"{re.sub('[^a-z0-9]+', '_', deck.name.lower())}_{level}_{part}.npz"
-    if not (kept / name).exists():
-        with h5py.File(run(deck, level, part, folder, False)) as file:
-            face = file[f"contact/{deck.face}"]
-            found = {q: face[q][:] for q in QUANTITIES if q in face}
-            np.savez(kept / name, time=file["history/time"][:],
-                     peak_pressure=face["pressure"][:].max(axis=1), **found)
-    with np.load(kept / name) as found:
-        rows = [int(np.argmin(np.abs(found["time"] - time))) for time in times]
-        return {q: found[q][rows] for q in QUANTITIES if q in found}
+    with h5py.File(run(deck, level, part, folder, False)) as file:
+        face = file[f"contact/{deck.face}"]
+        found = {q: face[q][:] for q in QUANTITIES if q in face}
+        found["peak_pressure"] = face["pressure"][:].max(axis=1)
+        rows = [int(np.argmin(np.abs(file["history/time"][:] - time))) for time in times]
+        return {q: values[rows] for q, values in found.items()}
 
 
 def converged_values(deck, times, folder):
     """Return the converged quantities at times."""
-    fine = values_of(deck, FINE, 4 if deck.has_path else 1, times, folder)
     if deck.has_path:
+        fine = values_of(deck, FINE, 4, times, folder)
         shorter, longer = (values_of(deck, 1, part, times, folder) for part in (16, 4))
-        fine = {q: fine[q] + (shorter[q] - longer[q]) for q in fine}
-    return fine
+        return {q: fine[q] + (shorter[q] - longer[q]) for q in fine}
+    runs = [values_of(deck, (FINE[0], k), 1, times, folder) for k in range(FINE[1] + 1)]
+    # Edges lie between nodes and scatter from mesh to mesh.
+    left = {q: [0.0 if q.startswith("edge") else rest(*values)
+                for values in zip(*(run[q] for run in runs), strict=True)] for q in runs[0]}
+    return {q: runs[-1][q] + np.array(left[q]) for q in left}
 
 
-def judged(deck, folder, levels=LEVELS, parts=PARTS, told=None):
-    """Return the cases of a deck; edges that are the ends of the interface are not judged. The
-    converged values are those told, by step and quantity, or found."""
-    cases = []
+def rest(first, second, third):
+    """Return what is left of a series whose changes fall by a steady ratio, or 0."""
+    ratio = (third - second) / (second - first) if second != first else 0.0
+    return (third - second) * ratio / (1.0 - ratio) if 0.0 < ratio < MOST else 0.0
+
+
+def told_values(deck, increments=""):
+    """Return the converged values of a deck that are kept, by quantity: one for each step. Those of the
+    same increments as written are without the errors of these."""
+    with FILE.open(newline="") as file:
+        steps = [row for row in csv.DictReader(file)
+                 if (row["deck"], row["increments"]) == (deck.name, increments)]
+    assert steps, f"{FILE.name} does not tell {deck.name}"
+    return {q: [float(row[q]) for row in steps] for q in QUANTITIES if any(row[q] for row in steps)}
+
+
+def judged(deck, folder, levels=LEVELS, parts=PARTS, increments=""):
+    """Return the cases of a deck, by the converged values that are kept; edges that are the ends of the
+    interface are not judged."""
+    cases, exact = [], told_values(deck, increments)
     for level in levels:
         for part in parts:
             with h5py.File(run(deck, level, part, folder)) as file:
-                times = file["errors/time"][:]
-                exact = told or converged_values(deck, times, folder)
                 last = file[f"contact/{deck.face}/s"][-1]
                 for quantity, rows in file[f"errors/{deck.face}"].items():
                     if quantity not in exact:
@@ -126,6 +141,35 @@ def judged(deck, folder, levels=LEVELS, parts=PARTS, told=None):
 def judged_with_same_increments(deck, folder, levels=LEVELS):
     """Return the cases of a deck as written, with the values of the finer mesh with the same increments
     as the converged ones."""
+    return judged(deck, folder, levels, (1,), SAME)
+
+
+def renewed(deck, increments, folder):
+    """Return the rows of the file for a deck, one for each step."""
     with h5py.File(run(deck, 0, 1, folder)) as file:
         times = file["errors/time"][:]
-    return judged(deck, folder, levels, (1,), values_of(deck, FINE, 1, times, folder))
+    found = values_of(deck, FINE, 1, times, folder) if increments else converged_values(
+        deck, times, folder)
+    return [[deck.name, increments, step + 1, *(f"{found[q][step]:.10g}" if q in found else ""
+                                                for q in QUANTITIES)] for step in range(len(times))]
+
+
+def write_file(names):
+    """Write the file, with the decks named anew; with no name all."""
+    mismatched = mismatched_decks()
+    wanted = [(deck, "") for deck in all_decks()] + [(deck, SAME) for deck in mismatched]
+    wanted += [(deck, "") for deck in mismatched if "mortar" in deck.name]
+    with FILE.open(newline="") as file:
+        kept = list(csv.reader(file))[1:]
+    rows = [["deck", "increments", "step", *QUANTITIES]]
+    for deck, increments in wanted:
+        with tempfile.TemporaryDirectory() as folder:
+            old = [row for row in kept if row[:2] == [deck.name, increments]]
+            is_new = not names or deck.name in names
+            rows += renewed(deck, increments, Path(folder)) if is_new else old
+    with FILE.open("w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(rows)
+
+
+if __name__ == "__main__":
+    write_file(sys.argv[1:])

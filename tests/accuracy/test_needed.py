@@ -139,8 +139,9 @@ def tables(folder):
     written = [replace(COUPLED, output=tuple(cards)) for cards in (FIELDS, TABLES)]
     groups = [measured(cases, folder, *size) for *size, cases in SIZES]
     more = measured(written, folder, levels, increments)
+    fields = next(run for run in groups[0] if run.case == COUPLED)
     return [*(costs(runs, *size) for runs, (*size, _) in zip(groups, SIZES, strict=True)),
-            off(groups), outputs([groups[0][-1], *more], levels, increments)]
+            off(groups), outputs([fields, *more], levels, increments)]
 
 
 @MEASURED

@@ -1,4 +1,4 @@
-"""Node pairs against mortar points on faces that match: errors and CPU seconds of five decks."""
+"""Node pairs against mortar points on faces that match: errors and CPU seconds of known decks."""
 
 import resource
 from dataclasses import replace
@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 from deck_runs import run
 from report import Table, rows
-from test_estimate import CASES, EDGES, QUANTITIES, case_deck
+from test_estimate import CASES, EDGES, QUANTITIES, case_deck, converged
 
 TITLE = "Node pairs against mortar points"
 TEXT = """
@@ -34,14 +34,6 @@ HEAD = ["deck", "refinements", "pairing", "contact points", "seconds", *QUANTITI
 RUNS = 3
 
 
-def converged():
-    """Return the converged values that the document tells, by deck and quantity."""
-    heads = {**QUANTITIES, **EDGES}
-    return {row["deck"]: {name: np.nan if row[head] == "-" else float(row[head])
-                          for name, head in heads.items()}
-            for row in rows("Converged values of the five decks")}
-
-
 def seconds_of(deck):
     """Run a deck; return its CPU seconds."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -55,7 +47,7 @@ def measured(case, level, pairing, folder, runs=RUNS):
     """Return contact points, CPU seconds and errors in per cent of a deck."""
     deck = case_deck(replace(case, name=f"{case.name} {pairing}"), level, 1, folder, False, pairing)
     seconds = min(seconds_of(deck) for _ in range(runs))
-    exact = converged()[case.name]
+    exact = {name: converged(case.name).get(name, np.nan) for name in NAMES}
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
         face = file[f"contact/{case.face}"]
         found = {name: face[name][-1] if name in face else np.nan for name in NAMES}

@@ -1,41 +1,33 @@
-"""What a requested accuracy gives and costs: five decks, three targets, against converged values."""
+"""What a requested accuracy gives and costs: known decks, three targets, against converged values."""
+
+import re
+import resource
 
 import h5py
 import numpy as np
 from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT, run
 from report import Table, check_parts, rows
+from test_estimate import converged
 
 TITLE = "Accuracy on request"
 TEXT = """
 `thercon run DECK --accuracy P%` solves in rounds until the bounds of normal force, heat rate, peak
-pressure and edge of contact are inside P per cent ([deck.md](deck.md), `*ACCURACY`). Below, the
-largest true error over its target, which must stay below 1 where the status is 0, and the largest
-bound over its target. True errors are those to the converged values above. Of the roller, whose
-faces do not match, there are none; its mesh divided twice, and twice more at the faces, has a peak
-of 606.11 MPa and an edge at 0.4193 mm. With 3 % the edge is 0.7 % from that, with 1 % 0.4 %, and
-the peak 0.3 % in both. CPU seconds are those of all rounds together, with estimates and results.
+pressure and edge of contact are within P per cent ([\\*ACCURACY](deck.md#accuracy)). Each round starts
+from the beginning of the deck, with elements divided at the edges of zones and where the recovered
+energy norm is large. From the second round on the bound of the mesh is at least half of what the round
+changed. A request whose bounds cannot be met ends with status 4: peak pressures at corners grow without
+limit, and two rounds that bring nothing are the last ones.
 
-- **Bounds** are those above; from the second round on that of the mesh is at least half of what the
-  round changed.
-- **Where elements are divided.** At the edges of zones, as often as an edge must be resolved, and
-  by the recovered energy norm, weighted for the peak pressure with the distance from the peak.
-- **What it costs.** Every round is solved from the start, with all of its increments. The aim is
-  2.5 times the CPU seconds of the cheapest mesh refined by hand, and at 0.3 % a tenth of those of
-  uniform refinement. For 3, 1 and 0.3 % the press fit takes 1.1, 1.7 and 1.4 times as much, the
-  cylinder 1.2, 3.6 and 6.2, Hertz 2.1, 2.4 and 5.3, the twin 2.3, 2.8 and 30 times. The other mesh
-  is the cheapest one with a true error inside the target at the end of the load, without
-  estimates: refined as a whole (0 to 3 levels), at the contact faces (1 to 4), or by 1 and then by
-  1 to 3 there.
-- **Such a mesh is known only with the converged value.** Errors at one load are partly chance: on
-  the cylinder refined uniformly by 0 to 3 levels they are 0.53, 0.07, 0.09 and 0.13 %. Bounds
-  cannot count on that: on none of these meshes are they inside 0.3 % (1.13 times that on the
-  finest, in 5.9 s, against 1.8 s with a request). On the twin the bound of the increments asks for
-  180 of them at 0.3 %.
-- **Where no bound can be given.** Peak pressures at corners grow without limit: after two rounds
-  that bring nothing the run ends with status 4.
+True errors are those to the converged values above, CPU seconds those of all rounds together. "By hand"
+is the cheapest of eleven meshes without bounds whose true error is inside the target, refined uniformly
+(0 to 3 levels), at the contact faces (1 to 4), or once and then there (1 to 3). Only who knows the
+converged values can choose it, because true errors at one load are partly chance: the second table has
+the bounds that a run can give. The aim is 2.5 times the seconds of the mesh found by hand.
 """
 HEAD = ["deck", "target", "status", "rounds", "CPU s", "elements", "increments",
-        "largest bound/target", "true error/target"]
+        "bound/target", "true error/target", "by hand, CPU s", "mesh by hand"]
+MESHES = {"x 1": (0, 0), "x 2": (1, 0), "x 4": (2, 0), "x 8": (3, 0), "x 1:2": (0, 1), "x 1:4": (0, 2),
+          "x 1:8": (0, 3), "x 1:16": (0, 4), "x 2:4": (1, 1), "x 2:8": (1, 2), "x 2:16": (1, 3)}
 PERCENT = (3, 1, 0.3)
 DECKS = {"cylinder": (CYLINDER, "FACE"), "coupled twin": (COUPLED, "FACE"), "Hertz": (HERTZ, "FACE"),
          "press fit": (INPUT / "examples" / "press_fit.inp", "SEAT"),
@@ -44,18 +36,56 @@ TITLES = {"normal_force": "normal force", "heat_rate": "heat rate", "peak_pressu
           "edge_contact": "edge of contact"}
 
 
-def converged(name):
-    """Return the converged values of a deck that the document tells."""
-    told = {row["deck"]: row for row in rows("Converged values of the five decks")}
-    return {q: float(told[name][title]) for q, title in TITLES.items()
-            if told.get(name, {}).get(title, "-") != "-"}
+def refined(name, everywhere, at_faces, bounds, folder):
+    """Run a deck on a mesh refined by hand; return its CPU seconds, and its largest bound and true
+    error, both relative."""
+    deck, face = DECKS[name]
+    text = re.sub(r"^\*REFINE.*\n", "", deck.read_text().split("*VERIFY")[0], flags=re.M)
+    surface = re.search(rf"^\*CONTACT PAIR,.*{face}.*\n\s*([\w.]+)", text, re.M)[1]
+    cards = [f"*REFINE, LEVELS={everywhere}"] if everywhere else []
+    cards += [f"*REFINE, LEVELS={at_faces}, SURFACE={surface}"] if at_faces else []
+    cards += [f"*OPTIONS, ERRORS={'YES' if bounds else 'NO'}"]
+    for mesh in deck.parent.glob("*.mesh"):
+        (folder / mesh.name).write_text(mesh.read_text())
+    path = folder / f"{deck.stem}_refined.inp"
+    path.write_text(re.sub(r"^\*STEP", "\n".join([*cards, "*STEP"]), text, count=1, flags=re.M))
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    process = run("run", "--quiet", path, "--out", folder, seconds=900)
+    assert process.returncode == 0, process.stderr
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    exact = {q: converged(name)[q] for q in TITLES if q in converged(name)}
+    with h5py.File(folder / f"{deck.stem}_refined.vtkhdf") as file:
+        group = file[f"contact/{face}"]
+        found = {q: group["pressure"][-1].max() if q == "peak_pressure" else group[q][-1] for q in exact}
+        told = [file[f"errors/{face}/{q}"][-1][1] / abs(found[q]) for q in exact] if bounds else [np.nan]
+    return (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, max(told),
+            max(abs(found[q] / exact[q] - 1.0) for q in exact))
+
+
+def by_hand(name, folder):
+    """Return CPU seconds, true error and name of the meshes refined by hand, the cheapest first."""
+    found = []
+    for mesh, levels in MESHES.items():
+        seconds, _, error = refined(name, *levels, False, folder)
+        found.append((seconds, error, mesh))
+    return sorted(found)
+
+
+def uniform(folder):
+    """Return the table of the bounds and the true errors of the cylinder refined uniformly."""
+    table = Table("The cylinder refined uniformly, with bounds",
+                  ["refinements", "CPU s", "largest bound", "largest true error"])
+    for level in range(4):
+        seconds, bound, error = refined("cylinder", level, 0, True, folder)
+        table.rows.append([level, f"{seconds:.2f}", f"{100 * bound:.2f} %", f"{100 * error:.2f} %"])
+    return table
 
 
 def measured(name, percent, folder):
-    """Return the row of a deck and a target."""
+    """Return the cells of a deck and a target, without the meshes refined by hand."""
     deck, face = DECKS[name]
     process = run("run", "--quiet", deck, "--out", folder, "--accuracy", f"{percent}%", seconds=900)
-    exact, errors, excess = converged(name), [], []
+    exact, errors, excess = converged(name) if name != "roller" else {}, [], []
     with h5py.File(folder / f"{deck.stem}.vtkhdf") as file:
         group = file["accuracy"]
         for quantity, found in group[f"bounds/{face}"].items():
@@ -73,9 +103,17 @@ def measured(name, percent, folder):
 
 def tables(folder):
     """Run all decks with all targets."""
-    return [Table("Targets, bounds and true errors", HEAD, [
-        measured(name, percent, folder) for name in DECKS for percent in PERCENT
-        if (name, percent) != ("roller", 0.3)])]
+    table = Table("Targets, bounds and true errors", HEAD, text="""Of the roller, whose faces do not match,
+no converged value is known.""")
+    for name in DECKS:
+        meshes = by_hand(name, folder) if name != "roller" else []
+        for percent in PERCENT:
+            if (name, percent) == ("roller", 0.3):
+                continue
+            best = next((mesh for mesh in meshes if 100 * mesh[1] <= percent), None)
+            table.rows.append([*measured(name, percent, folder),
+                               *((f"{best[0]:.2f}", best[2]) if best else ("-", "-"))])
+    return [table, uniform(folder)]
 
 
 def test_cheap_requests_hold_as_the_document_tells(tmp_path):
@@ -83,10 +121,10 @@ def test_cheap_requests_hold_as_the_document_tells(tmp_path):
     check_parts([TEXT])
     told = {(row["deck"], row["target"]): row for row in rows("Targets, bounds and true errors")}
     for row in told.values():
-        assert row["status"] == "0" and float(row["largest bound/target"]) <= 1.0
+        assert row["status"] == "0" and float(row["bound/target"]) <= 1.0
         assert row["true error/target"] == "-" or float(row["true error/target"]) < 1.0
     for name, percent in (("cylinder", 1), ("coupled twin", 3), ("press fit", 0.3)):
-        found = dict(zip(HEAD, measured(name, percent, tmp_path), strict=True))
+        found = dict(zip(HEAD, measured(name, percent, tmp_path), strict=False))
         row = told[name, f"{percent} %"]
         assert [str(found[head]) for head in ("status", "rounds")] == [row["status"], row["rounds"]]
         np.testing.assert_allclose(float(found["true error/target"]), float(row["true error/target"]),

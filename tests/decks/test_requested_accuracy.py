@@ -1,5 +1,5 @@
 """A requested accuracy: *ACCURACY and --accuracy. True errors are those to the converged values that
-docs/accuracy.md tells, from uniform meshes far finer than any here."""
+docs/accuracy.md tells, from meshes far finer than any here."""
 
 import fcntl
 import re
@@ -23,7 +23,7 @@ from document import Document  # noqa: E402
 QUANTITIES = {"normal_force": "normal force", "heat_rate": "heat rate",
               "peak_pressure": "peak pressure", "edge_contact": "edge of contact"}
 TOLD = {row["deck"]: row for row in Document("accuracy.md", DECKS, (), "").rows(
-    "Converged values of the five decks")}
+    "Converged values of the known decks")}
 CONVERGED = {deck: {quantity: float(TOLD[name][head]) for quantity, head in QUANTITIES.items()}
              for deck, name in ((CYLINDER, "cylinder"), (COUPLED, "coupled twin"))}
 PRESS_FIT = INPUT / "examples" / "press_fit.inp"

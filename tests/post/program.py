@@ -20,19 +20,19 @@ def write_deck(path, model_cards=(), end_cards=()):
     return path
 
 
-def start(deck):
+def start(deck, *options):
     """Start the program on a deck; the results go beside it."""
     return subprocess.Popen(
-        [PROGRAM, "run", "--quiet", str(deck), "--out", str(deck.parent)],
+        [PROGRAM, "run", "--quiet", str(deck), "--out", str(deck.parent), *options],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
     )
 
 
-def run(deck):
+def run(deck, *options):
     """Run the program on a deck; return its exit status and what it said."""
-    process = start(deck)
+    process = start(deck, *options)
     said, _ = process.communicate()
     return process.returncode, said
 

@@ -15,7 +15,8 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 INCREMENTS, NODES, ELEMENTS, PAIRS = 45, 326, 92, 21
 ENDS, AXIS = 5 + 5, 13 + 13   # nodes of the heated and the cold section, of the axis of symmetry
 QUADRATIC_QUAD, LINE = 23, 3
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+ROOT = Path(__file__).resolve().parents[2]
+DOCS, EXAMPLES = ROOT / "docs", ROOT / "input" / "examples"
 
 
 @pytest.fixture(scope="module")
@@ -286,7 +287,11 @@ def test_every_dataset_says_what_it_is_and_the_document_says_the_same(results):
                     components = dataset.attrs.get("components", "x y z").split()
                     assert len(components) == dataset.shape[1], path
                 group, _, last = path.rpartition("/")
-                if group.endswith("errors") or group == "":
+                if group == "":
+                    continue
+                if group.startswith("errors/"):
+                    assert f"`{last}`" in document and "value, and the bound of its error" in document
+                    assert said.startswith("value and the bound of its error"), path
                     continue
                 if path.startswith("VTKHDF/") and not group.endswith(("PointData", "CellData")):
                     place = path.removeprefix("VTKHDF/")
@@ -302,7 +307,28 @@ def test_every_dataset_says_what_it_is_and_the_document_says_the_same(results):
                     assert f"| `{last}` |" in document
                     continue
                 assert re.search(rf"^\| `{last}` .*\| {re.escape(said)}[ |(]", document,
-                                 re.MULTILINE) or last == "interface", path
+                                 re.MULTILINE), path
+
+
+def test_the_file_has_all_that_the_document_tells(results, tmp_path):
+    """Names in the first columns of its tables are datasets, or attributes of /run."""
+    shutil.copy(EXAMPLES / "press_fit.inp", tmp_path)
+    shutil.copy(EXAMPLES / "press_fit.mesh", tmp_path)
+    status, said = run(tmp_path / "press_fit.inp", "--accuracy", "1%")
+    assert status == 0, said
+    names = set()
+    for path in (results / "cylinder.vtkhdf", results / "cylinder.contact.vtkhdf",
+                 tmp_path / "press_fit.vtkhdf"):
+        with h5py.File(path) as file:
+            names |= {name.rpartition("/")[2] for name in every_dataset(file)}
+            names |= set(file["run"].attrs) if "run" in file else set()
+            names |= set(file["VTKHDF/Steps"])  # some are links to others
+    told = [name for row in re.findall(r"^\| (`.*?) \|", (DOCS / "results.md").read_text(), re.MULTILINE)
+            for name in re.findall(r"`([^`]+)`", row)]
+    assert len(told) > 90
+    for name in told:
+        last = name.rpartition("/")[2]
+        assert last in names or "<" in last or last.replace("..._", "seconds_") in names, name
 
 
 def test_units_are_those_of_the_deck(stored):
