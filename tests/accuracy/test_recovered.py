@@ -11,17 +11,14 @@ TITLE = "Estimated error of the mesh"
 TEXT = """
 Every run estimates the discretisation error of stress and of heat flux in each body:
 `/history/stress_error` and `/history/heat_flux_error`, the energy norm of the difference between
-the recovered and the computed field over the norm of both. The tables divide these estimates by
-true errors; this effectivity should be 1. It is between 0.94 and 1.21 on smooth fields and near
+the recovered and the computed field over the norm of both
+([theory.md](theory.md#6-recovery-of-printed-quantities)). The tables divide these estimates by true
+errors; this effectivity should be 1. It is between 0.94 and 1.21 on smooth fields and near
 singularities, and also on rings once an element turns by less than about 6 degrees.
 
 True errors are integrated from nodal values and the closed-form solution, at other points than the
 program's. Meshes have n x n quadrilaterals, or twice as many triangles; corners are moved by
-up to a quarter of the spacing, and all nodes of the outline are prescribed. Nodal values are
-recovered from polynomials fitted round each corner: cubics for elements of eight nodes, quadratics
-for triangles of six nodes, linear functions for elements of the first order. A patch spans two
-elements. It cannot follow where these turn by a large angle, as in a quarter ring with four
-elements, or where the stress is singular in one of them.
+up to a quarter of the spacing, and all nodes of the outline are prescribed.
 """
 YOUNG, POISSON, CONDUCTIVITY = 1000.0, 0.3, 2.0
 KINDS = {"CPE8": 8, "CPE8R": 8, "CPE4": 4, "CPE6": 6, "CPE3": 3}

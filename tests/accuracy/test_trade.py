@@ -14,48 +14,38 @@ from thercon_post import style, trade
 TITLE = "Speed for accuracy, measured"
 TEXT = """
 `thercon trade DECK` measures what accuracy costs for any deck;
-[running.md](running.md#speed-against-accuracy) describes the command. Four decks teach:
+[running.md](running.md#speed-against-accuracy) describes the command and its table. Four decks
+teach:
 
 - Refine the mesh, at the contact faces first, with elements that have midside nodes.
 - Leave increments, tolerance and method as they are. Only friction depends on the increments.
 - Where the reference itself is uncertain, as for edges of stick, no row can be more accurate.
 
-The tables show the rows that are Pareto-optimal in CPU time and worst error (\\*), the deck as
-written (=), the recommended rows, and all that vary one thing. The command prints the full tables;
-here it ran with `--limit 8`. CPU seconds of one table compare its rows; other jobs on the machine
-lengthen all of them.
+The tables show the Pareto-optimal rows (\\*), the deck as written (=), the recommended rows, and all
+that vary one thing; here the command ran with `--limit 8`.
 
 **Errors.** The stated error of a row is its distance from an extrapolated reference plus the
 uncertainty of the reference, so a row never looks better than it is. Errors of forces, heat rates
 and peak pressures are relative to the value at the same instant, or to a quarter of the largest
-value over time if that is more, because values are near zero just after first contact. Edges are
-relative to the length of the contact in the same way, temperatures of all corner nodes to the range
-of all temperatures. The largest error over all instants counts, because at a single instant two
-meshes can agree by chance. The instants are the ends of the longest increments, which all rows
-have. Each row follows the path by its own increments, so errors of frictional history show.
+value over time if that is more. Edges are relative to the length of the contact in the same way,
+temperatures of all corner nodes to the range of all temperatures. The largest error over all
+instants counts, because at a single instant two meshes can agree by chance. The instants are the
+ends of the longest increments, which all rows have.
 
 **The reference** is the finest mesh with its shortest increments, moved by what Richardson's
 extrapolation adds over meshes, and over increments on the finest mesh that has three sizes of them.
 If differences fall by a steady ratio, its uncertainty is that whole addition, and at least half the
-last difference. Otherwise it is twice the error that the differences allow if it falls at least
-with the first power of the steps, three times with three meshes, and four times the last difference
-if they do not settle. Edges always take this second rule, because they lie between two nodes and
-scatter. The effect of TOL is added. Orders below one half that are hidden behind another term are
-not seen.
-
-**Rows that are finer at the contact** have 1, 2 or more levels at both faces of all interfaces,
-beyond those of the whole mesh, with the increments of the deck and those four times as long.
-`Q8 x 2:8` divides all sides by 2, and those at the contact faces by 8 (`*REFINE, LEVELS=1`, then
-`LEVELS=2, SURFACE=`). The reference does not use them. Refined elements keep the shape of the
-deck's own sides: what is polygonal or parabolic there stays so, in the reference too.
+last difference. Otherwise, and always for edges, it is twice the error that the differences allow
+if it falls at least with the first power of the steps, three times with three meshes, and four
+times the last difference if they do not settle. The effect of TOL is added. Rows that are finer at
+the contact alone do not enter the reference.
 
 **A recommendation** is the cheapest row that meets the target, and the targets before it, in all
 quantities for which any row does; the other quantities are named beside it.
 
-**CPU seconds** are user and system time of a process that solves only this row: reading, pairing,
-factors, increments, and the recovery of stress and flux, but no output. They are medians of 7 runs
-below 0.1 s, 5 below 1 s, 3 below 5 s. MB is the largest resident memory, some 9 MB of which are the
-program itself.
+**CPU seconds** are user and system time of a process that solves only this row, without output;
+those of one table compare its rows. They are medians of 7 runs below 0.1 s, 5 below 1 s, 3 below
+5 s. MB is the largest resident memory, some 9 MB of which are the program itself.
 """
 LIMIT = "8"
 CYLINDER = """\
