@@ -22,8 +22,8 @@ How accurate results are, what more accuracy costs, and how another program comp
 | question | answer | section |
 |---|---|---|
 | How accurate is my run? | Its summary has an error bound for each force, heat rate, peak pressure and edge | [Bounds of errors](#bounds-of-errors) |
-| How do I get 1 %? | `thercon run DECK --accuracy 1%`; most decks take two to four rounds | [Accuracy on request](#accuracy-on-request) |
-| Node pairs or mortar points? | Keep the default, but use `PAIRING=SURFACES` on the faces of a crack | [Node pairs against mortar points](#node-pairs-against-mortar-points) |
+| How do I get 1 %? | `thercon run DECK --accuracy 1%`; most decks take one to three rounds | [Accuracy on request](#accuracy-on-request) |
+| Node pairs or mortar points? | Keep the default, but use `PAIRING=SURFACES` on the faces of a crack whose force or heat counts | [Node pairs against mortar points](#node-pairs-against-mortar-points) |
 | Where is the mesh too coarse? | Where `stress_error` and `heat_flux_error` are large: both are true to about 20 % | [Estimated error of the mesh](#estimated-error-of-the-mesh) |
 | What should I spend time on? | On the mesh, at the contact faces first. Shorter increments help only the edge of stick | [Speed for accuracy](#speed-for-accuracy-measured) |
 | How accurate is the published cylinder? | On the mesh of the paper, from 60 C on: force 0.4 %, heat rate 2.1 %, peak pressure 3 %, edge of contact 0.15 cm, edge of stick 0.3 cm | [The published cylinder](#the-published-cylinder-with-uncertainty) |

@@ -103,6 +103,12 @@ def per_cent(shares):
     return f"{100 * max(shares):.2f} %" if shares else "-"
 
 
+def has_part(run, part, levels):
+    """Return whether a part is on in a run: refinement and MUMPS follow from the mesh."""
+    return (part in run.case.on or (part == "refinement" and levels > 0)
+            or (part == "MUMPS" and run.run["solver"] == "MUMPS"))
+
+
 def off(groups):
     """Return the table of what parts take where they are off, at most, and where they are on."""
     table = report.Table(
@@ -112,7 +118,7 @@ Largest part of a run's instructions over all decks above in which a part is off
 procedures that exist for that part only (`tests/accuracy/program_parts.py`), inlined ones too, and in whatever these call.""".strip())
     for part, names in PARTS.items():
         shares = {is_on: [[run.profile.share(names) for run in runs
-                           if (part in run.case.on or (part == "refinement" and levels > 0)) is is_on]
+                           if has_part(run, part, levels) is is_on]
                           for (levels, *_), runs in zip(SIZES, groups, strict=True)]
                   for is_on in (False, True)}
         largest = max(max(of_size, default=0.0) for of_size in shares[False])
