@@ -14,6 +14,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+import report  # noqa: F401  # isort: skip, it makes the modules below known
 import h5py
 import numpy as np
 from bound_decks import EXAMPLES, all_decks, mismatched_decks

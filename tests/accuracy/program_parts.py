@@ -54,7 +54,7 @@ PARTS = {
         "contact_system:combine", "friction", "zone_edges:stick_edges",
     },
     "coupling": COUPLING,
-    "rings of pairs": {"contact_constraints:stiffness_alone", "linear_constraints:links",
+    "cycles of contact points": {"contact_constraints:stiffness_alone", "linear_constraints:links",
                        "linear_constraints:stiffen_links"},
     "paths to a contact zone": {"lemke_path"},
     "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",

@@ -51,7 +51,7 @@ CHOSEN = LOADS >= FROM
 WHERE = [int(np.flatnonzero(LOADS[CHOSEN] == load)[0]) for load in AT]
 HEAD = [f"{name}, {unit}" for name, unit in zip(QUANTITIES, UNITS, strict=True)]
 SAME = 1e-7  # the program iterates omega to 1e-8
-NORMALS = "pair normal global y"
+NORMALS = "normal along y"
 
 
 def is_edge(quantity):
@@ -248,7 +248,7 @@ def reading_tables(results):
     text = """The paper leaves some data open; each row reads one of them differently. Ours: plane strain; each body 30 wide from the axis,
 60 high; parabola; top and bottom free along x; normals common to both faces. "60 wide, 30 high" is 30 wide from the axis, "30 wide as a whole" 15 from
 the axis. Meshes of 20, 40 and 80 elements along the contact, increments of 20 C, bands of the mesh as above; increments may add what the table of
-changes says, 0.06 cm for the edge of stick. The program takes the normals of pairs from the faces; the effect of normals along y was measured with the
+changes says, 0.06 cm for the edge of stick. The program takes the normals of contact points from the faces; the effect of normals along y was measured with the
 independent solver, with 20 and 40 elements along the contact."""
     tables = []
     for load in READ_AT:

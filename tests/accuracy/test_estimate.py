@@ -43,13 +43,16 @@ four times at the faces and twice elsewhere with increments a quarter as long, c
 increments a sixteenth as long change. Decks with a number have materials, friction, geometry and loads
 drawn at random (`tests/accuracy/bound_decks.py`). The constants were chosen on one part of the decks,
 the others judge them; those from 16 on were run only when the form of the bounds was final as well.
-Errors below 1e-7 of the value and edges at the end of a face are not judged. The goals are 95 % that
-hold and a median of bound over error of at most 4. None of the bounds judged here is uncertain.
+Errors below 1e-7 of the value and edges at the end of a face are not judged, and no bound judged here is
+uncertain. The goals are 95 % that hold and a median of bound over error of at most 4. Peak pressures miss
+the first one, among them those of balls on the mesh as it is; of the decks kept aside the normal force
+does, by the cracked plate, whose bounds equal its errors within 1 %. Shear forces, heat rates and edges
+miss the second one.
 
 With faces that do not match, the factors 3 and 4 were chosen on decks of seeds below 20; the decks of
 seeds 20 to 51, the published cylinder with 30 sides on 22, and Hertz with 3 on 2 judge them. "Same
 increments" compares with the fine mesh in the same increments, without the error of these. There only
-forces miss the goal, with shorter increments all but heat rates and edges of contact.
+normal forces miss 95 %, with shorter increments all but heat rates and edges of contact.
 """
 QUANTITIES = {"normal_force": "normal force", "heat_rate": "heat rate",
               "peak_pressure": "peak pressure"}
@@ -217,7 +220,7 @@ def test_bounds_of_decks_kept_aside_hold_as_the_document_tells(tmp_path):
 def test_bounds_of_mortar_points_hold_on_faces_that_do_not_match(tmp_path):
     """Against a finer mesh with the same increments: at most one of all bounds does not hold."""
     cases = []
-    for seed in (4, 5, 7):
+    for seed in (23, 24, 25):
         cases += held_bounds.judged_with_same_increments(mismatched_deck(seed), tmp_path, (0, 1))
     assert len(cases) > 20 and not any(case.is_uncertain for case in cases)
     assert sum(not case.is_held for case in cases) < 2

@@ -176,10 +176,12 @@ def one_pair_table(folder):
     table = Table(
         "Friction 2 on coupled springs: where uniqueness ends",
         ["push", "valid states", "state found", "error of gap and forces", "verdict"],
-        text="""One pair on the springs S = (2, -0.8; -0.8, 1), a triangle with one free node, pressed by 1 and
-pushed aside. Uniqueness ends at friction 1/0.8. By hand (tests/reference/one_pair.py) between pushes of 1.25 and 2 the pair may
-stick or be open: it lets go at 2 and closes again at 1.25. The state of the increment before is kept as long as it is valid. The run reports
-other states only where it proves them, which is where the path of states turns back: never here, sometimes above.""")
+        text="""One contact point on the springs S = (2, -0.8; -0.8, 1), a triangle with one free node, pressed by
+1 and pushed aside. Uniqueness ends at friction 1/0.8. By hand (tests/reference/one_pair.py)
+between pushes of 1.25 and 2 it may stick or be open: it lets go at 2 and closes again at 1.25.
+The state of the increment before is kept as long as it is valid. The run reports other states
+only where it proves them, which is where the path of states turns back: never here, sometimes
+above.""")
     pushes = [step("*CLOAD", "1, 2, -1."), *(step("*CLOAD", f"1, 1, {-push}") for push in PUSHES)]
     deck = solved_one(folder, "pair", springs(SPRINGS[0][1]), faces(MANY, "ABOVE", "BELOW"), *pushes)
     gap, pressure, shear, status, weight = contact(

@@ -183,7 +183,7 @@ def cylinders(folder, tally, extent):
                        "exit status 2, and names the increment: `refused`.")
     other = Table("One solution by other ways",
                   ["deck", "refined", *others, *starts, "verdict"],
-                  text="Gap, pressure, shear, conductance and heat flux of all pairs, in 45 "
+                  text="Gap, pressure, shear, conductance and heat flux of all contact points, in 45 "
                        "increments or up to the one at which a method gives up: largest difference "
                        "from NEWTON, relative to the largest value of each in the increment.")
     for name in DECKS:
@@ -224,7 +224,7 @@ def with_a_jump(folder, extent):
     """Return the table of the cylinder and its twin where they conduct only if they touch."""
     table = Table("Cylinder and coupled twin with a jump",
                   ["deck", "refined", "increments", *(f"{m}: passes" for m in ON_CYLINDER),
-                   "increments with pairs at rest", "first and last at rest, s", "verdict"],
+                   "increments with contact points at rest", "first and last at rest, s", "verdict"],
                   text="omega = 0.8 + 0.24 p closed, 0 open: every increment must have a "
                        "solution, by every method the same. A contact point at rest has neither "
                        "gap, pressure nor shear, and a conductance between 0 and 0.8; it is at the "

@@ -70,7 +70,7 @@ def pair_place(folder, coupling, gap, press, push, count):
 def pairs(folder):
     """Return the table of paths of one pair that are known in closed form."""
     table = Table(
-        "Friction: one pair in closed form", head("path"),
+        "Friction: one contact point in closed form", head("path"),
         text="""One contact point on springs, friction 0.6: error of its position at the end. The events at a third of the load fall within an increment for any number of increments. A path on which the point keeps slipping, or sticking, in one direction has no error at all.""")
     speed = 2 * FRICTION * TURN
     nn, tt = 2.0, 1.0
