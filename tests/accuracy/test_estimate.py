@@ -32,10 +32,10 @@ requests for an accuracy all use it. It is the sum of three parts.
 | iteration | Residual of the fixed point over the distance of the coupling gain from 1. |
 
 A bound is *uncertain* (NaN in the result file) in models with equations, couplings or transformed axes,
-because the finer mesh has nodes that they do not name; in a step of a single increment with friction;
-and for the peak pressure of mortar points at a corner, where one face ends and the other goes on. The
-pressure of such a punch grows without limit as the mesh is refined; with node pairs its bound is only
-large.
+because the finer mesh has nodes that they do not name (a requested accuracy then compares its rounds);
+in a step of a single increment with friction; and for the peak pressure of mortar points at a corner,
+where one face ends and the other goes on. The pressure of such a punch grows without limit as the mesh
+is refined; with node pairs its bound is only large.
 
 **How bounds are judged.** Each deck is solved on the mesh as it is and refined once and twice, with the
 increments as written and half as long. A true error is that to the converged value, on a mesh refined

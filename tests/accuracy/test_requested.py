@@ -12,11 +12,9 @@ from test_estimate import converged
 TITLE = "Accuracy on request"
 TEXT = """
 `thercon run DECK --accuracy P%` solves in rounds until the bounds of normal force, heat rate, peak
-pressure and edge of contact are within P per cent ([\\*ACCURACY](deck.md#accuracy)). Each round starts
-from the beginning of the deck, with elements divided at the edges of zones and where the recovered
-energy norm is large. From the second round on the bound of the mesh is at least half of what the round
-changed. A request whose bounds cannot be met ends with status 4: peak pressures at corners grow without
-limit, and two rounds that bring nothing are the last ones.
+pressure and edge of contact are within P per cent ([\\*ACCURACY](deck.md#accuracy) has the rules, also where
+no bound can be given). Each round solves the deck from its beginning, with elements divided at the edges
+of zones and where the recovered energy norm is large.
 
 True errors are those to the converged values above, CPU seconds those of all rounds together. "By hand"
 is the cheapest of eleven meshes without bounds whose true error is inside the target: the deck's mesh
