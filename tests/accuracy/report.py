@@ -4,7 +4,8 @@ A theme is a file test_<theme>.py here, with TITLE, TEXT and a function tables(f
 its cases in a folder and returns tables, pictures and text (see tests/documents/document.py).
 `python tests/accuracy/report.py` with THERCON set runs all themes and writes the document;
 `python tests/accuracy/report.py cylinder` renews that section alone. Some themes take long: their
-tests run a part of them, and compare it with what the document tells.
+tests run a part of them, and compare it with what the document tells. The values that true errors
+refer to are in converged.csv, which held_bounds.py writes.
 """
 
 import sys
