@@ -18,7 +18,7 @@ from program_parts import PARTS
 
 TITLE = "Only what is needed"
 TEXT = """
-A deck pays for the physics that it uses: parts that are off take less than 1 % of the instructions.
+A deck pays for the physics that it uses: parts that are off take less than 2 % of the instructions.
 The mesh is that of the published cylinder, with heat, contact, friction and coupling switched on
 one by one. Without heat the top is pushed down; with heat it is held and heated. `heat, mechanics,
 contact, friction` has a constant conductance, `the same, coupled` that of the paper.
