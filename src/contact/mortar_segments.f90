@@ -124,7 +124,7 @@ contains
       real(dp) :: area, ends(2), eta, factor(0:2), hat(2), radius, xi
       real(dp) :: psi(size(side%nodes)), psi_master(master%side_nodes)
       real(dp) :: of_slave(2, size(psi), 0:2), of_master(2, size(psi_master), 0:2)
-      integer :: facing(master%side_nodes), g, k
+      integer :: facing(master%side_nodes), g, i, k
 
       if (side%covered(1) > side%covered(2)) return
       ends = side%kinks(segment:segment + 1)
@@ -152,8 +152,12 @@ contains
          factor = [1.0_dp, midway(matmul(side%normal, psi), &
             matmul(master_normal(:, facing), psi_master))]
          do k = 0, 2
-            of_slave(:, :, k) = of_slave(:, :, k) + outer(factor(k)*area*hat, psi)
-            of_master(:, :, k) = of_master(:, :, k) + outer(factor(k)*area*hat, psi_master)
+            do i = 1, size(psi)
+               of_slave(:, i, k) = of_slave(:, i, k) + factor(k)*area*hat*psi(i)
+            end do
+            do i = 1, size(psi_master)
+               of_master(:, i, k) = of_master(:, i, k) + factor(k)*area*hat*psi_master(i)
+            end do
          end do
       end do
       if (side%opposite(segment) == 0) return
@@ -199,13 +203,5 @@ contains
       normal = slave/norm2(slave) - master/norm2(master)
       normal = normal/norm2(normal)
    end function midway
-
-   !> a b^T.
-   pure function outer(a, b)
-      real(dp), intent(in) :: a(:), b(:)
-      real(dp) :: outer(size(a), size(b))
-
-      outer = spread(a, 2, size(b))*spread(b, 1, size(a))
-   end function outer
 
 end module mortar_segments

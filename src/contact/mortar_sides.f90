@@ -130,13 +130,15 @@ contains
    pure subroutine find_kinks(side, master)
       type(side_type), intent(inout) :: side
       type(face_line_type), intent(in) :: master
-      real(dp) :: ends(2), xi
-      integer :: j
+      real(dp) :: at_ends(size(master%x, 2), 2), ends(2), xi
+      integer :: j, n
 
+      n = size(side%nodes)
+      at_ends(:, 1) = beside_line(side%normal(:, 1), side%x(:, 1), master%x)
+      at_ends(:, 2) = beside_line(side%normal(:, n), side%x(:, n), master%x)
       side%kinks = [-1.0_dp, 1.0_dp]
       do j = 1, size(master%x, 2), master%side_nodes - 1
-         ends = [beside_normal(side, -1.0_dp, master%x(:, j)), &
-            beside_normal(side, 1.0_dp, master%x(:, j))]
+         ends = at_ends(j, :)
          if (ends(1)*ends(2) >= 0.0_dp) cycle
          xi = opposite_coordinate(side, master%x(:, j), ends)
          side%kinks = [pack(side%kinks, side%kinks <= xi), xi, pack(side%kinks, side%kinks > xi)]
@@ -194,11 +196,21 @@ contains
       type(side_type), intent(in) :: side
       real(dp), intent(in) :: xi              !! coordinate of the side
       real(dp), intent(in) :: x(2)            !! the point [length]
+      real(dp) :: psi(size(side%nodes))
 
-      associate (psi => side_shape(size(side%x, 2), xi))
-         beside_normal = cross(matmul(side%normal, psi), x - matmul(side%x, psi))
-      end associate
+      psi = side_shape(size(psi), xi)
+      beside_normal = sum(beside_line(matmul(side%normal, psi), matmul(side%x, psi), &
+         reshape(x, [2, 1])))
    end function beside_normal
+
+   !> How far points lie beside a line through a point.
+   pure function beside_line(direction, point, x) result(beside)
+      real(dp), intent(in) :: direction(2), point(2)
+      real(dp), intent(in) :: x(:, :)         ! (2, n) the points [length]
+      real(dp) :: beside(size(x, 2))          ! times the length of the direction
+
+      beside = direction(1)*(x(2, :) - point(2)) - direction(2)*(x(1, :) - point(1))
+   end function beside_line
 
    !> Coordinate of a side whose normal meets a point, by the Illinois method: false position, in
    !> which an end that stays counts half as much each time.
@@ -235,27 +247,29 @@ contains
       type(side_type), intent(in) :: side
       real(dp), intent(in) :: xi              !! coordinate of the slave's side
       type(face_line_type), intent(in) :: master
-      real(dp) :: ends(2), eta, gap, nearest, normal(2), point(2), tangent(2)
-      integer :: s
+      real(dp) :: beside_it(size(master%x, 2)), psi(size(side%nodes))
+      real(dp) :: eta, gap, nearest, normal(2), point(2), x(2, master%side_nodes)
+      integer :: nodes(master%side_nodes), s
 
       side_opposite = 0
       nearest = huge(nearest)
-      normal = matmul(side%normal, side_shape(size(side%x, 2), xi))
-      point = matmul(side%x, side_shape(size(side%x, 2), xi))
+      psi = side_shape(size(psi), xi)
+      normal = matmul(side%normal, psi)
+      point = matmul(side%x, psi)
+      beside_it = beside_line(normal, point, master%x)
       do s = 1, side_total(size(master%x, 2), master%side_nodes, master%closed)
-         associate (x => master%x(:, side_positions(s, master%side_nodes, size(master%x, 2))))
-            ends = [cross(normal, x(:, 1) - point), cross(normal, x(:, size(x, 2)) - point)]
-            if (ends(1)*ends(2) > 0.0_dp) cycle
-            eta = 0.0_dp
-            call project(side, xi, x, eta)
-            if (abs(eta) > 1.0_dp + beside) cycle
-            tangent = matmul(x, side_slope(size(x, 2), eta))
-            if (master%outward*cross(normal, tangent) >= 0.0_dp) cycle
-            gap = norm2(matmul(x, side_shape(size(x, 2), eta)) - point)
-            if (gap >= nearest) cycle
-            nearest = gap
-            side_opposite = s
-         end associate
+         nodes = side_positions(s, size(nodes), size(beside_it))
+         if (beside_it(nodes(1))*beside_it(nodes(size(nodes))) > 0.0_dp) cycle
+         x = master%x(:, nodes)
+         eta = 0.0_dp
+         call project(side, xi, x, eta)
+         if (abs(eta) > 1.0_dp + beside) cycle
+         if (master%outward*dot_product(beside_it(nodes), side_slope(size(nodes), eta)) >= &
+            0.0_dp) cycle
+         gap = norm2(matmul(x, side_shape(size(x, 2), eta)) - point)
+         if (gap >= nearest) cycle
+         nearest = gap
+         side_opposite = s
       end do
    end function side_opposite
 
@@ -266,25 +280,22 @@ contains
       real(dp), intent(in) :: xi              !! coordinate of the slave's side
       real(dp), intent(in) :: x(:, :)         !! (2, nodes) [length]
       real(dp), intent(inout) :: eta          !! in: a guess
-      real(dp) :: change, normal(2), point(2), rate
+      real(dp) :: beside_it(size(x, 2)), change, psi(size(side%nodes)), rate
+      real(dp), dimension(size(x, 2)) :: phi, slope
       integer :: step
 
-      normal = matmul(side%normal, side_shape(size(side%x, 2), xi))
-      point = matmul(side%x, side_shape(size(side%x, 2), xi))
+      psi = side_shape(size(psi), xi)
+      beside_it = beside_line(matmul(side%normal, psi), matmul(side%x, psi), x)
       do step = 1, most_steps
-         rate = cross(normal, matmul(x, side_slope(size(x, 2), eta)))
+         slope = side_slope(size(x, 2), eta)
+         rate = dot_product(beside_it, slope)
          if (abs(rate) <= 0.0_dp) return
-         change = -cross(normal, matmul(x, side_shape(size(x, 2), eta)) - point)/rate
+         phi = side_shape(size(x, 2), eta)
+         change = -dot_product(beside_it, phi)/rate
          eta = min(max(eta + change, -2.0_dp), 2.0_dp)
-         if (abs(change) <= 4*epsilon(eta)) return
+         ! Each step doubles the number of digits.
+         if (abs(change) <= beside) return
       end do
    end subroutine project
-
-   !> a x b.
-   pure real(dp) function cross(a, b)
-      real(dp), intent(in) :: a(2), b(2)
-
-      cross = a(1)*b(2) - a(2)*b(1)
-   end function cross
 
 end module mortar_sides
