@@ -13,12 +13,12 @@ module round_indicators
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use element_kinds, only: element_corner_count
+   use error_marking, only: largest_part, squared_errors
    use interface_quantities, only: closed_length
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
    use quantity_types, only: quantity_type
-   use recovered_error, only: error_record_type
    use records, only: contact_record_type, increment_record_type
    use refined_regions, only: element_levels_type
    use variations, only: variation_type
@@ -26,7 +26,7 @@ module round_indicators
    private
    public :: round_indicators_type
 
-   real(dp), parameter :: marked = 0.5_dp       !! part of the squared error that is marked
+   real(dp), parameter :: marked = 0.7_dp       !! part of the squared error that is marked
    real(dp), parameter :: far = 16.0_dp         !! bound over target that takes two divisions
    real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
    real(dp), parameter :: near = 1.5_dp         !! spacings from an edge
@@ -210,60 +210,10 @@ contains
       type(increment_record_type), intent(in) :: record
       real(dp), intent(in) :: weight(:)   ! (elements) of squared errors
       integer, intent(in) :: levels
-      real(dp) :: error(size(self%levels)), left
-      integer :: e
 
-      error = 0.0_dp
-      call add_errors(mesh, record%stress_error, error)
-      call add_errors(mesh, record%heat_flux_error, error)
-      error = error*weight
-      left = marked*sum(error)
-      do while (left > 0.0_dp)
-         e = maxloc(error, dim=1)
-         if (error(e) <= 0.0_dp) exit
-         left = left - error(e)
-         error(e) = 0.0_dp
-         self%levels(e) = max(self%levels(e), levels)
-      end do
+      where (largest_part(weight*squared_errors(mesh, record), marked)) self%levels = max( &
+         self%levels, levels)
    end subroutine mark_elements
-
-   !> Adds the part that each element has in the squared relative error of its body.
-   subroutine add_errors(mesh, estimate, error)
-      type(mesh_type), intent(in) :: mesh
-      type(error_record_type), intent(in) :: estimate
-      real(dp), intent(inout) :: error(:)
-      real(dp) :: square(size(error)), sums(mesh%body_count)
-      integer :: e
-
-      if (.not. allocated(estimate%element)) return
-      sums = 0.0_dp
-      do e = 1, size(error)
-         square(e) = estimate%element(e)**2*area_of(mesh, e)
-         sums(mesh%element_body(e)) = sums(mesh%element_body(e)) + square(e)
-      end do
-      do e = 1, size(error)
-         associate (b => mesh%element_body(e))
-            if (sums(b) > 0.0_dp) error(e) = error(e) + estimate%body(b)**2*square(e)/sums(b)
-         end associate
-      end do
-   end subroutine add_errors
-
-   !> Area of an element between its corners.
-   pure real(dp) function area_of(mesh, e) result(area)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: e
-      integer :: corners, i
-
-      area = 0.0_dp
-      corners = element_corner_count(mesh%element_kind(e))
-      do i = 1, corners
-         associate (a => mesh%coordinates(:, mesh%element_nodes(i, e)), &
-            b => mesh%coordinates(:, mesh%element_nodes(mod(i, corners) + 1, e)))
-            area = area + 0.5_dp*(a(1)*b(2) - a(2)*b(1))
-         end associate
-      end do
-      area = abs(area)
-   end function area_of
 
    !> Whether no other mesh and no other increments would help.
    pure logical function asks_for_nothing(self)

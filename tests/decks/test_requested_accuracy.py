@@ -273,11 +273,11 @@ def test_a_later_round_that_does_not_converge_keeps_the_last_whole_one(tmp_path)
     process = run("run", deck, "--out", tmp_path, "--accuracy", "0.3%")
     assert process.returncode == 2
     whole = kept_round(tmp_path, "deck", process.stderr)
-    assert whole > 1
+    assert whole > 0
     assert f"error: round {whole + 1}: increment " in process.stderr
     assert "the conductance does not converge in 11 iterations" in process.stderr
     assert "deck.inp: not converged, 45 increments" in process.stdout
-    assert f"requested accuracy not reached after {whole} rounds; " in process.stdout
+    assert f"requested accuracy not reached after {whole} round" in process.stdout
     assert "results: " in process.stdout and "check failed" not in process.stderr
     listing = (tmp_path / "deck.lst").read_text()
     assert "ITERATION HISTORY" in listing[listing.index("\nENDED EARLY\n"):]
