@@ -93,8 +93,12 @@ contains
       integer :: i
 
       if (.not. self%is_on) return
-      if (record%step /= self%step .and. self%why_not == '') call begin_step(self, record%step)
-      self%step = record%step
+      if (record%step /= self%step) then
+         self%step = record%step
+         call self%courses%begin_step(size(estimated), size(record%contacts), &
+            simulation%loads%corners(model%amplitudes, simulation%control%step_start))
+         if (self%why_not == '') call begin_step(self, record%step)
+      end if
       call self%doubled%follow(model, simulation%bodies, simulation%loads, simulation%state, &
          record)
       do i = 1, size(record%contacts)
@@ -103,7 +107,7 @@ contains
             self%stuck(i) = max(self%stuck(i), stuck_forces(points, contact))
          end associate
       end do
-      call self%courses%follow(record%increment_in_step == 1, record%time, values)
+      call self%courses%follow(record%time, values)
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
       call store(values, record%errors)

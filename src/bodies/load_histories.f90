@@ -34,6 +34,7 @@ module load_histories
       procedure :: fade
       procedure :: remove
       procedure :: move_to
+      procedure :: follows
    end type load_history_type
 
 contains
@@ -133,5 +134,13 @@ contains
          end if
       end do
    end subroutine move_to
+
+   !> Whether any load follows an amplitude.
+   pure logical function follows(self, amplitude)
+      class(load_history_type), intent(in) :: self
+      integer, intent(in) :: amplitude
+
+      follows = any(self%active .and. self%amplitude == amplitude)
+   end function follows
 
 end module load_histories

@@ -1,5 +1,6 @@
 !> All loads and supports of a model at the present instant.
 module loads
+   use amplitudes, only: amplitude_type
    use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
    use load_histories, only: load_history_type, step_clock_type
@@ -46,6 +47,7 @@ module loads
       procedure :: prepare
       procedure :: begin_step
       procedure :: move_to
+      procedure :: corners
       procedure :: nodal_forces
       procedure :: present_gaps
       procedure :: heat_load
@@ -275,6 +277,23 @@ contains
       ramped%ramped = .true.
       call self%interference%move_to(ramped, model%amplitudes)
    end subroutine move_to
+
+   !> Instants at which amplitudes that loads follow may turn, as total time.
+   pure function corners(self, amplitudes, step_start) result(instants)
+      class(loads_type), intent(in) :: self
+      type(amplitude_type), intent(in) :: amplitudes(:)   !! load curves
+      real(dp), intent(in) :: step_start                  !! total time [time]
+      real(dp), allocatable :: instants(:)
+      integer :: i
+
+      allocate (instants(0))
+      do i = 1, size(amplitudes)
+         if (.not. (self%displacement%follows(i) .or. self%temperature%follows(i) .or. &
+            self%applied%follows(i) .or. self%interference%follows(i))) cycle
+         instants = [instants, amplitudes(i)%times + merge(0.0_dp, step_start, &
+            amplitudes(i)%total_time)]
+      end do
+   end function corners
 
    !> Present strength of every load; a film counts by its coefficient times its sink.
    pure function strength(self) result(values)

@@ -85,6 +85,26 @@ def test_error_of_increments(tmp_path):
         assert 0.5 * increment <= abs(exact - value) <= 1.01 * increment
 
 
+@pytest.mark.parametrize("corner", [600, 720, 800])
+def test_a_corner_of_an_amplitude_is_no_scatter(tmp_path, corner):
+    """Heated to a corner inside the step and cooled from there on: the bounds are as large as those of a
+    step that ends there and another one. They are taken over other increments, so not the same."""
+    curve = [f"*AMPLITUDE, NAME=BENT\n0., 0., {corner}., 1.2, 900., 1."]
+    bent = errors(solve(bare(CYLINDER, tmp_path, "bent.inp", curve, {
+        "*BOUNDARY\nTOP, 11, 11, 900.": "*BOUNDARY, AMPLITUDE=BENT\nTOP, 11, 11, 900.\n*BOUNDARY"})),
+        "FACE")
+    text = bare(CYLINDER, tmp_path, "parts.inp").read_text()
+    model, step = text.split("*STEP")
+    parts = [step.replace("20., 900.", f"20., {time}.").replace("11, 11, 900.", f"11, 11, {top}")
+             for time, top in ((corner, 1080), (900 - corner, 900))]
+    (tmp_path / "parts.inp").write_text("*STEP".join([model, *parts]))
+    apart = errors(solve(tmp_path / "parts.inp"), "FACE")
+    for name, (value, bound, *_) in bent.items():
+        assert value == pytest.approx(apart[name][0], rel=1e-6), name
+        if name in ("normal_force", "edge_contact"):   # whose bounds are mostly scatter
+            assert bound == pytest.approx(apart[name][1], rel=0.3), name
+
+
 @pytest.mark.parametrize("tolerance", ["1.E-2", "1.E-3"])
 def test_error_of_the_iteration_is_a_bound(tmp_path, tolerance):
     """Loose tolerances, against one that is met to rounding."""
