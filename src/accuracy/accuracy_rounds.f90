@@ -4,13 +4,14 @@
 !> added: a round that divides elements leaves less than a part of the error (`left_by_round`), so
 !> that this part of the change bounds what is left. Where nothing else is known of the mesh, every
 !> round divides both faces (`round_indicators`), and the larger one of the last two changes is the
-!> bound: one change can be small by chance, also of a pressure that grows without limit.
+!> bound: one change can be small by chance. A pressure that has no limit has no bound whatever the
+!> changes are.
 module accuracy_rounds
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
-   use interface_quantities, only: closed_length, edge_spacing
+   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner
    use kinds, only: dp
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
@@ -47,6 +48,7 @@ module accuracy_rounds
       real(dp) :: increment = 0.0_dp       !! of increments and iteration; NaN: uncertain
       real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: uncertain
       real(dp) :: allowed = 0.0_dp         !! what the target allows
+      logical :: has_limit = .true.        !! whether it tends to one as the mesh is refined
    contains
       procedure :: is_met
    end type finding_type
@@ -165,8 +167,12 @@ contains
             associate (finding => self%rounds(n)%findings(d, record%step))
                finding = found(self%demands(d), points, &
                   record%errors(self%demands(d)%interface), scale)
-               finding%is_at_end = estimated(self%demands(d)%quantity)%name == 'peak_pressure' &
-                  .and. any(maxloc(contact%pressure, dim=1) == [1, size(contact%pressure)])
+               if (is_peak(self%demands(d))) then
+                  finding%is_at_end = any(maxloc(contact%pressure, dim=1) == &
+                     [1, size(contact%pressure)])
+                  finding%has_limit = .not. (peaks_at_corner(points, contact) .or. &
+                     grows(self%rounds, d, record%step))
+               end if
             end associate
             call add_change(self%rounds, d, record%step)
          end associate
@@ -224,7 +230,9 @@ contains
       associate (now => rounds(n)%findings(d, step), before => rounds(n - 1)%findings(d, step))
          if (.not. (now%is_there .and. before%is_there)) return
          now%change = abs(now%value - before%value)
-         if (.not. ieee_is_nan(now%mesh)) then
+         if (.not. now%has_limit) then
+            now%mesh = ieee_value(1.0_dp, ieee_quiet_nan)
+         else if (.not. ieee_is_nan(now%mesh)) then
             now%mesh = max(now%mesh, left_by_round*now%change)
          else if (n > 2) then
             now%mesh = max(now%change, before%change)
@@ -232,6 +240,28 @@ contains
          now%bound = now%mesh + now%increment
       end associate
    end subroutine add_change
+
+   logical function is_peak(demand)
+      type(demand_type), intent(in) :: demand
+
+      is_peak = demand%quantity == find_quantity(estimated, 'peak_pressure')
+   end function is_peak
+
+   !> Whether a quantity whose changes are all that is known of the mesh grew in the last two
+   !> rounds, in the last one by no less than before.
+   pure logical function grows(rounds, d, step)
+      type(accuracy_round_type), intent(in) :: rounds(:)
+      integer, intent(in) :: d, step
+      real(dp) :: growth(2)
+      integer :: i, n
+
+      n = size(rounds)
+      grows = n > 2 .and. ieee_is_nan(rounds(n)%findings(d, step)%mesh)
+      if (.not. grows) return
+      growth = [(rounds(n - 2 + i)%findings(d, step)%value - &
+         rounds(n - 3 + i)%findings(d, step)%value, i=1, 2)]
+      grows = growth(1) > 0.0_dp .and. growth(2) >= growth(1)
+   end function grows
 
    !> Whether a bound is inside its target; an uncertain one is not.
    elemental logical function is_met(self)

@@ -13,7 +13,8 @@ module interface_quantities
    use solution_state, only: carrying_conductance, solution_state_type
    implicit none
    private
-   public :: closed_length, contact_of, quantities_of, quantities_of_state, edge_spacing
+   public :: closed_length, contact_of, edge_spacing, peaks_at_corner, quantities_of, &
+      quantities_of_state
 
 contains
 
@@ -100,5 +101,16 @@ contains
          end do
       end associate
    end function edge_spacing
+
+   !> Whether the pressure is largest at a corner, where one of two faces of mortar points ends. It
+   !> varies as a power of the distance to there and has no limit (J. Dundurs, M.-S. Lee, J.
+   !> Elasticity 2 (1972) 109-112).
+   pure logical function peaks_at_corner(points, contact)
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
+      type(contact_record_type), intent(in) :: contact    !! its state
+
+      peaks_at_corner = any(points%at_corner .and. maxloc(contact%pressure, dim=1) == &
+         [1, size(contact%pressure)])
+   end function peaks_at_corner
 
 end module interface_quantities

@@ -14,7 +14,7 @@ module mesh_bounds
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use contact_states, only: contact_stick
-   use interface_quantities, only: closed_length, edge_spacing
+   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner
    use kinds, only: dp
    use quantity_types, only: find_quantity
    use records, only: contact_record_type
@@ -64,10 +64,7 @@ contains
          case ('peak_pressure')
             if (locked > 0.0_dp) bounds(q) = bounds(q) + of_locked_in_peak*locked* &
                maxval(contact%pressure)/contact%normal_force
-            ! Pressure varies as a power of the distance to a corner: there it is 0 or has no limit
-            ! (J. Dundurs, M.-S. Lee, J. Elasticity 2 (1972) 109-112).
-            if (any(points%at_corner .and. maxloc(contact%pressure, dim=1) == &
-               [1, size(contact%pressure)])) bounds(q) = ieee_value(1.0_dp, ieee_quiet_nan)
+            if (peaks_at_corner(points, contact)) bounds(q) = ieee_value(1.0_dp, ieee_quiet_nan)
          case ('edge_contact')
             bounds(q) = edge_bound(points, contact%edge_contact, estimated(q)%resolution* &
                merge(of_hats, 1.0_dp, points%pairing == pairing_surfaces), change(q)) + shift

@@ -108,7 +108,7 @@ contains
          if (size(last%findings, 2) > 1) words = words//', step '//to_text(step)
          if (finding%is_met()) return
          words = words//reason(finding)
-         if (finding%is_at_end .and. accuracy%stands_still()) words = words// &
+         if (finding%is_at_end .and. finding%has_limit .and. accuracy%stands_still()) words = words// &
             '; the peak is at an end of the face, where the pressure may grow without limit'
       end associate
    contains
@@ -130,6 +130,7 @@ contains
       character(:), allocatable :: reason
 
       reason = ' (of the mesh)'
+      if (.not. finding%has_limit) reason = ' (no limit: it grows from mesh to mesh)'
       if (ieee_is_nan(finding%mesh)) return
       if (ieee_is_nan(finding%increment)) then
          reason = ' (of the increments)'
