@@ -64,6 +64,7 @@ contains
          case ('peak_pressure')
             if (locked > 0.0_dp) bounds(q) = bounds(q) + of_locked_in_peak*locked* &
                maxval(contact%pressure)/contact%normal_force
+            bounds(q) = bounds(q) + rise_on_axis(points, contact%pressure)
             if (peaks_at_corner(points, contact)) bounds(q) = ieee_value(1.0_dp, ieee_quiet_nan)
          case ('edge_contact')
             bounds(q) = edge_bound(points, contact%edge_contact, estimated(q)%resolution* &
@@ -80,6 +81,25 @@ contains
          end select
       end do
    end function bounds_of_mesh
+
+   !> What the pressure on the axis, which few elements tell, exceeds the even parabola through the
+   !> two contact points beside by, where it is the largest; 0 elsewhere.
+   pure real(dp) function rise_on_axis(points, pressure) result(rise)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: pressure(:)
+      real(dp) :: square(2)
+      integer :: k, m, way
+
+      rise = 0.0_dp
+      m = size(pressure)
+      k = maxloc(pressure, dim=1)
+      if (.not. points%about_axis .or. m < 3 .or. all(k /= [1, m])) return
+      if (points%weight(k) > 0.0_dp) return
+      way = merge(1, -1, k == 1)
+      square = (points%arc_length([k + way, k + 2*way]) - points%arc_length(k))**2
+      rise = abs(pressure(k) - (pressure(k + way)*square(2) - pressure(k + 2*way)*square(1))/ &
+         (square(2) - square(1)))
+   end function rise_on_axis
 
    !> A part of the spacing, and twice what the edge moves by beyond that: finer nodes alone move it
    !> by up to a quarter.
