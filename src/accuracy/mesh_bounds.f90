@@ -45,7 +45,7 @@ contains
       real(dp), intent(in) :: stuck                      !! largest of stuck_forces so far
       logical, intent(in) :: of_faces                    !! whether only faces were halved
       real(dp) :: bounds(size(estimated))
-      real(dp) :: known_scatter(size(estimated)), length, locked, shift
+      real(dp) :: known_scatter(size(estimated)), length, locked, of_contact, shift
       integer :: q
 
       known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter))
@@ -57,6 +57,8 @@ contains
       shift = 0.0_dp
       if (contact%normal_force > 0.0_dp) shift = length/contact%normal_force* &
          bounds(find_quantity(estimated, 'normal_force'))
+      of_contact = estimated(find_quantity(estimated, 'edge_contact'))%resolution* &
+         merge(of_hats, 1.0_dp, points%pairing == pairing_surfaces)
       do q = 1, size(bounds)
          select case (estimated(q)%name)
          case ('shear_force')
@@ -67,11 +69,11 @@ contains
             bounds(q) = bounds(q) + rise_on_axis(points, contact%pressure)
             if (peaks_at_corner(points, contact)) bounds(q) = ieee_value(1.0_dp, ieee_quiet_nan)
          case ('edge_contact')
-            bounds(q) = edge_bound(points, contact%edge_contact, estimated(q)%resolution* &
-               merge(of_hats, 1.0_dp, points%pairing == pairing_surfaces), change(q)) + shift
+            bounds(q) = edge_bound(points, contact%edge_contact, of_contact, change(q)) + shift
          case ('edge_stick')
             if (ends_with_contact(points, contact)) then
-               bounds(q) = edge_bound(points, contact%edge_stick, of_both, change(q)) + shift
+               bounds(q) = edge_bound(points, contact%edge_stick, max(of_both, of_contact), &
+                  change(q)) + shift
             else
                bounds(q) = edge_bound(points, contact%edge_stick, estimated(q)%resolution, &
                   change(q)) + known_scatter(q) + shift
