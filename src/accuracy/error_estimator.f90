@@ -16,6 +16,7 @@ module error_estimator
    use load_histories, only: step_clock_type
    use model, only: model_type
    use records, only: increment_record_type, interface_errors_type
+   use recovered_error, only: error_record_type
    use refined_model, only: refined_model_type
    use refinement_error, only: find_change_by_refinement
    use solution_state, only: solution_state_type
@@ -163,6 +164,7 @@ contains
       type(error_type), allocatable :: error
       type(step_clock_type) :: clock
       real(dp) :: change(size(estimated), size(record%errors))
+      real(dp), allocatable :: energy(:)
       integer :: i
 
       clock%total_time = record%time
@@ -179,12 +181,23 @@ contains
          call append(record%notes, 'the errors of the mesh cannot be estimated: '//error%message)
          return
       end if
+      allocate (energy(0))
+      if (.not. self%relaxes) energy = [energy_error(record%stress_error), &
+         energy_error(record%heat_flux_error)]
       do i = 1, size(record%errors)
          record%errors(i)%mesh = bounds_of_mesh(simulation%bodies%interfaces(i), &
-            record%contacts(i), change(:, i), self%courses%scatter(i), self%stuck(i), &
-            .not. self%relaxes)
+            record%contacts(i), change(:, i), self%courses%scatter(i), self%stuck(i), energy)
       end do
    end subroutine bound_mesh
+
+   !> Largest squared relative error of the energy norm of a body; 0 of what is not solved.
+   pure real(dp) function energy_error(estimate)
+      type(error_record_type), intent(in) :: estimate
+
+      energy_error = 0.0_dp
+      if (allocated(estimate%body)) energy_error = maxval([0.0_dp, estimate%body**2], &
+         mask=.not. ieee_is_nan([0.0_dp, estimate%body]))
+   end function energy_error
 
    !> Bounds of the errors of the increments, from those of twice the size.
    subroutine bound_increments(self, model, simulation, errors)

@@ -33,24 +33,30 @@ module mesh_bounds
    !> Error of an edge of contact that means with hats tell, in that which gaps of nodes tell.
    real(dp), parameter :: of_hats = 4.0_dp
    real(dp), parameter :: same_place = 1.0e-6_dp    !! of the spacing
+   !> Error of normal force and heat rate in the squared relative error of the energy norm, where
+   !> only elements at the faces are halved.
+   real(dp), parameter :: of_energy = 0.25_dp
 
 contains
 
    !> The bounds, for the quantities with an estimate; NaN where none can be given.
-   pure function bounds_of_mesh(points, contact, change, scatter, stuck, of_faces) result(bounds)
+   pure function bounds_of_mesh(points, contact, change, scatter, stuck, energy) result(bounds)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       type(contact_record_type), intent(in) :: contact   !! its state
       real(dp), intent(in) :: change(:)                  !! of the quantities by halved elements
       real(dp), intent(in) :: scatter(:)                 !! over increments; NaN: unknown
       real(dp), intent(in) :: stuck                      !! largest of stuck_forces so far
-      logical, intent(in) :: of_faces                    !! whether only faces were halved
+      !> Squared relative errors of the energy norms of stress and heat flux [-], where only faces
+      !> were halved; else none
+      real(dp), intent(in) :: energy(:)
       real(dp) :: bounds(size(estimated))
       real(dp) :: known_scatter(size(estimated)), length, locked, of_contact, shift
       integer :: q
 
       known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter))
-      bounds = merge(of_change_alone, of_change, of_faces .or. ieee_is_nan(scatter))* &
+      bounds = merge(of_change_alone, of_change, size(energy) > 0 .or. ieee_is_nan(scatter))* &
          abs(change) + known_scatter
+      if (size(energy) > 0) call add_energy(contact, energy, bounds)
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
       if (length > 0.0_dp) locked = stuck*nodal_spacing(points, contact%edge_contact)/length
@@ -83,6 +89,20 @@ contains
          end select
       end do
    end function bounds_of_mesh
+
+   !> What elements away from the faces add: where displacements and temperatures are prescribed,
+   !> force and heat rate err as the energy, by the square of its norm's error.
+   pure subroutine add_energy(contact, energy, bounds)
+      type(contact_record_type), intent(in) :: contact
+      real(dp), intent(in) :: energy(:)
+      real(dp), intent(inout) :: bounds(:)
+
+      associate (force => bounds(find_quantity(estimated, 'normal_force')), &
+         heat => bounds(find_quantity(estimated, 'heat_rate')))
+         force = force + of_energy*energy(1)*abs(contact%normal_force)
+         heat = heat + of_energy*energy(2)*abs(contact%heat_rate)
+      end associate
+   end subroutine add_energy
 
    !> What the pressure on the axis, which few elements tell, exceeds the even parabola through the
    !> two contact points beside by, where it is the largest; 0 elsewhere.
