@@ -108,8 +108,10 @@ contains
          if (size(last%findings, 2) > 1) words = words//', step '//to_text(step)
          if (finding%is_met()) return
          words = words//reason(finding)
-         if (finding%is_at_end .and. finding%has_limit .and. accuracy%stands_still()) words = words// &
-            '; the peak is at an end of the face, where the pressure may grow without limit'
+         if (finding%is_at_end .and. finding%has_limit .and. accuracy%stands_still()) then
+            words = words//'; the peak is at an end of the face, where the pressure may grow '// &
+               'without limit'
+         end if
       end associate
    contains
       !> A bound, with its part of the value's scale where the target is one.

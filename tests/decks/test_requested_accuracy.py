@@ -164,9 +164,12 @@ def punch(folder, faces, columns, cards=(), width=None):
 def test_a_pressure_without_limit_is_never_reached_on_mortar_points(tmp_path, target, faces):
     """The pressure at the edge of a punch grows without limit, whichever face is the slave; one
     division alone can change it little."""
-    process = run("run", punch(tmp_path, faces, 8), "--out", tmp_path, "--accuracy", f"{target}%")
+    deck = punch(tmp_path, faces, 8)
+    process = run("run", deck, "--out", tmp_path, "--accuracy", f"{target}%")
     assert process.returncode == 4, process.stderr
-    assert "(no limit: it grows from mesh to mesh)" in process.stderr
+    for words in (process.stdout, process.stderr, " ".join(deck.with_suffix(".lst").read_text().split())):
+        assert "(no limit: it grows from mesh to mesh)" in words
+        assert " rounds: the last two came no nearer to the targets" in words
     _, bounds, reached = rounds_of(tmp_path / "punch.vtkhdf", "P")
     peak = bounds["peak_pressure"]
     assert not reached and np.all(np.isnan(peak[:, 2]))
@@ -175,6 +178,15 @@ def test_a_pressure_without_limit_is_never_reached_on_mortar_points(tmp_path, ta
     with h5py.File(tmp_path / "punch.vtkhdf") as file:
         assert np.isnan(file["errors/P/peak_pressure"][-1, 1])
         assert file["errors/P/normal_force"][-1, 1] < 0.1
+
+
+def test_a_request_that_stops_at_an_end_of_the_face_says_so(tmp_path):
+    """Node pairs have a bound there, which is large in every round."""
+    deck = punch(tmp_path, "A.BOTTOM, B.TOP", 12, width=4)
+    process = run("run", deck, "--out", tmp_path, "--accuracy", "3%")
+    assert process.returncode == 4, process.stderr
+    for words in (process.stdout, process.stderr, " ".join(deck.with_suffix(".lst").read_text().split())):
+        assert "; the peak is at an end of the face, where the pressure may grow without limit" in words
 
 
 def test_a_pressure_that_grows_faster_and_faster_has_no_limit(tmp_path):
