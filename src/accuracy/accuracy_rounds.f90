@@ -301,17 +301,15 @@ contains
       end do
    end function worst_step
 
-   !> Largest bound over what its target allows; huge where one is unknown.
-   pure real(dp) function excess(self)
+   !> Largest bound of a demand over what its target allows; 0 for none, huge where it is unknown.
+   pure real(dp) function excess(self, d)
       class(accuracy_round_type), intent(in) :: self
-      integer :: d, step
+      integer, intent(in) :: d                    !! the demand
+      integer :: step
 
       excess = 0.0_dp
-      do d = 1, size(self%findings, 1)
-         step = self%worst_step(d)
-         if (step == 0) cycle
-         excess = max(excess, over_target(self%findings(d, step)))
-      end do
+      step = self%worst_step(d)
+      if (step > 0) excess = over_target(self%findings(d, step))
    end function excess
 
    !> A bound over what its target allows; huge where it is unknown.
@@ -342,15 +340,20 @@ contains
       end if
    end subroutine conclude
 
-   !> Whether the last two rounds brought the targets no nearer, as where a pressure grows without
-   !> limit.
+   !> Whether the last two rounds brought no target nearer that is not met, as where pressures grow
+   !> without limit.
    pure logical function stands_still(self)
       class(accuracy_rounds_type), intent(in) :: self
-      integer :: n
+      integer :: d, n
 
       n = size(self%rounds)
       stands_still = n >= least_rounds
-      if (stands_still) stands_still = self%rounds(n)%excess() > nearer*self%rounds(n - 2)%excess()
+      if (.not. stands_still) return
+      do d = 1, size(self%rounds(n)%findings, 1)
+         associate (now => self%rounds(n)%excess(d), before => self%rounds(n - 2)%excess(d))
+            if (now > 1.0_dp .and. now <= nearer*before) stands_still = .false.
+         end associate
+      end do
    end function stands_still
 
    !> Says of each demand that no step of the present round has why that is so.

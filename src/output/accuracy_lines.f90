@@ -146,14 +146,18 @@ contains
       type(accuracy_round_type), intent(in) :: round
       character(:), allocatable :: words
       character(80) :: line
+      real(dp) :: excess(size(round%findings, 1))
+      integer :: d, uncertain
+
       write (line, '(i8, f14.2, 3i12)') number, round%cpu_seconds, round%unknowns, &
          round%elements, round%increments
       words = trim(line)//'  '
-      if (round%excess() < huge(1.0_dp)) then
-         words = words//few_digits(round%excess())
-      else
-         words = words//'uncertain'
-      end if
+      excess = [(round%excess(d), d=1, size(excess))]
+      uncertain = count(excess >= huge(1.0_dp))
+      if (uncertain < size(excess)) words = words//few_digits(maxval(excess, &
+         mask=excess < huge(1.0_dp)))
+      if (uncertain > 0 .and. uncertain < size(excess)) words = words//', '
+      if (uncertain > 0) words = words//to_text(uncertain)//' uncertain'
    end function round_words
 
 end module accuracy_lines

@@ -79,10 +79,15 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(string_type), allocatable, intent(inout) :: lines(:)
+      character(:), allocatable :: line
       integer :: i
 
       if (self%increment == 0) return
-      call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
+      line = 'at '//when(self, or_blank(model%load_label))
+      if (model%estimates_errors .and. size(interfaces) > 0 .and. .not. allocated(self%errors)) then
+         line = line//', inside a step: errors are bounded at the end of steps'
+      end if
+      call append(lines, line//':')
       do i = 1, size(interfaces)
          call append(lines, interfaces(i)%name)
          call add_quantities(self, model, interfaces(i), i, lines)

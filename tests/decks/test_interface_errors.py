@@ -5,7 +5,7 @@ import re
 import h5py
 import numpy as np
 import pytest
-from blocks import block, solid, write
+from blocks import block, solid, without_unused_surfaces, write
 from changes import note_changes
 from deck_runs import CYLINDER, HERTZ, INPUT, copy_deck, run, solve
 from physics import DECKS  # noqa: F401  puts tests/reference on the path
@@ -83,6 +83,26 @@ def test_error_of_increments(tmp_path):
     exact = runs[2][0]
     for value, *_, increment, _ in runs[:2]:
         assert 0.5 * increment <= abs(exact - value) <= 1.01 * increment
+
+
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+@pytest.mark.parametrize("sides", [3, 6])
+def test_friction_that_a_held_contact_point_lacks_is_in_the_bound(tmp_path, pairing, sides):
+    """A block expands on a held one, all of it slips away from the plane of symmetry: the shear force is
+    mu times the normal force. The contact point in that plane is held, and its friction is missing."""
+    lines = np.linspace(0.0, 3.0, sides + 1)
+    cards = [*block("A", lines, [1.0, 1.5, 2.0]), *block("B", lines, [0.0, 0.5, 1.0], first=1001),
+             *solid("A", 1000.0, 0.0, 1e-3), *solid("B", 1000.0, 0.0),
+             "*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.1",
+             f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}", "A.BOTTOM, B.TOP",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "A, 0.", "B, 0.",
+             "*BOUNDARY", "A.LEFT, 1", "B, 1, 2", "*STEP", "*STATIC, DIRECT", "0.05, 1.",
+             "*DSLOAD", "A.TOP, P, 2.", "*TEMPERATURE", "A, 100.", "*END STEP"]
+    found = errors(solve(write(tmp_path / "held.inp", without_unused_surfaces(cards))), "P")
+    normal, (value, bound, *_) = found["normal_force"][0], found["shear_force"]
+    true = abs(0.1 * normal - abs(value))
+    assert normal == pytest.approx(6.0)
+    assert 0.01 * normal / sides < true <= bound
 
 
 @pytest.mark.parametrize("corner", [600, 720, 800])
