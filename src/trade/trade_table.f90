@@ -39,7 +39,8 @@ contains
          write (unit, '(a9)', advance='no') cell(trade%uncertainty(q))
       end do
       write (unit, '(/, /, 3a)') '* no row that takes at most ', &
-         to_text(nint(1000.0_dp*same_time)), ' ms more is better (worst error); = the deck as written'
+         to_text(nint(1000.0_dp*same_time)), ' ms more is better (worst error); '// &
+         '= the deck as written'
       if (any(trade%rows(:trade%count)%contact_level > 0)) write (unit, '(a)') &
          'x 1:4: sides are those of the deck''s mesh, at both contact faces divided by 4 '// &
          '(*REFINE, LEVELS=2, SURFACE=)'
