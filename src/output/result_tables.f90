@@ -48,19 +48,19 @@ module result_tables
 contains
 
    !> Prepares the datasets of a group.
-   subroutine start_table(self, group, quantities, places, expected, labels)
+   subroutine start_table(self, group, reported, places, expected, labels)
       class(result_table_type), intent(inout) :: self
       character(*), intent(in) :: group                   !! its path, with a slash at the end
-      type(quantity_type), intent(in) :: quantities(:)
+      type(quantity_type), intent(in) :: reported(:)
       integer, intent(in) :: places                       !! bodies or contact points
       integer, intent(in) :: expected                     !! rows that are expected
       type(unit_labels_type), intent(in) :: labels        !! units of the deck
       integer :: i, width
 
-      self%quantities = quantities
-      allocate(self%sets(size(quantities)))
-      do i = 1, size(quantities)
-         associate (quantity => quantities(i), set => self%sets(i))
+      self%quantities = reported
+      allocate(self%sets(size(reported)))
+      do i = 1, size(reported)
+         associate (quantity => reported(i), set => self%sets(i))
             width = merge(quantity%values, 0, quantity%values > 1)
             if (any(quantity%kind == [of_bodies, of_contact_points])) width = places
             set = growing_dataset(group//trim(quantity%name), merge(as_integer, as_real, &
