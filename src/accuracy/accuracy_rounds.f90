@@ -11,7 +11,7 @@ module accuracy_rounds
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
-   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner
+   use interface_quantities, only: closed_length, edge_spacing, peak_is_at_end, peaks_at_corner
    use kinds, only: dp
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
@@ -168,8 +168,7 @@ contains
                finding = found(self%demands(d), points, &
                   record%errors(self%demands(d)%interface), scale)
                if (is_peak(self%demands(d))) then
-                  finding%is_at_end = any(maxloc(contact%pressure, dim=1) == &
-                     [1, size(contact%pressure)])
+                  finding%is_at_end = any(peak_is_at_end(contact))
                   finding%has_limit = .not. (peaks_at_corner(points, contact) .or. &
                      grows(self%rounds, d, record%step))
                end if

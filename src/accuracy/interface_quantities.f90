@@ -13,8 +13,8 @@ module interface_quantities
    use solution_state, only: carrying_conductance, solution_state_type
    implicit none
    private
-   public :: closed_length, contact_of, edge_spacing, peaks_at_corner, quantities_of, &
-      quantities_of_state
+   public :: closed_length, contact_of, edge_spacing, peak_is_at_end, peaks_at_corner, &
+      quantities_of, quantities_of_state
 
 contains
 
@@ -102,6 +102,14 @@ contains
       end associate
    end function edge_spacing
 
+   !> Whether the pressure is largest at the first, at the last contact point.
+   pure function peak_is_at_end(contact) result(at_end)
+      type(contact_record_type), intent(in) :: contact    !! state of the interface
+      logical :: at_end(2)
+
+      at_end = maxloc(contact%pressure, dim=1) == [1, size(contact%pressure)]
+   end function peak_is_at_end
+
    !> Whether the pressure is largest at a corner, where one of two faces of mortar points ends. It
    !> varies as a power of the distance to there and has no limit (J. Dundurs, M.-S. Lee, J.
    !> Elasticity 2 (1972) 109-112).
@@ -109,8 +117,7 @@ contains
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! its state
 
-      peaks_at_corner = any(points%at_corner .and. maxloc(contact%pressure, dim=1) == &
-         [1, size(contact%pressure)])
+      peaks_at_corner = any(points%at_corner .and. peak_is_at_end(contact))
    end function peaks_at_corner
 
 end module interface_quantities

@@ -68,7 +68,7 @@ contains
       do q = 1, size(bounds)
          select case (estimated(q)%name)
          case ('shear_force')
-            bounds(q) = bounds(q) + of_locked*locked + lacking_forces(points, contact)
+            bounds(q) = bounds(q) + of_locked*locked + missing_friction(points, contact)
          case ('peak_pressure')
             if (locked > 0.0_dp) bounds(q) = bounds(q) + of_locked_in_peak*locked* &
                maxval(contact%pressure)/contact%normal_force
@@ -168,23 +168,24 @@ contains
          mask=contact%contact_state == contact_stick)
    end function stuck_forces
 
-   !> Friction that is missing at closed contact points which supports hold along the face, beside
-   !> ones that slip: it ends at the point itself, on the mesh one contact point before [force].
-   pure real(dp) function lacking_forces(points, contact)
+   !> Friction that is missing where supports hold both nodes of a closed contact point along the
+   !> face, and the one beside it slips: the part of the face that it stands for slips as well, but
+   !> for the point itself [force].
+   pure real(dp) function missing_friction(points, contact)
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
-      integer :: beside, k, m
+      real(dp), allocatable :: slipping(:)
+      integer :: k, m
 
-      lacking_forces = 0.0_dp
+      missing_friction = 0.0_dp
       if (.not. allocated(contact%shear)) return
       m = size(contact%shear)
+      slipping = merge(abs(contact%shear), 0.0_dp, contact%contact_state == contact_slip)
       do k = 1, m
          if (contact%pressure(k) <= 0.0_dp .or. abs(contact%shear(k)) > 0.0_dp) cycle
-         do beside = max(k - 1, 1), min(k + 1, m)
-            if (contact%contact_state(beside) == contact_slip) lacking_forces = lacking_forces + &
-               points%weight(k)*abs(contact%shear(beside))
-         end do
+         missing_friction = missing_friction + &
+            points%weight(k)*maxval(slipping(max(k - 1, 1):min(k + 1, m)))
       end do
-   end function lacking_forces
+   end function missing_friction
 
 end module mesh_bounds

@@ -158,12 +158,10 @@ contains
       integer(c_int) :: made, number
 
       made = 0
-      do i = 2, len(path) + 1
-         if (i <= len(path)) then
-            if (path(i:i) /= '/') cycle
-         end if
-         if (made == 0) made = c_make_folder(path(:i - 1)//c_null_char)
+      do i = 2, len(path)
+         if (path(i:i) == '/' .and. made == 0) made = c_make_folder(path(:i - 1)//c_null_char)
       end do
+      if (made == 0) made = c_make_folder(path//c_null_char)
       number = c_check_folder(path//'/'//c_null_char)
       if (number == 0) return
       if (made /= 0) number = made

@@ -49,8 +49,9 @@ the first one by a little, as normal forces do of the decks kept aside: by the c
 fall with h, so that its bounds equal them within 1 %. Shear forces, heat rates and edges miss the second
 one.
 
-With faces that do not match, the constants were chosen on decks of seeds below 20 and from 100 to 143, but
-the factor 2.4 of the peak pressure was seen on those that judge it; the decks of seeds 20 to 51, the published cylinder with 30 sides on 22, and Hertz with 3 on 2 judge them. "Same
+With faces that do not match, the constants were chosen on decks of seeds below 20 and from 100 to
+143. The decks of seeds 20 to 51, the published cylinder with 30 sides on 22, and Hertz with 3 on 2
+judge them; only the factor 2.4 of the peak pressure was found on these themselves. "Same
 increments" compares with the fine mesh in the same increments, without the error of these. Only
 shear forces with shorter increments miss 95 %.
 """
