@@ -226,12 +226,14 @@ run_ctest() {
 # The tests on the program as users have it come last, so that their summary closes the output; before
 # that the sources, and the unit tests and the cylinder with run-time checks. Unit tests run with these
 # checks only: to compile them once more would take as long as most of the tests below. Both programs
-# are built side by side, and the Python packages, most of whose time is that of the network, are
-# installed and the sources checked meanwhile: none of these keeps all processors busy.
+# are built side by side; the packages, most of whose time is that of the network, are installed and the
+# sources checked meanwhile: none of these keeps all processors busy.
 run_test() {
    local status=0 job jobs=() lint
-   install_packages "${build_packages[@]}" "${test_packages[@]}"
+   install_packages "${build_packages[@]}"
    trap wait EXIT
+   install_packages "${test_packages[@]}" &
+   jobs+=($!)
    run_lint &
    lint=$!
    make_venv "$build/sweep" "${sweep_requirements[@]}" & # Snakemake, for the test of input/sweep
