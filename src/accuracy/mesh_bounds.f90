@@ -22,9 +22,9 @@ module mesh_bounds
    private
    public :: bounds_of_mesh, stuck_forces
 
-   !> Error in the change that halved elements make: of errors that fall with h it is just twice that,
-   !> and a bound is to hold them with room; and where too few increments tell no scatter, or only
-   !> elements at the faces are halved.
+   !> Error in the change that halved elements make: errors that fall with h are just twice as
+   !> large, and need some room; and where too few increments tell no scatter, or only elements at
+   !> the faces are halved.
    real(dp), parameter :: of_change = 2.1_dp, of_change_alone = 3.0_dp
    !> Error of shear force and peak pressure in what friction locked in.
    real(dp), parameter :: of_locked = 0.6_dp, of_locked_in_peak = 0.15_dp

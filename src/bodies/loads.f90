@@ -4,27 +4,17 @@ module loads
    use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
    use load_histories, only: load_history_type, step_clock_type
-   use load_integrals, only: film_side, unit_forces, unit_heat
    use all_contact_points, only: all_contact_points_type
    use load_locations, only: entries_of, find_locations, load_locations_type
    use mesh, only: mesh_type
    use model, only: model_type
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
-   use steps, only: analysis_static, dof_temperature, load_film_coefficient, load_film_sink, &
-      load_temperature, step_type
+   use sparse_matrix, only: sparse_matrix_type
+   use steps, only: analysis_static, dof_temperature, load_film_sink, load_temperature, &
+      step_type
+   use unit_loads, only: integrated, unit_loads_type
    implicit none
    private
    public :: loads_type
-
-   integer, parameter :: most_side_nodes = 3   !! nodes of a quadratic side
-
-   !> A side with a film.
-   type :: film_side_type
-      integer :: coefficient = 0               !! location of its coefficient
-      integer :: sink = 0                      !! location of its sink temperature
-      integer, allocatable :: nodes(:)         !! (n) nodes
-      real(dp), allocatable :: mass(:, :)      !! (n, n) integral of psi^p psi^q [length^2]
-   end type film_side_type
 
    !> Histories of the loads; displacements by degree of freedom, temperatures by node, all other
    !> ones by the locations on which the deck puts loads.
@@ -36,12 +26,7 @@ module loads
       type(load_history_type) :: interference
       logical, allocatable :: shrinks(:)       !! (interfaces) which of the two
       type(load_locations_type) :: locations   !! (locations) what they act on
-      !> (2 nodes, locations) nodal forces of unit loads [force per unit of the load]
-      type(sparse_matrix_type) :: unit_forces
-      !> (nodes, locations) nodal heat of unit loads, for films of unit coefficient and sink [power]
-      type(sparse_matrix_type) :: unit_heat
-      real(dp), allocatable :: total_heat(:)   !! (locations) sums of its columns
-      type(film_side_type), allocatable :: films(:)   !! sides with a film
+      type(unit_loads_type) :: unit            !! nodal forces and heat of unit loads
       integer :: card_count = 0                !! number of the last data card of a load
    contains
       procedure :: prepare
@@ -82,66 +67,8 @@ contains
          if (.not. allocated(model%steps(s)%loads)) cycle
          self%card_count = max(self%card_count, maxval([0, model%steps(s)%loads%card]))
       end do
-      call integrate_films(self, model)
-      call integrate_units(self, model)
+      self%unit = integrated(model, self%locations)
    end subroutine prepare
-
-   !> The sides with films; cards give coefficients and sinks for the same sides, in one order.
-   pure subroutine integrate_films(self, model)
-      class(loads_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      integer :: first, i, n
-
-      n = count(self%locations%kind == load_film_coefficient)
-      first = findloc(self%locations%kind, load_film_coefficient, dim=1)
-      allocate (self%films(n))
-      do i = 1, n
-         associate (film => self%films(i), location => first + i - 1)
-            film%coefficient = location
-            film%sink = location + n
-            call film_side(model, self%locations%item(location), &
-               self%locations%component(location), film%nodes, film%mass)
-         end associate
-      end do
-   end subroutine integrate_films
-
-   !> Nodal forces and heat of unit loads, integrated once.
-   pure subroutine integrate_units(self, model)
-      class(loads_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(triplet_list_type) :: forces, heat
-      integer, allocatable :: nodes(:)
-      real(dp), allocatable :: unit_force(:, :), unit(:)
-      integer :: i
-
-      associate (locations => self%locations, most_nodes => size(model%mesh%element_nodes, 1))
-         call forces%reserve(2*most_nodes*size(locations%kind))
-         call heat%reserve(most_nodes*size(locations%kind))
-         do i = 1, size(locations%kind)
-            call unit_forces(model, locations%kind(i), locations%item(i), locations%component(i), &
-               nodes, unit_force)
-            call forces%add_block(2*nodes - 1, [i], transpose(unit_force(1:1, :)))
-            call forces%add_block(2*nodes, [i], transpose(unit_force(2:2, :)))
-            call unit_heat(model, locations%kind(i), locations%item(i), locations%component(i), &
-               nodes, unit)
-            call heat%add_block(nodes, [i], reshape(unit, [size(unit), 1]))
-         end do
-         do i = 1, size(self%films)
-            associate (film => self%films(i))
-               call heat%add_block(film%nodes, [film%coefficient], &
-                  reshape(sum(film%mass, dim=2), [size(film%nodes), 1]))
-            end associate
-         end do
-         self%unit_forces = forces%compress(2*size(model%mesh%node_number), size(locations%kind))
-         self%unit_heat = heat%compress(size(model%mesh%node_number), size(locations%kind))
-         allocate (self%total_heat(size(locations%kind)), source=0.0_dp)
-         do i = 1, size(self%unit_heat%value)
-            associate (total => self%total_heat(self%unit_heat%column(i)))
-               total = total + self%unit_heat%value(i)
-            end associate
-         end do
-      end associate
-   end subroutine integrate_units
 
    !> Nodes on the axis of an axisymmetric body stay there.
    pure subroutine hold_axis(mesh, displacement)
@@ -295,23 +222,20 @@ contains
       end do
    end function corners
 
-   !> Present strength of every load; a film counts by its coefficient times its sink.
-   pure function strength(self) result(values)
+   !> Present values of the loads; of those that do not act zero.
+   pure function present_values(self) result(values)
       class(loads_type), intent(in) :: self
       real(dp) :: values(size(self%locations%kind))
 
       values = merge(self%applied%value, 0.0_dp, self%applied%active)
-      associate (films => self%films)
-         values(films%coefficient) = values(films%coefficient)*self%applied%value(films%sink)
-      end associate
-   end function strength
+   end function present_values
 
    !> Applied nodal forces: concentrated ones and those of pressures, tractions and body forces.
    pure function nodal_forces(self) result(forces)
       class(loads_type), intent(in) :: self
       real(dp) :: forces(size(self%displacement%value))  !! (2 nodes) [force]
 
-      forces = self%unit_forces%multiply(strength(self))
+      forces = self%unit%forces%multiply(present_values(self))
    end function nodal_forces
 
    !> Initial gaps of the contact points, counted from the overlaps that are allowed at present.
@@ -337,7 +261,7 @@ contains
       class(loads_type), intent(in) :: self
       real(dp) :: heat(size(self%temperature%value))    !! (nodes) into the bodies [power]
 
-      heat = self%unit_heat%multiply(strength(self))
+      heat = self%unit%heat%multiply(self%unit%with_films(present_values(self)))
    end function heat_load
 
    !> What the films add to the conduction matrix, with both triangles; without values where no heat
@@ -345,21 +269,8 @@ contains
    pure function film_matrix(self) result(matrix)
       class(loads_type), intent(in) :: self
       type(sparse_matrix_type) :: matrix      !! (nodes, nodes) [power/temperature]
-      type(triplet_list_type) :: list
-      real(dp) :: coefficient
-      integer :: i, n
 
-      n = size(self%temperature%value)
-      call list%reserve(most_side_nodes**2*size(self%films))
-      do i = 1, size(self%films)
-         associate (film => self%films(i))
-            if (.not. self%applied%active(film%coefficient)) cycle
-            coefficient = self%applied%value(film%coefficient)
-            if (abs(coefficient) <= 0.0_dp) cycle
-            call list%add_block(film%nodes, film%nodes, coefficient*film%mass)
-         end associate
-      end do
-      if (list%length > 0) matrix = list%compress(n, n)
+      matrix = self%unit%film_matrix(present_values(self), size(self%temperature%value))
    end function film_matrix
 
    !> Net heat that each data card of a load brings into the bodies; zero for cards of mechanics.
@@ -370,15 +281,7 @@ contains
       real(dp) :: of_location(size(self%locations%kind))
       integer :: i
 
-      of_location = self%total_heat*strength(self)
-      do i = 1, size(self%films)
-         associate (film => self%films(i))
-            if (.not. self%applied%active(film%coefficient)) cycle
-            of_location(film%coefficient) = of_location(film%coefficient) - &
-               self%applied%value(film%coefficient)* &
-               sum(matmul(film%mass, temperature(film%nodes)))
-         end associate
-      end do
+      of_location = self%unit%location_heat(present_values(self), temperature)
       rates = 0.0_dp
       do i = 1, size(of_location)
          if (.not. self%applied%active(i)) cycle
