@@ -6,7 +6,7 @@ module growing_datasets
       h5dget_space_f, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5p_dataset_create_f, &
       h5screate_simple_f, h5sclose_f, h5sselect_hyperslab_f, h5s_select_set_f, h5s_unlimited_f, &
       h5t_native_double
-   use hdf5_attributes, only: describe
+   use hdf5_attributes, only: describe_open
    use hdf5_helpers, only: check_status, stored_type, write_values
    use kinds, only: dp, long
    implicit none
@@ -116,7 +116,7 @@ contains
       type(error_type), allocatable, intent(out) :: error        !! what went wrong
       integer(hsize_t) :: offset(2), extent(2), whole(2)
       integer(hid_t) :: dataset, memory, space
-      integer :: rank, status(8)
+      integer :: rank, status(9)
 
       if (self%used == 0 .and. self%in_file) return
       status = 0
@@ -139,10 +139,10 @@ contains
          call h5sclose_f(memory, status(7))
          call h5sclose_f(space, status(8))
       end if
+      if (.not. self%in_file) call describe_open(dataset, self%description, self%unit, status(9), &
+         self%components)
       if (status(1) >= 0) call h5dclose_f(dataset, status(1))
       call check_status(status, 'cannot write dataset '//self%path, error)
-      if (.not. (allocated(error) .or. self%in_file)) call describe(file, self%path, &
-         self%description, self%unit, error, self%components)
       self%in_file = .true.
       self%rows_in_file = whole(2)
       self%used = 0

@@ -10,7 +10,7 @@ module hdf5_attributes
    use kinds, only: dp, long
    implicit none
    private
-   public :: write_attribute, write_fixed_text, describe
+   public :: write_attribute, write_fixed_text, describe, describe_open
 
    !> Writes an attribute.
    interface write_attribute
@@ -40,22 +40,36 @@ contains
       character(*), intent(in) :: unit                    !! its unit; '-' for a pure number
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(*), intent(in), optional :: components    !! their names; empty or absent: none
-      integer(hid_t) :: object, type
+      integer(hid_t) :: object
+      integer :: status(3)
+
+      call h5oopen_f(file, path, object, status(1))
+      call describe_open(object, description, unit, status(2), components)
+      call h5oclose_f(object, status(3))
+      call check_status(status, 'cannot describe '//path, error)
+   end subroutine describe
+
+   !> The same for a dataset that is open.
+   subroutine describe_open(dataset, description, unit, worst, components)
+      integer(hid_t), intent(in) :: dataset               !! the open dataset
+      character(*), intent(in) :: description             !! what it is
+      character(*), intent(in) :: unit                    !! its unit; '-' for a pure number
+      integer, intent(out) :: worst                       !! negative after an error
+      character(*), intent(in), optional :: components    !! their names; empty or absent: none
+      integer(hid_t) :: type
       integer :: status(5)
 
       status = 0
-      call h5oopen_f(file, path, object, status(1))
-      call utf8_string_type(type, status(2))
-      call write_text(object, 'description', trim(description), type, status(3))
-      if (status(3) >= 0) call write_text(object, 'unit', trim(unit), type, status(3))
-      if (status(3) >= 0 .and. present(components)) then
-         if (len_trim(components) > 0) call write_text(object, 'components', trim(components), &
-            type, status(3))
+      call utf8_string_type(type, status(1))
+      call write_text(dataset, 'description', trim(description), type, status(2))
+      call write_text(dataset, 'unit', trim(unit), type, status(3))
+      if (present(components)) then
+         if (len_trim(components) > 0) call write_text(dataset, 'components', trim(components), &
+            type, status(4))
       end if
-      call h5tclose_f(type, status(4))
-      call h5oclose_f(object, status(5))
-      call check_status(status, 'cannot describe '//path, error)
-   end subroutine describe
+      call h5tclose_f(type, status(5))
+      worst = minval(status)
+   end subroutine describe_open
 
    !> Writes text to an open object.
    subroutine write_text(object, name, value, type, status)
