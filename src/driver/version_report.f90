@@ -1,7 +1,7 @@
 !> Versions of the program, its compiler and its libraries.
 module version_report
    use, intrinsic :: iso_fortran_env, only: compiler_version
-   use blas_lapack, only: ilaver
+   use blas_lapack, only: blas_processor, ilaver
    use hdf5, only: h5close_f, h5get_libversion_f, h5open_f
    use messages, only: print_line
    use mumps_solver, only: mumps_version
@@ -16,7 +16,7 @@ contains
    !> Prints one line each.
    subroutine print_versions(unit)
       integer, intent(in) :: unit   !! open for formatted output
-      character(:), allocatable :: mumps
+      character(:), allocatable :: mumps, processor
       integer :: lapack(3), hdf5(3), status
 
       mumps = mumps_version()
@@ -29,7 +29,9 @@ contains
       call print_line(unit, 'MUMPS '//mumps)
       call print_line(unit, 'METIS '//metis_version)
       call print_line(unit, 'HDF5 '//dotted(hdf5))
-      call print_line(unit, 'LAPACK '//dotted(lapack))
+      processor = blas_processor()
+      if (len(processor) > 0) processor = ', OpenBLAS for '//processor
+      call print_line(unit, 'LAPACK '//dotted(lapack)//processor)
    end subroutine print_versions
 
    pure function dotted(numbers) result(string)

@@ -25,6 +25,12 @@ The cost of a run, its growth with the mesh, and where the time goes. In short:
 - Contact iterations factor only the columns of the contact again: below 2 % of the operations of a
   full factorisation.
 
+**Processors newer than OpenBLAS.** On a processor that it does not know, OpenBLAS computes as for one
+without AVX. `thercon --version` then ends with `OpenBLAS for Prescott`. Large models take up to twice as
+long: on an Intel Xeon of 2023 with OpenBLAS 0.3.21, four uniform refinements of the cylinder took 21
+instead of 17 s, and a pellet with 3000 elements and 5 interfaces 16 instead of 9 s. The variable
+`OPENBLAS_CORETYPE` of the environment names a known processor: `SKYLAKEX` has AVX-512, `HASWELL` AVX2.
+
 `./setup.sh bench performance` writes this document from runs; with the names of sections
 (`skyline`, `tail`, `levels`, `paper`) it renews these alone. Times are CPU seconds of one thread;
 those of another machine, or of the same one on another day, differ. Operations and instructions do

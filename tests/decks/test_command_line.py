@@ -186,6 +186,13 @@ def test_help_and_version(tmp_path):
     assert all(name in version.stdout for name in ("thercon", "MUMPS", "METIS", "HDF5", "LAPACK"))
 
 
+@pytest.mark.parametrize("processor", ["Prescott", "Nehalem"])
+def test_version_names_the_processor_of_openblas(tmp_path, monkeypatch, processor):
+    monkeypatch.setenv("OPENBLAS_CORETYPE", processor)
+    last = run("--version", folder=tmp_path).stdout.splitlines()[-1]
+    assert last.startswith("LAPACK") and last.endswith(f", OpenBLAS for {processor}")
+
+
 def test_help_goes_with_every_command(tmp_path):
     assert run("run", "--help", folder=tmp_path).stdout == run("--help", folder=tmp_path).stdout
 
