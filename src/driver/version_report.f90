@@ -1,7 +1,8 @@
 !> Versions of the program, its compiler and its libraries.
 module version_report
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
    use, intrinsic :: iso_fortran_env, only: compiler_version
-   use blas_lapack, only: blas_processor, ilaver
+   use blas_lapack, only: ilaver
    use hdf5, only: h5close_f, h5get_libversion_f, h5open_f
    use messages, only: print_line
    use mumps_solver, only: mumps_version
@@ -10,6 +11,14 @@ module version_report
    implicit none
    private
    public :: print_versions
+
+   interface
+      subroutine c_processor(name, length) bind(c, name='blas_processor')
+         import :: c_char, c_int
+         integer(c_int), value :: length
+         character(kind=c_char), intent(out) :: name(length)
+      end subroutine c_processor
+   end interface
 
 contains
 
@@ -33,6 +42,16 @@ contains
       if (len(processor) > 0) processor = ', OpenBLAS for '//processor
       call print_line(unit, 'LAPACK '//dotted(lapack)//processor)
    end subroutine print_versions
+
+   !> The processor for which OpenBLAS computes, in its own words; empty with another BLAS.
+   function blas_processor() result(name)
+      character(:), allocatable :: name
+      integer, parameter :: most = 64
+      character(most, kind=c_char) :: buffer
+
+      call c_processor(buffer, int(most, c_int))
+      name = buffer(:index(buffer, c_null_char) - 1)
+   end function blas_processor
 
    pure function dotted(numbers) result(string)
       integer, intent(in) :: numbers(3)

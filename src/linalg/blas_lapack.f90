@@ -2,12 +2,12 @@
 !> takes at its first use, and waits for without an end where there is too little of it, as under
 !> `ulimit -v`.
 module blas_lapack
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_size_t
    use kinds, only: dp
    implicit none
    private
    public :: ddot, daxpy, dgemm, dgemv, dtrsm, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, &
-      ilaver, blas_processor, reserve_blas_memory
+      ilaver, reserve_blas_memory
 
    interface
       !> Scalar product x.y.
@@ -124,25 +124,9 @@ module blas_lapack
          import :: c_ptr
          type(c_ptr), value :: address
       end subroutine c_free
-
-      subroutine c_processor(name, length) bind(c, name='blas_processor')
-         import :: c_char, c_int
-         integer(c_int), value :: length
-         character(kind=c_char), intent(out) :: name(length)
-      end subroutine c_processor
    end interface
 
 contains
-
-   !> The processor for which OpenBLAS computes, in its own words; empty with another BLAS.
-   function blas_processor() result(name)
-      character(:), allocatable :: name
-      integer, parameter :: most = 64
-      character(most, kind=c_char) :: buffer
-
-      call c_processor(buffer, int(most, c_int))
-      name = buffer(:index(buffer, c_null_char) - 1)
-   end function blas_processor
 
    !> Has OpenBLAS take its memory now, where there is enough of it. None of it is touched. Where
    !> there is not, the program ends as at any allocation.
