@@ -17,7 +17,7 @@ module unknown_keywords
 contains
 
    !> Reports a keyword that nobody knows, with the known one that it likely is by its spelling, or
-   !> with what to write in its place by its meaning.
+   !> with what to write in its place by its meaning. All its cards are one mistake.
    subroutine report_unknown_keyword(name, is_text, report, card)
       character(*), intent(in) :: name
       logical, intent(in) :: is_text   ! whether a blank follows the star
@@ -45,10 +45,12 @@ contains
       else
          hint = 'docs/deck.md lists those that are known'
       end if
-      call report%error(card%place, 'unknown keyword *'//to_upper(name)//'; '//hint)
+      call report%error(card%place, 'unknown keyword *'//to_upper(name)//'; '//hint, &
+         'keyword '//to_upper(name))
    end subroutine report_unknown_keyword
 
-   !> Reports a parameter that the keyword does not have, and finds the one that it likely is.
+   !> Reports a parameter that the keyword does not have, and finds the one that it likely is. On
+   !> all cards of the keyword it is one mistake.
    subroutine report_unknown_parameter(name, place, report, card, known)
       character(*), intent(in) :: name
       type(place_type), intent(in) :: place
@@ -56,9 +58,10 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(known_parameter_type), intent(inout) :: known
       type(string_type), allocatable :: names(:)
-      character(:), allocatable :: hint
+      character(:), allocatable :: group, hint
       integer :: i
 
+      group = 'parameter '//to_upper(trim(name))//' of *'//card%name
       names = parameter_names(card%known)
       hint = parameter_advice(card%name, name)
       i = nearest_name(name, names)
@@ -71,10 +74,10 @@ contains
       if (len(hint) == 0 .and. size(names) > 0) hint = listed(card%known, names)
       if (len(hint) == 0) then
          call report%error(place, 'unknown parameter '//to_upper(trim(name))//'; *'// &
-            card%name//' has none')
+            card%name//' has none', group)
       else
          call report%error(place, 'unknown parameter '//to_upper(trim(name))//' of *'// &
-            card%name//'; '//hint)
+            card%name//'; '//hint, group)
       end if
    end subroutine report_unknown_parameter
 
