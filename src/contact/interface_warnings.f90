@@ -8,7 +8,7 @@ module interface_warnings
    use text, only: percent, to_text
    implicit none
    private
-   public :: gap_range, mismatch_of_pairs, offset_warning, overlap_warning
+   public :: clearance_warning, gap_range, mismatch_of_pairs, offset_warning, overlap_warning
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
 
@@ -66,7 +66,7 @@ contains
             mesh%coordinates(:, points%slave_node(k))
          offset(k) = abs(dot_product(points%tangent(:, k), apart))
          part(k) = offset(k)/(points%edge(k)/(points%side_nodes - 1))
-         if (offset(k) <= 0.5_dp*abs(dot_product(points%normal(:, k), apart))) part(k) = 0.0_dp
+         if (offset(k) <= 0.5_dp*abs(normal_distance(mesh, points, k))) part(k) = 0.0_dp
       end do
    end subroutine find_offsets
 
@@ -106,6 +106,38 @@ contains
          ', where the element edge is '//to_text(points%edge(k))//'; they are pressed apart in '// &
          'the first increment: check the positions of the bodies, or give the overlap by *CLEARANCE'
    end function overlap_warning
+
+   !> Names the contact point whose faces are nearest to each other, where *CLEARANCE hides that none
+   !> lie as it says: the gap of the mesh differs from it by more than the slave's element edge.
+   pure function clearance_warning(mesh, points) result(warning)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points    !! contact points of one *CLEARANCE
+      character(:), allocatable :: warning               !! empty where some do
+      real(dp) :: gap(size(points%edge)), part(size(points%edge))
+      integer :: k
+
+      warning = ''
+      gap = [(normal_distance(mesh, points, k), k=1, size(gap))]
+      part = abs(gap - points%initial_gap)/points%edge
+      if (any(part <= 1.0_dp)) return
+      k = minloc(part, dim=1)
+      warning = 'overlap by '//to_text(-gap(k))
+      if (gap(k) > 0.0_dp) warning = 'are '//to_text(gap(k))//' apart'
+      warning = 'contact pair '//points%name//': the faces '//warning//' at '// &
+         nodes_of(mesh, points, k)//', where the element edge is '//to_text(points%edge(k))//', but *CLEARANCE makes it '// &
+         to_text(points%initial_gap(k))//': check the positions of the bodies, and that all '// &
+         'lengths of the deck have one unit'
+   end function clearance_warning
+
+   !> Distance from slave node to master node along the normal, negative where they overlap.
+   pure real(dp) function normal_distance(mesh, points, k) result(distance)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points
+      integer, intent(in) :: k
+
+      distance = dot_product(points%normal(:, k), mesh%coordinates(:, points%master_node(k)) - &
+         mesh%coordinates(:, points%slave_node(k)))
+   end function normal_distance
 
    !> Smallest and largest initial gap; one within the rounding of coordinates is 0.
    pure function gap_range(mesh, points) result(range)

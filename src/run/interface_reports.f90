@@ -7,7 +7,7 @@ module interface_reports
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric
    use errors, only: error_type
-   use interface_warnings, only: offset_warning, overlap_warning
+   use interface_warnings, only: clearance_warning, offset_warning, overlap_warning
    use kinds, only: dp
    use model, only: model_type
    use text, only: append, read_real, string_type, to_text, to_upper
@@ -121,7 +121,11 @@ contains
       type(deck_report_type), intent(inout) :: report
 
       call warn(offset_warning(model%mesh, points))
-      if (.not. model%contacts(i)%has_clearance) call warn(overlap_warning(model%mesh, points))
+      if (model%contacts(i)%has_clearance) then
+         call warn(clearance_warning(model%mesh, points))
+      else
+         call warn(overlap_warning(model%mesh, points))
+      end if
       call warn(thickness_warning(model, i))
    contains
       subroutine warn(message)

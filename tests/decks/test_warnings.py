@@ -100,6 +100,23 @@ def test_bodies_inside_each_other(tmp_path, gap, clearance, told):
     assert overlap == pytest.approx(float(told), rel=1e-6)
 
 
+@pytest.mark.parametrize(("gap", "clearance", "told"), [
+    (1e3, 0.0, "are 1000 apart "), (-2.5, -1e-3, "overlap by 2.5 "), (1e3, 1e3, None),
+    (1.1, 0.05, "are 1.1 apart "), (0.9, 0.0, None), (-0.9, 0.0, None)])
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_a_clearance_in_place_of_a_long_way(tmp_path, gap, clearance, told, pairing):
+    """As where one mesh is in mm and the other in m: the gap of the mesh is off by more than the
+    element edge, 1."""
+    cards = blocks(gap=gap, clearance=clearance)
+    found = warnings(tmp_path, [c.replace("PAIRING=NODES", f"PAIRING={pairing}") for c in cards], PRESSED)
+    if told is None:
+        assert found == []
+        return
+    message = one(found, "*CONTACT PAIR")
+    assert f"the faces {told}at slave node " in message and "*CLEARANCE" in message
+    assert "where the element edge is 1," in message
+
+
 def test_swapped_faces(tmp_path):
     """Top of the upper and bottom of the lower block named as the faces in contact."""
     found = warnings(tmp_path, blocks(pair="B.TOP, A.BOTTOM"), PRESSED)
