@@ -79,9 +79,8 @@ contains
                size(record%iterations)
             if (allocated(error)) return
             values%increments = values%increments + 1
-            if (record%heat_imbalance_pointwise > values%imbalance) then
-               values%imbalance = record%heat_imbalance_pointwise
-            end if
+            if (solves_heat(model%steps(record%step)%analysis)) values%imbalance = &
+               max(values%imbalance, record%heat_imbalance_pointwise)
             instant = instant_at(self%instants, record%time)
             if (instant > 0) call values%sample(record, interfaces, nodes, instant)
          end do
