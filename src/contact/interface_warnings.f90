@@ -107,8 +107,9 @@ contains
          'the first increment: check the positions of the bodies, or give the overlap by *CLEARANCE'
    end function overlap_warning
 
-   !> Names the contact point whose faces are nearest to each other, where *CLEARANCE hides that none
-   !> lie as it says: the gap of the mesh differs from it by more than the slave's element edge.
+   !> Names the contact point whose faces are nearest to each other, where *CLEARANCE hides that
+   !> none lie as it says: the gap of the mesh differs from it by more than the slave's element
+   !> edge.
    pure function clearance_warning(mesh, points) result(warning)
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points    !! contact points of one *CLEARANCE
@@ -124,9 +125,9 @@ contains
       warning = 'overlap by '//to_text(-gap(k))
       if (gap(k) > 0.0_dp) warning = 'are '//to_text(gap(k))//' apart'
       warning = 'contact pair '//points%name//': the faces '//warning//' at '// &
-         nodes_of(mesh, points, k)//', where the element edge is '//to_text(points%edge(k))//', but *CLEARANCE makes it '// &
-         to_text(points%initial_gap(k))//': check the positions of the bodies, and that all '// &
-         'lengths of the deck have one unit'
+         nodes_of(mesh, points, k)//', where the element edge is '//to_text(points%edge(k))// &
+         ', but *CLEARANCE makes it '//to_text(points%initial_gap(k))//': check the positions '// &
+         'of the bodies, and that all lengths of the deck have one unit'
    end function clearance_warning
 
    !> Distance from slave node to master node along the normal, negative where they overlap.
