@@ -10,7 +10,7 @@ module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, estimated
+   use contact_quantities, only: contact_values, estimated, zone_words
    use interface_quantities, only: closed_length, edge_spacing, peak_is_at_end, peaks_at_corner
    use kinds, only: dp
    use quantity_types, only: find_quantity, quantity_type
@@ -35,7 +35,7 @@ module accuracy_rounds
       integer :: interface = 0             !! index into the interfaces
       real(dp) :: target = 0.0_dp          !! a part of the value, or in its unit
       logical :: is_relative = .true.      !! which of these
-      character(:), allocatable :: idle    !! why there is nothing to judge; empty otherwise
+      character(:), allocatable :: idle    !! what there is if nothing to judge; empty otherwise
    end type demand_type
 
    !> What one demand found at the end of one step.
@@ -49,6 +49,8 @@ module accuracy_rounds
       real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: uncertain
       real(dp) :: allowed = 0.0_dp         !! what the target allows
       logical :: has_limit = .true.        !! whether it tends to one as the mesh is refined
+      character(:), allocatable :: why_not !! why the run has no bound; empty where it has
+      character(:), allocatable :: instead !! what there is where it has no value or no edge
    contains
       procedure :: is_met
    end type finding_type
@@ -167,6 +169,7 @@ contains
             associate (finding => self%rounds(n)%findings(d, record%step))
                finding = found(self%demands(d), points, &
                   record%errors(self%demands(d)%interface), scale)
+               finding%instead = instead_of(estimated(self%demands(d)%quantity), contact)
                if (is_peak(self%demands(d))) then
                   finding%is_at_end = any(peak_is_at_end(contact))
                   finding%has_limit = .not. (peaks_at_corner(points, contact) .or. &
@@ -215,8 +218,21 @@ contains
          finding%mesh = errors%mesh(q)
          finding%increment = errors%increment(q) + errors%iteration(q)
          finding%bound = errors%bound(q)
+         finding%why_not = errors%why_not(q)%value
       end associate
    end function found
+
+   !> What there is where a quantity has no value to judge.
+   pure function instead_of(quantity, contact) result(words)
+      type(quantity_type), intent(in) :: quantity
+      type(contact_record_type), intent(in) :: contact
+      character(:), allocatable :: words
+
+      words = '0 at the end of each step'
+      if (quantity%resolution <= 0.0_dp) return
+      words = zone_words(quantity%name, contact)
+      if (words == '') words = 'up to an end of the face'
+   end function instead_of
 
    !> Lets the changes from the rounds before count.
    subroutine add_change(rounds, d, step)
@@ -355,20 +371,29 @@ contains
       end do
    end function stands_still
 
-   !> Says of each demand that no step of the present round has why that is so.
+   !> Says of each demand that no step of the present round has what there is instead.
    subroutine name_idle(self)
       class(accuracy_rounds_type), intent(inout) :: self
       integer :: d
 
       do d = 1, size(self%demands)
-         associate (demand => self%demands(d), findings => self%rounds(size(self%rounds))%findings)
-            demand%idle = ''
-            if (any(findings(d, :)%is_there)) cycle
-            demand%idle = 'it is 0 at the end of each step'
-            if (any(estimated(demand%quantity:demand%quantity)%resolution > 0.0_dp)) demand%idle = &
-               'no step ends with one between the ends of the interface'
+         self%demands(d)%idle = ''
+         associate (findings => self%rounds(size(self%rounds))%findings(d, :))
+            if (.not. any(findings%is_there)) self%demands(d)%idle = all_instead(findings)
          end associate
       end do
    end subroutine name_idle
+
+   !> What there is at the ends of the steps in place of a value to judge.
+   pure function all_instead(findings) result(words)
+      type(finding_type), intent(in) :: findings(:)   ! (steps) all without it
+      character(:), allocatable :: words
+      integer :: s
+
+      words = findings(1)%instead
+      do s = 2, size(findings)
+         if (index(words, findings(s)%instead) == 0) words = words//' or '//findings(s)%instead
+      end do
+   end function all_instead
 
 end module accuracy_rounds

@@ -67,7 +67,7 @@ contains
       self%relaxes = .not. (any(simulation%bodies%interfaces%pairing == pairing_surfaces) .or. &
          size(model%ties) > 0)
       if (size(model%equations) > 0) then
-         self%why_not = 'it has nodes that the equations do not name'
+         self%why_not = 'no finer mesh with equations, couplings or transformed axes'
       else if (self%relaxes) then
          call self%refined%prepare(model, simulation%bodies%points, error)
       else
@@ -93,7 +93,8 @@ contains
       type(simulation_type), intent(inout) :: simulation     !! the run; its state stays
       type(increment_record_type), intent(inout) :: record
       real(dp) :: values(size(estimated), size(record%contacts))
-      integer :: i
+      character(:), allocatable :: no_mesh
+      integer :: i, q
 
       if (.not. self%is_on) return
       if (record%step /= self%step) then
@@ -114,17 +115,45 @@ contains
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
       call store(values, record%errors)
-      if (self%why_not == '') call bound_mesh(self, model, simulation, record)
+      no_mesh = self%why_not
+      if (no_mesh == '') call bound_mesh(self, model, simulation, record, no_mesh)
+      if (no_mesh /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
+         'estimated: '//no_mesh)
       call bound_increments(self, model, simulation, record%errors)
       call bound_iteration(record)
       do i = 1, size(record%errors)
          associate (errors => record%errors(i))
             errors%bound = errors%mesh + errors%increment + errors%iteration
+            allocate (errors%why_not(size(estimated)))
+            do q = 1, size(estimated)
+               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q)
+            end do
          end associate
       end do
-      if (self%why_not /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
-         'estimated on one with elements of half the size: '//self%why_not)
    end subroutine end_increment
+
+   !> Why a quantity has no bound; nothing where it has one.
+   pure function reason(doubled, no_mesh, errors, q) result(why_not)
+      type(doubled_increments_type), intent(in) :: doubled
+      character(*), intent(in) :: no_mesh      ! why no quantity has one of the mesh, or nothing
+      type(interface_errors_type), intent(in) :: errors
+      integer, intent(in) :: q
+      character(:), allocatable :: why_not
+
+      why_not = ''
+      if (ieee_is_nan(errors%value(q)) .or. .not. ieee_is_nan(errors%bound(q))) return
+      if (ieee_is_nan(errors%increment(q))) then
+         why_not = 'increments of twice the size give no such edge'
+         if (doubled%is_lost) why_not = 'increments of twice the size have no solution'
+         if (.not. doubled%has_doubled) why_not = 'a single increment does not tell its error'
+      else if (no_mesh /= '') then
+         why_not = no_mesh
+      else
+         why_not = 'a finer mesh has no such edge'
+         if (q == find_quantity(estimated, 'peak_pressure')) why_not = &
+            'the peak is at a corner, where one face ends'
+      end if
+   end function reason
 
    !> Enters a step on the finer mesh.
    subroutine begin_step(self, step)
@@ -158,11 +187,12 @@ contains
    end subroutine store
 
    !> Bounds of the errors of the mesh.
-   subroutine bound_mesh(self, model, simulation, record)
+   subroutine bound_mesh(self, model, simulation, record, why_not)
       type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation
       type(increment_record_type), intent(inout) :: record
+      character(:), allocatable, intent(inout) :: why_not    ! why there are none; else it stays
       type(error_type), allocatable :: error
       type(step_clock_type) :: clock
       real(dp) :: change(size(estimated), size(record%errors))
@@ -180,7 +210,7 @@ contains
          call self%divided%find_change(simulation, model, clock, self%before, change, error)
       end if
       if (allocated(error)) then
-         call append(record%notes, 'the errors of the mesh cannot be estimated: '//error%message)
+         why_not = error%message
          return
       end if
       allocate (energy(0))

@@ -5,22 +5,26 @@ module accuracy_lines
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use kinds, only: dp
+   use model, only: unit_labels_type
    use summary, only: words_of
    use text, only: append, counted, few_digits, percent, string_type, to_text
+   use unit_labels, only: unit_label
    implicit none
    private
-   public :: add_accuracy, add_missed
+   public :: add_accuracy, missed_words
 
    integer, parameter :: name_width = 30   !! columns of interface and quantity
+   integer, parameter :: most_named = 3    !! targets in one line
+   real(dp), parameter :: rounding = 1.0e-12_dp   !! relative
 
 contains
 
    !> Adds verdict, targets and rounds; no line where nothing is requested.
-   subroutine add_accuracy(accuracy, interfaces, lines)
+   subroutine add_accuracy(accuracy, interfaces, labels, lines)
       type(accuracy_rounds_type), intent(in) :: accuracy
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(unit_labels_type), intent(in) :: labels           !! units of the deck
       type(string_type), allocatable, intent(inout) :: lines(:)
-      character(:), allocatable :: verdict
       character(name_width) :: name
       integer :: d, i
 
@@ -29,17 +33,13 @@ contains
          call append(lines, 'requested accuracy not reached: round 1 did not come to its end')
          return
       end if
-      verdict = 'requested accuracy '//trim(merge('reached    ', 'not reached', &
-         accuracy%is_reached()))//' after '//counted(size(accuracy%rounds), 'round')
-      ! Read only while another round is solved, or where that did not come to its end.
-      if (accuracy%goes_on) verdict = verdict//'; round '//to_text(size(accuracy%rounds) + 1)// &
-         ' was begun'
-      if (accuracy%reason /= '') verdict = verdict//': '//accuracy%reason
-      call append(lines, verdict)
+      call append(lines, verdict(accuracy))
       do d = 1, size(accuracy%demands)
          name = demand_name(accuracy, d, interfaces)
-         call append(lines, '   '//name//' '//target_words(accuracy, d))
+         call append(lines, '   '//name//' '//target_words(accuracy, d, labels))
       end do
+      if (any([(is_of_more(accuracy, d), d=1, size(accuracy%demands))])) call append(lines, &
+         '   % of an edge: of the closed length; of a small value: of a part of the largest so far')
       if (size(accuracy%rounds) > 1 .and. accuracy%checks_passed + &
          accuracy%checks_failed > 0) call append(lines, &
          '   the *VERIFY checks were judged in round 1, on the deck as written')
@@ -50,26 +50,58 @@ contains
       end do
    end subroutine add_accuracy
 
-   !> Adds one line for each target that is not met, and one with the reason why the rounds ended.
-   subroutine add_missed(accuracy, interfaces, lines)
+   !> Whether the per cent told of a target are not those of its value.
+   pure logical function is_of_more(accuracy, d)
+      type(accuracy_rounds_type), intent(in) :: accuracy
+      integer, intent(in) :: d
+      integer :: step
+
+      associate (demand => accuracy%demands(d), last => accuracy%rounds(size(accuracy%rounds)))
+         step = last%worst_step(d)
+         is_of_more = step > 0 .and. demand%is_relative
+         if (.not. is_of_more) return
+         associate (finding => last%findings(d, step))
+            is_of_more = abs(finding%allowed - demand%target*abs(finding%value)) > &
+               rounding*finding%allowed
+         end associate
+      end associate
+   end function is_of_more
+
+   !> Whether the accuracy is reached, and why no further round follows.
+   function verdict(accuracy) result(words)
+      type(accuracy_rounds_type), intent(in) :: accuracy
+      character(:), allocatable :: words
+
+      words = 'requested accuracy '//trim(merge('reached    ', 'not reached', &
+         accuracy%is_reached()))//' after '//counted(size(accuracy%rounds), 'round')
+      ! Read only while another round is solved, or where that did not come to its end.
+      if (accuracy%goes_on) words = words//'; round '//to_text(size(accuracy%rounds) + 1)// &
+         ' was begun'
+      if (accuracy%reason /= '') words = words//': '//accuracy%reason
+   end function verdict
+
+   !> The verdict and the targets that are not met, in one line; nothing where all are.
+   function missed_words(accuracy, interfaces) result(words)
       type(accuracy_rounds_type), intent(in) :: accuracy
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
-      type(string_type), allocatable, intent(inout) :: lines(:)
-      integer :: d
+      character(:), allocatable :: words
+      integer :: d, missed
 
+      words = ''
       if (.not. accuracy%is_on) return
       if (size(accuracy%rounds) == 0) return
+      missed = 0
       associate (last => accuracy%rounds(size(accuracy%rounds)))
          do d = 1, size(accuracy%demands)
             if (all(last%findings(d, :)%is_met())) cycle
-            call append(lines, 'the requested accuracy is not reached: '// &
-               demand_name(accuracy, d, interfaces)//' '//target_words(accuracy, d))
+            missed = missed + 1
+            if (missed <= most_named) words = words//merge(': ', ', ', missed == 1)// &
+               demand_name(accuracy, d, interfaces)
          end do
       end associate
-      if (size(lines) > 0 .and. accuracy%reason /= '') call append(lines, &
-         'the requested accuracy is not reached after '//counted(size(accuracy%rounds), 'round')// &
-         ': '//accuracy%reason)
-   end subroutine add_missed
+      if (missed > most_named) words = words//' and '//to_text(missed - most_named)//' more'
+      if (missed > 0) words = verdict(accuracy)//'; not met'//words
+   end function missed_words
 
    !> Interface and quantity of a target.
    function demand_name(accuracy, d, interfaces) result(name)
@@ -83,16 +115,18 @@ contains
       end associate
    end function demand_name
 
-   !> The bound at the end of the step that is furthest from a target.
-   function target_words(accuracy, d) result(words)
+   !> The bound at the end of the step that is furthest from a target; the summary tells the values
+   !> of the last step.
+   function target_words(accuracy, d, labels) result(words)
       type(accuracy_rounds_type), intent(in) :: accuracy
       integer, intent(in) :: d
+      type(unit_labels_type), intent(in) :: labels
       character(:), allocatable :: words
       type(finding_type) :: finding
       integer :: step
 
       associate (demand => accuracy%demands(d), last => accuracy%rounds(size(accuracy%rounds)))
-         words = 'skipped: '//demand%idle
+         words = 'nothing to judge: '//demand%idle
          if (demand%idle /= '') return
          words = 'not judged'
          step = last%worst_step(d)
@@ -103,9 +137,20 @@ contains
             words = words//' uncertain'
          else
             words = words//' bound '//amount(finding%bound)
+            if (demand%is_relative) words = words//' of '// &
+               with_unit(to_text(finding%allowed/demand%target))
          end if
          words = words//', target '//amount(finding%allowed)
-         if (size(last%findings, 2) > 1) words = words//', step '//to_text(step)
+         if (step < size(last%findings, 2)) then
+            words = words//', step '//to_text(step)//' with '
+            if (ieee_is_nan(finding%bound)) then
+               words = words//with_unit(to_text(finding%value))
+            else
+               words = words//with_unit(to_text(finding%value)//' +- '//few_digits(finding%bound))
+            end if
+         else if (step > 1) then
+            words = words//', step '//to_text(step)
+         end if
          if (finding%is_met()) return
          words = words//reason(finding)
          if (finding%is_at_end .and. finding%has_limit .and. accuracy%stands_still()) then
@@ -119,25 +164,36 @@ contains
          real(dp), intent(in) :: bound
          character(:), allocatable :: amount
 
-         amount = few_digits(bound)
          associate (demand => accuracy%demands(d))
-            if (demand%is_relative) amount = percent(demand%target*bound/finding%allowed)
+            if (demand%is_relative) then
+               amount = percent(demand%target*bound/finding%allowed)
+            else
+               amount = with_unit(few_digits(bound))
+            end if
          end associate
       end function amount
+
+      function with_unit(number)
+         character(*), intent(in) :: number
+         character(:), allocatable :: with_unit
+
+         associate (quantity => estimated(accuracy%demands(d)%quantity))
+            with_unit = trim(number//' '//unit_label(quantity%unit, labels))
+         end associate
+      end function with_unit
    end function target_words
 
-   !> What is the larger part of a bound.
+   !> What is the larger part of a bound, or why there is none.
    function reason(finding)
       type(finding_type), intent(in) :: finding
       character(:), allocatable :: reason
 
-      reason = ' (of the mesh)'
+      reason = ' (mostly of the mesh)'
       if (.not. finding%has_limit) reason = ' (no limit: it grows from mesh to mesh)'
-      if (ieee_is_nan(finding%mesh)) return
-      if (ieee_is_nan(finding%increment)) then
-         reason = ' (of the increments)'
+      if (ieee_is_nan(finding%bound)) then
+         if (finding%has_limit) reason = ': '//finding%why_not
       else if (finding%increment > finding%mesh) then
-         reason = ' (of the increments)'
+         reason = ' (mostly of the increments)'
       end if
    end function reason
 

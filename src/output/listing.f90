@@ -4,7 +4,7 @@
 !> The summary is known at the end only: its lines are blank until then, and written over. A draft
 !> is kept in memory until it is whole; then it takes the place of what the file holds.
 module listing
-   use accuracy_lines, only: add_accuracy, add_missed
+   use accuracy_lines, only: add_accuracy, missed_words
    use contact_points, only: contact_points_type, never_approached
    use due_output, only: table_is_due
    use errors, only: error_type
@@ -241,7 +241,7 @@ contains
       type(verifier_type), intent(in) :: verifier         !! what came of the *VERIFY cards
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(string_type), allocatable :: accuracy(:), lines(:), missed(:), warnings(:)
+      type(string_type), allocatable :: accuracy(:), lines(:), warnings(:)
       character(:), allocatable :: block
       integer :: i, later_round
 
@@ -251,7 +251,7 @@ contains
          call self%diagrams(i)%print(self%text%unit, interfaces(i))
       end do
       allocate (accuracy(0))
-      call add_accuracy(run%accuracy, interfaces, accuracy)
+      call add_accuracy(run%accuracy, interfaces, model%units, accuracy)
       call print_list(self%text%unit, 'REQUESTED ACCURACY', accuracy)
       call print_unapproached(self%text%unit, model%mesh%node_number, interfaces, self%summary)
       warnings = model%warnings
@@ -264,12 +264,11 @@ contains
       call print_deck(self%text%unit, cards)
       call write_text(self, error)
       if (allocated(error)) return
-      allocate (lines(0), missed(0))
+      allocate (lines(0))
       later_round = 0
       if (run%accuracy%goes_on) later_round = size(run%accuracy%rounds) + 1
-      call add_missed(run%accuracy, interfaces, missed)
       call append(lines, ending(allocated(self%failure), self%summary%increment, &
-         run%verify_failed, size(missed), later_round))
+         run%verify_failed, missed_words(run%accuracy, interfaces) /= '', later_round))
       call append(lines, checks(verifier, run))
       call append(lines, warnings_below(size(warnings)))
       call self%summary%add_lines(model, interfaces, lines)

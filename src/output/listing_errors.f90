@@ -5,7 +5,7 @@ module listing_errors
    use contact_quantities, only: estimated
    use increment_quantities, only: body_values
    use kinds, only: dp
-   use listing_text, only: column
+   use listing_text, only: column, print_wrapped
    use quantity_types, only: of_bodies, quantity_type
    use records, only: increment_record_type, interface_errors_type
    use summary, only: words_of
@@ -52,7 +52,7 @@ contains
       integer, intent(in) :: unit                          !! unit of the listing
       character(*), intent(in) :: name                     !! name of the interface
       type(interface_errors_type), intent(in) :: errors
-      integer :: q, width
+      integer :: k, q, width
 
       width = maxval([(len(words_of(estimated(q)%name)), q=1, size(estimated))])
       write (unit, '(/, 3a)') '   BOUNDS OF THE ERRORS OF ', name, &
@@ -61,11 +61,17 @@ contains
          'bound', '%', 'mesh', 'increments', 'iteration', 'largest part'
       do q = 1, size(estimated)
          associate (value => errors%value(q), bound => errors%bound(q))
-            if (.not. is_worth_telling(value, bound)) cycle
+            if (.not. is_worth_telling(q, value, bound)) cycle
             write (unit, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
                name_of(q, width), column(value, 14, 6), bound_word(bound), &
                percent(bound, value), shown(errors%mesh(q), 12), shown(errors%increment(q), 14), &
                shown(errors%iteration(q), 14), largest_part(errors, q)
+         end associate
+      end do
+      do q = 1, size(estimated)
+         associate (why_not => errors%why_not(q)%value)
+            if (why_not == '' .or. any([(errors%why_not(k)%value == why_not, k=1, q - 1)])) cycle
+            call print_wrapped(unit, '    ', 'uncertain: '//why_not)
          end associate
       end do
    end subroutine print_interface_errors
@@ -78,14 +84,15 @@ contains
       name = words_of(estimated(q)%name)
    end function name_of
 
-   !> Whether a quantity has a value and a part in the deck.
-   pure logical function is_worth_telling(value, bound)
+   !> Whether a quantity has a value and a part in the deck; that of friction is 0 without it.
+   pure logical function is_worth_telling(q, value, bound)
+      integer, intent(in) :: q
       real(dp), intent(in) :: value, bound
 
       is_worth_telling = .not. ieee_is_nan(value)
       if (.not. is_worth_telling) return
       is_worth_telling = abs(value) > 0.0_dp
-      if (is_worth_telling .or. ieee_is_nan(bound)) return
+      if (is_worth_telling .or. estimated(q)%is_of_friction .or. ieee_is_nan(bound)) return
       is_worth_telling = bound > 0.0_dp
    end function is_worth_telling
 

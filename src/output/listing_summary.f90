@@ -18,14 +18,14 @@ contains
       logical, intent(in) :: has_failed          !! whether it ended early
       integer, intent(in) :: increments          !! accepted ones
       integer, intent(in) :: failed_checks
-      integer, intent(in) :: missed              !! targets of accuracy that are not met
+      logical, intent(in) :: missed              !! whether a target of accuracy is not met
       integer, intent(in) :: later_round         !! round that was begun after this one; 0 for none
       character(:), allocatable :: line
 
       line = 'solved'
-      if (missed > 0) line = 'accuracy not reached'
-      if (failed_checks > 0 .and. missed == 0) line = 'check failed'
-      if (failed_checks > 0 .and. missed > 0) line = 'check failed, '//line
+      if (missed) line = 'accuracy not reached'
+      if (failed_checks > 0 .and. .not. missed) line = 'check failed'
+      if (failed_checks > 0 .and. missed) line = 'check failed, '//line
       line = line//', '//counted(increments, 'increment')
       ! Read only while that round is solved, or where it did not come to its end.
       if (later_round > 0) line = line//'; round '//to_text(later_round)// &

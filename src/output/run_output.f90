@@ -217,7 +217,7 @@ contains
 
       allocate (lines(0))
       call self%listing%summary%add_lines(model, interfaces, lines)
-      call add_accuracy(self%run%accuracy, interfaces, lines)
+      call add_accuracy(self%run%accuracy, interfaces, model%units, lines)
    end function summary_lines
 
    !> One line for each *VERIFY card that failed, and one for all that could not be judged.

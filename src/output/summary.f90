@@ -3,10 +3,10 @@
 module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, estimated
+   use contact_quantities, only: contact_values, estimated, zone_words
    use kinds, only: dp
    use model, only: model_type
-   use quantity_types, only: needs_heat
+   use quantity_types, only: needs_heat, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use run_summaries, only: or_blank
    use text, only: append, few_digits, percent, string_type, to_text
@@ -138,27 +138,54 @@ contains
       type(contact_points_type), intent(in) :: points
       integer, intent(in) :: i                       ! number of the interface
       type(string_type), allocatable, intent(inout) :: lines(:)
-      character(:), allocatable :: words
+      character(:), allocatable :: words, zone
       character(name_width) :: name
       character(value_width) :: value
       real(dp) :: values(1)
-      logical :: has_heat
       integer :: q
 
-      has_heat = allocated(self%contacts(i)%heat_flux)
       do q = 1, size(estimated)
-         if (estimated(q)%needs == needs_heat .and. .not. has_heat) cycle
+         if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
          values = contact_values(estimated(q)%name, points, self%contacts(i))
-         if (ieee_is_nan(values(1))) cycle
-         if (estimated(q)%is_of_friction .and. .not. abs(values(1)) > 0.0_dp) cycle
+         zone = zone_words(estimated(q)%name, self%contacts(i))
          name = words_of(estimated(q)%name)
+         if (ieee_is_nan(values(1))) then
+            if (zone /= '') call append(lines, '  '//name//repeat(' ', value_width - 4)//zone)
+            cycle
+         end if
          value = to_text(values(1))
          words = '  '//name//adjustr(value)
          if (allocated(self%errors)) words = words//bound_words(self%errors(i)%bound(q), &
             values(1))
-         call append(lines, trim(words//' '//unit_label(estimated(q)%unit, model%units)))
+         words = trim(words//' '//unit_label(estimated(q)%unit, model%units))
+         if (zone /= '') words = words//', '//zone
+         if (allocated(self%errors)) words = words//why_not(self%errors(i), q)
+         call append(lines, words)
       end do
    end subroutine add_quantities
+
+   !> Whether the deck has a quantity: heat that it solves, friction in this interface.
+   pure logical function is_had(quantity, model, i, contact)
+      type(quantity_type), intent(in) :: quantity
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: i                       ! number of the interface
+      type(contact_record_type), intent(in) :: contact
+
+      is_had = quantity%needs /= needs_heat .or. allocated(contact%heat_flux)
+      if (quantity%is_of_friction) is_had = abs(contact%shear_force) > 0.0_dp
+      if (quantity%name == 'edge_stick') is_had = abs(contact%shear_force) > 0.0_dp .or. &
+         model%interactions(model%contacts(i)%interaction)%friction%coefficient > 0.0_dp
+   end function is_had
+
+   !> Why a quantity has no bound, behind a colon; nothing where it has one.
+   pure function why_not(errors, q) result(words)
+      type(interface_errors_type), intent(in) :: errors
+      integer, intent(in) :: q
+      character(:), allocatable :: words
+
+      words = errors%why_not(q)%value
+      if (words /= '') words = ': '//words
+   end function why_not
 
    !> A name as one speaks it.
    pure function words_of(name) result(words)

@@ -2,13 +2,14 @@
 module contact_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
+   use contact_states, only: contact_open, contact_stick
    use kinds, only: dp
    use quantity_types, only: needs_heat, of_interface, of_contact_points, quantity_type
    use records, only: contact_record_type
    use zone_edges, only: edges_kept
    implicit none
    private
-   public :: contact_table, estimated, contact_values, geometry_values
+   public :: contact_table, estimated, contact_values, geometry_values, zone_words
 
    ! Contact points are in the order of the columns of *CONTACT PRINT.
    type(quantity_type), parameter :: contact_table(*) = [ &
@@ -157,5 +158,24 @@ contains
          allocate (values(0))
       end select
    end function geometry_values
+
+   !> What there is in place of an edge where its zone is the whole face, or none; else nothing.
+   pure function zone_words(name, contact) result(words)
+      character(*), intent(in) :: name                   !! of a quantity of an interface
+      type(contact_record_type), intent(in) :: contact   !! its state
+      character(:), allocatable :: words
+
+      words = ''
+      associate (states => contact%contact_state)
+         select case (name)
+         case ('edge_contact')
+            if (all(states == contact_open)) words = 'none (open)'
+            if (all(states /= contact_open)) words = 'whole face'
+         case ('edge_stick')
+            if (all(states /= contact_stick)) words = 'none'
+            if (all(states == contact_stick)) words = 'whole face'
+         end select
+      end associate
+   end function zone_words
 
 end module contact_quantities

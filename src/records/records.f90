@@ -4,6 +4,7 @@ module records
    use kinds, only: dp
    use recovered_error, only: error_record_type
    use solution_report, only: solution_report_type, work_record_type
+   use text, only: string_type
    use zone_edges, only: edges_kept
    implicit none
    private
@@ -23,6 +24,7 @@ module records
       real(dp), allocatable :: mesh(:)         !! of the error of the mesh
       real(dp), allocatable :: increment(:)    !! of the error of the size of the increments
       real(dp), allocatable :: iteration(:)    !! of the error of the fixed point
+      type(string_type), allocatable :: why_not(:)   !! why there is no bound; empty where there is
    end type interface_errors_type
 
    !> State of one contact interface; arrays over its contact points, in the order of

@@ -1,6 +1,6 @@
 !> One deck to its results.
 module deck_run
-   use accuracy_lines, only: add_missed
+   use accuracy_lines, only: missed_words
    use accuracy_rounds, only: accuracy_rounds_type
    use batch_table, only: table_name
    use blas_lapack, only: reserve_blas_memory
@@ -323,8 +323,7 @@ contains
    subroutine take_checks(self, outcome)
       type(run_type), intent(in) :: self
       type(deck_outcome_type), intent(inout) :: outcome
-      type(string_type), allocatable :: missed(:)
-      integer :: i
+      character(:), allocatable :: missed
 
       associate (output => self%output)
          outcome%failed_checks = [outcome%failed_checks, output%failed_checks(self%model)]
@@ -332,11 +331,8 @@ contains
          outcome%verify_passed = max(outcome%verify_passed, output%run%verify_passed)
          outcome%verify_failed = max(outcome%verify_failed, output%run%verify_failed)
          if (outcome%status /= status_ok .or. output%run%accuracy%goes_on) return
-         allocate (missed(0))
-         call add_missed(output%run%accuracy, self%simulation%bodies%interfaces, missed)
-         do i = 1, size(missed)
-            call append(outcome%failed_checks, self%path//': error: '//missed(i)%value)
-         end do
+         missed = missed_words(output%run%accuracy, self%simulation%bodies%interfaces)
+         if (missed /= '') call append(outcome%failed_checks, self%path//': error: '//missed)
       end associate
    end subroutine take_checks
 

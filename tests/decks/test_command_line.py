@@ -7,7 +7,7 @@ import subprocess
 import h5py
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
-from deck_runs import CYLINDER, PROGRAM, copy_deck, run
+from deck_runs import CYLINDER, INPUT, PROGRAM, copy_deck, run
 
 GOOD = [
     *without_unused_surfaces(block("BLOCK", [0.0, 1.0], [0.0, 1.0])),
@@ -211,6 +211,17 @@ def test_files_without_a_step_are_skipped_in_a_batch_only(good, bad, tmp_path):
     assert "*STEP" in alone.stderr
     faulty = write(tmp_path / "faulty.inp", GOOD[:GOOD.index("*STEP")], ["*NONSENSE"])
     assert run("run", good, faulty, "--out", tmp_path / "out").returncode == 1
+
+
+def test_a_summary_tells_zones_without_an_edge(tmp_path):
+    """The faces of the press fit are closed from end to end, those of the rods open."""
+    press_fit = run("run", INPUT / "examples" / "press_fit.inp", "--out", tmp_path).stdout
+    assert re.search(r"\n    edge of contact +10 \+- .* mm, whole face\n", press_fit)
+    assert "edge of stick" not in press_fit, "there is no friction"
+    rods = run("run", INPUT / "rods" / "r2.inp", "--out", tmp_path).stdout
+    assert re.search(r"\n    edge of contact +none \(open\)\n", rods)
+    sliding = run("run", INPUT / "examples" / "brake_pad.inp", "--out", tmp_path).stdout
+    assert re.search(r"\n    edge of stick +none\n", sliding)
 
 
 def test_a_summary_tells_the_interface_then_the_results_then_what_failed(tmp_path):

@@ -216,6 +216,12 @@ def test_the_listing_says_which_part_of_a_bound_is_the_largest(tmp_path):
     assert part == "mesh"
 
 
+def test_the_listing_has_no_shear_force_without_friction(tmp_path):
+    table = solve(bare(HERTZ, tmp_path, "hertz.inp")).with_suffix(".lst").read_text()
+    told = re.findall("^    (shear|normal) force ", table, flags=re.M)
+    assert set(told) == {"normal"}
+
+
 def test_other_word_for_errors_is_refused(tmp_path):
     """YES and NO are all there is."""
     deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*OPTIONS, ERRORS=SOME"])
