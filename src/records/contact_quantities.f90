@@ -167,14 +167,13 @@ contains
 
       words = ''
       associate (states => contact%contact_state)
-         select case (name)
-         case ('edge_contact')
+         if (name == 'edge_contact') then
             if (all(states == contact_open)) words = 'none (open)'
             if (all(states /= contact_open)) words = 'whole face'
-         case ('edge_stick')
+         else if (name == 'edge_stick') then
             if (all(states /= contact_stick)) words = 'none'
             if (all(states == contact_stick)) words = 'whole face'
-         end select
+         end if
       end associate
    end function zone_words
 

@@ -13,7 +13,7 @@ from bound_decks import (FITTED, SEEDS, all_decks, drawn_deck, known_decks, mism
 from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT, solve
 from instructions import profile
 from program_parts import PARTS
-from report import Table, check_parts, rows
+from report import PREFACE, Table, check_parts, rows
 
 TITLE = "Bounds of errors"
 TEXT = """
@@ -33,9 +33,10 @@ requests for an accuracy all use it. It is the sum of three parts.
 
 A bound is *uncertain* (NaN in the result file) in models with equations, couplings or transformed axes,
 because the finer mesh has nodes that they do not name (a requested accuracy then compares its rounds);
-in a step of a single increment with friction; and for the peak pressure of mortar points at a corner,
-where one face ends and the other goes on. The pressure of such a punch grows without limit as the mesh
-is refined; with node pairs its bound is only large.
+in a step of a single increment with friction; for an edge that the finer mesh or the companion run does
+not have; and for the peak pressure of mortar points at a corner, where one face ends and the other goes
+on. The pressure of such a punch grows without limit as the mesh is refined; with node pairs its bound is
+only large. Summary and listing say which of these it is.
 
 **How bounds are judged.** Each deck is solved on the mesh as it is and refined once and twice, with the
 increments as written and half as long. A true error is that to the converged value, on a mesh refined
@@ -236,8 +237,11 @@ def test_the_document_counts_right():
     table = rows("Bounds that hold")
     assert [row["quantity"] for row in table] == list(held_bounds.QUANTITIES.values())
     for row in table:
-        held, judged = re.match(r"(\d+)/(\d+),", row["all"]).groups()
+        held, judged, share = re.fullmatch(r"(\d+)/(\d+), (\d+ %)", row["all"]).groups()
         assert int(judged) - int(held) == missed.count(row["quantity"])
+        first, *rest = row["quantity"].split(" of ")
+        plural = " of ".join([f"{first}s", *rest])
+        assert f"{share} of {plural}" in PREFACE
 
 
 def test_the_document_tells_the_converged_values():
