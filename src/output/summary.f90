@@ -85,7 +85,7 @@ contains
       if (self%increment == 0) return
       line = 'at '//when(self, or_blank(model%load_label))
       if (model%estimates_errors .and. size(interfaces) > 0 .and. .not. allocated(self%errors)) then
-         line = line//', inside a step: errors are bounded at the end of steps'
+         line = line//', inside a step (errors are bounded at the end of steps)'
       end if
       call append(lines, line//':')
       do i = 1, size(interfaces)

@@ -267,6 +267,18 @@ def test_an_uncertain_bound_says_why(tmp_path, columns, width, friction, cards, 
         assert f"not met: uncertain, target 1 %: {reason}\n" in process.stdout
 
 
+def test_an_edge_that_a_finer_mesh_does_not_have_is_uncertain(tmp_path):
+    """A punch that is moved aside sticks at one contact point of its own mesh alone."""
+    deck = punch(tmp_path, "A.BOTTOM, B.TOP", 8)
+    text = deck.read_text().replace("*CONTACT PAIR", "*FRICTION\n0.02\n*CONTACT PAIR")
+    deck.write_text(text.replace("1., 1.\n", "0.25, 1.\n").replace("A.LEFT, 1\n", "").replace(
+        "A.TOP, 2, 2, -0.01", "A.TOP, 2, 2, -0.01\nA.TOP, 1, 1, -0.001"))
+    process = run("run", deck, "--out", tmp_path)
+    assert re.search(r"\n    edge of stick .*\(uncertain\): a finer mesh has no such edge\n",
+                     process.stdout), process.stdout
+    assert "\n    uncertain: a finer mesh has no such edge\n" in deck.with_suffix(".lst").read_text()
+
+
 def kept_round(folder, name, words):
     """Return the round that the files of a run are of, whose request ended early; they are whole, of
     one and the same round, and say so."""
@@ -343,6 +355,7 @@ def test_a_first_round_that_is_not_whole_has_no_row(tmp_path):
     told = "requested accuracy not reached: round 1 did not come to its end\n"
     assert told in output and told in (tmp_path / "deck.lst").read_text()
     assert "CPU seconds" not in output
+    assert ", inside a step (errors are bounded at the end of steps):\n" in output
     with h5py.File(tmp_path / "deck.vtkhdf") as file:
         assert "accuracy" not in file
 
