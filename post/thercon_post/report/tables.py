@@ -136,7 +136,7 @@ def target_cells(rows, unit):
     cells = ["–" if each[0] == 0 else "uncertain" if np.isnan(each[2]) else number(each[2], 2)
              for each in rows]
     if step == 0:
-        return [*cells, "–", unit, "skipped: the deck has none at the ends of its steps"]
+        return [*cells, "–", unit, "nothing to judge at the ends of the steps"]
     verdict = "met" if bound <= allowed else "not met"
     look = "pass" if bound <= allowed else "fail"
     return [*cells, number(allowed, 2), unit, f'<span class="{look}">{verdict}</span>']
