@@ -5,7 +5,6 @@ import numpy as np
 from . import profile_legends, style
 from .overlay import axis_words, file_parts, read_overlays
 from .profile_legends import EDGES, QUANTITY_LINES
-from .result import OPEN
 from .style import plt
 from .tables import stack_tables
 
@@ -40,19 +39,9 @@ class Picture:
     def __init__(self, result, contact, rows, options):
         self.result, self.contact, self.rows = result, contact, rows
         self.along, self.coordinate = contact.axis(options.along)
-        self.window = options.range or self.usual_window()
+        self.window = options.range or contact.window(self.coordinate, rows)
         self.colours = style.shades(len(rows))
         self.sign = friction_sign(contact, rows)
-
-    def usual_window(self):
-        """Return the range to show: the pairs closed at these loads and somewhat more."""
-        closed = (self.contact["status"][self.rows] != OPEN).any(axis=0)
-        low, high = self.coordinate[0], self.coordinate[-1]
-        if not closed.any():
-            return low, high
-        first, last = self.coordinate[closed][[0, -1]]
-        room = 0.4 * max(last - first, 2.0 * np.min(np.diff(self.coordinate)))
-        return max(low, first - room), min(high, last + room)
 
     def draw(self, overlays):
         """Return the finished figure, with digitised figures laid over."""
@@ -75,7 +64,11 @@ class Picture:
             axes.set_ylabel(self.ordinate(quantities))
             scale(axes, np.concatenate(drawn))
         profile_legends.add(self, panels, kinds, overlays)
-        panels[-1].set_xlabel(self.result.units.label(f"${self.along}$", "length"))
+        units = self.result.units
+        unit = units.names.get("length", "")
+        part = self.contact.part_words(self.coordinate, self.window, unit, self.rows)
+        label = units.label(f"${self.along}$", "length")
+        panels[-1].set_xlabel(f"{label}\n{part}".rstrip())
         room = 0.02 * (self.window[1] - self.window[0])
         panels[-1].set_xlim(self.window[0] - room, self.window[1] + room)
         if len(self.rows) == 1:

@@ -95,6 +95,28 @@ class Contact:
         moved = np.interp(edge, self.data["s"], coordinate)
         return np.where(np.isnan(edge), np.nan, moved)
 
+    def window(self, coordinate, rows=slice(None)):
+        """Return the range that pictures show: the pairs that close at these increments and
+        somewhat more; the whole face where none does."""
+        low, high = map(float, coordinate[[0, -1]])
+        closed = (self.data["status"][rows] != OPEN).any(axis=0)
+        if not closed.any():
+            return low, high
+        first, last = map(float, coordinate[closed][[0, -1]])
+        room = 0.3 * max(last - first, 2.0 * np.min(np.diff(coordinate), initial=high - low))
+        return max(low, first - room), min(high, last + room)
+
+    def part_words(self, coordinate, window, unit, rows=slice(None)):
+        """Return what a window leaves out of the face, in words; nothing where it shows all."""
+        low, high = coordinate[[0, -1]]
+        outside = (coordinate < window[0]) | (coordinate > window[1])
+        if not outside.any():
+            return ""
+        is_open = np.all(self.data["status"][rows][:, outside] == OPEN)
+        face = f"{low:.4g} to {high:.4g} {unit}".rstrip().replace("-", "\N{MINUS SIGN}")
+        left_out = "the part not shown is open" if is_open else "part of it is not shown"
+        return f"The face runs from {face}; {left_out}"
+
 
 class Result:
     """A result file, open for reading; use it in a `with` statement."""

@@ -80,12 +80,15 @@ class Picture:
         drawn = [
             overlay.plot(axes, "load", key, LINES[key]) for overlay in overlays for key in CURVES
         ]
-        axes.set_xlabel(self.abscissa_label)
         axes.set_ylabel(self.result.units.label(f"${self.along}$", "length"))
         axes.set_xlim(self.limits(self.abscissa))
         if len(self.abscissa) == 1:
             axes.set_xticks(self.abscissa)
-        axes.set_ylim(self.window(np.concatenate([[], *drawn])))
+        window = self.window(np.concatenate([[], *drawn]))
+        axes.set_ylim(window)
+        unit = self.result.units.names.get("length", "")
+        part = self.contact.part_words(self.coordinate, window, unit)
+        axes.set_xlabel(f"{self.abscissa_label}\n{part}".rstrip())
         name_regions(self, axes)
         figure.legend(
             handles=self.legend_handles(overlays),
@@ -104,14 +107,8 @@ class Picture:
         return 0.0 if room < low <= 3.0 * step else low - room, high + room
 
     def window(self, drawn):
-        """Return the range of the ordinate: the pairs that ever close and somewhat more, and
-        what digitised figures have."""
-        closed = (self.status != OPEN).any(axis=0)
-        low, high = self.coordinate[0], self.coordinate[-1]
-        if closed.any():
-            first, last = self.coordinate[closed][[0, -1]]
-            room = 0.3 * max(last - first, 2.0 * np.min(np.diff(self.coordinate)))
-            low, high = max(low, first - room), min(high, last + room)
+        """Return the range of the ordinate: what contact has and digitised figures have."""
+        low, high = self.contact.window(self.coordinate)
         low, high = np.min(drawn, initial=low), np.max(drawn, initial=high)
         room = 0.025 * (high - low)
         return low - room, high + room

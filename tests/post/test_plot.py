@@ -245,6 +245,24 @@ def test_a_digitised_figure_has_a_legend_entry_for_each_of_its_curves(kept, resu
     assert texts[-2:] == ["fig3: edge of contact", "fig3: edge of stick"]
 
 
+@pytest.mark.parametrize("picture", ["profiles", "zones"])
+def test_a_picture_that_shows_a_part_of_the_face_says_what_it_leaves_out(kept, result, picture):
+    def label():
+        (figure,) = kept(picture, result)
+        return figure.axes[-1].get_xlabel().split("\n")[1:]
+
+    assert label() == ["The face runs from 0 to 20 cm; the part not shown is open"]
+    with h5py.File(result, "r+") as file:
+        file["contact/CYLINDER/status"][14] = 1
+    assert label() == []
+
+
+def test_a_range_of_the_profiles_does_not_call_closed_points_open(kept, result):
+    (figure,) = kept("profiles", result, "--range", 0, 3)
+    label = figure.axes[-1].get_xlabel()
+    assert label.endswith("The face runs from 0 to 20 cm; part of it is not shown")
+
+
 def test_zones_of_a_load_that_turns_are_drawn_over_time(result):
     with h5py.File(result, "r+") as file:
         file["history/load"][10:] = [540.0, 480.0, 420.0, 360.0, 300.0]
@@ -552,7 +570,7 @@ def test_axes_have_the_units_of_the_file_or_none(tmp_path, units):
     with Result(path) as opened:
         contact = opened.contact("CYLINDER")
         figure = profiles.Picture(opened, contact, [8], options).draw([])
-        labels = [axes.get_ylabel() for axes in figure.axes] + [figure.axes[-1].get_xlabel()]
+        labels = [axes.get_ylabel() for axes in figure.axes] + [figure.axes[-1].get_xlabel().split("\n")[0]]
         style.plt.close(figure)
         load = opened.units.load_label(opened.load_label)
     if units:

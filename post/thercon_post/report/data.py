@@ -8,7 +8,7 @@ import numpy as np
 from .. import mesh
 from ..field_colours import SIGNED
 from ..fields import TITLES, touches_after_a_gap
-from ..result import CELL_FIELDS, FIELD_SOURCES, OPEN, words_of
+from ..result import CELL_FIELDS, FIELD_SOURCES, words_of
 from ..style import matplotlib
 
 FIELD_NUMBERS = 700_000  # numbers of all fields together: 3.7 MB of text
@@ -70,11 +70,13 @@ def loads(result):
 def contact_data(result, contact):
     """Return the profiles, states, edges and totals of one contact."""
     name, coordinate = contact.axis(None)
+    window, unit = contact.window(coordinate), plain(result.units.names.get("length", ""))
     return {
         "name": contact.name,
         "axis": name,
         "at": packed(coordinate),
-        "window": window(contact, coordinate),
+        "window": window,
+        "part": contact.part_words(coordinate, window, unit),
         "friction": contact.friction,
         "status": packed(contact["status"], "u1"),
         "profiles": {
@@ -117,17 +119,6 @@ def histories(result):
         unit = plain(result.units.names.get("power", "")) if key in ("heat_in", "heat_out") else ""
         found.append({"label": words_of(key).capitalize(), "unit": unit, "values": listed(values)})
     return found
-
-
-def window(contact, coordinate):
-    """Return the range of the contact that pictures show: what ever closes, and somewhat more."""
-    closed = (contact["status"] != OPEN).any(axis=0)
-    low, high = float(coordinate[0]), float(coordinate[-1])
-    if closed.any():
-        first, last = coordinate[closed][[0, -1]]
-        room = 0.3 * max(last - first, 2.0 * np.min(np.diff(coordinate), initial=high - low))
-        low, high = max(low, float(first - room)), min(high, float(last + room))
-    return [low, high]
 
 
 def fields_data(result):

@@ -117,6 +117,7 @@ const contacts = data.contacts.map(each => {
    return decoded;
 });
 const contact = () => contacts[$('interface') ? Number($('interface').value) : 0];
+const part = () => contact().part && `${escaped(contact().part)}.`;
 const rowOf = (values, width, k = row) => values.subarray(k * width, (k + 1) * width);
 // Points of all edges of a kind beside the main one.
 function further(key) {
@@ -151,7 +152,7 @@ function drawZones() {
          {x: abscissa, y: c.main.contact, colour: '#000', name: 'edge of contact'},
          {x: abscissa, y: c.main.stick, colour: '#000', dash: '6 3', name: 'edge of stick'},
       ].filter(line => finite(line.y).length),
-      caption: `Zones. Each symbol is a contact point at one increment, except diamonds.`,
+      caption: `Zones. Each symbol is a contact point at one increment, except diamonds. ${part()}`,
    });
 }
 function profile(id, title, quantities, label, zero, caption) {
@@ -192,7 +193,7 @@ function drawProfiles() {
    if (shear && mu) tractions.push(['pressure', bothSigns ? '±μp' : 'μp', GREY, '3 3', mu]);
    if (shear && mu && bothSigns) tractions.push(['pressure', '', GREY, '3 3', -mu]);
    profile('tractions', 'Contact tractions', tractions, withUnit('traction', unit('stress')), true,
-      `Tractions, ${escaped(said)}. Dotted lines are the edges of contact and stick.`);
+      `Tractions, ${escaped(said)}. Dotted lines are the edges of contact and stick. ${part()}`);
    profile('flux', 'Heat flux', [['heat_flux', 'heat flux q', '#000', '']], withUnit('heat flux q', unit('flux')), false,
       `Heat flux from slave to master, ${escaped(said)}.`);
    profile('gap', 'Gap', [['gap', 'gap', BLUE, '']], withUnit('gap', unit('length')), false, `Gap, ${escaped(said)}.`);
