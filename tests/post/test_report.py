@@ -153,6 +153,39 @@ def test_the_slider_moves_every_picture_and_the_console_stays_empty(cylinder, br
     assert browser.messages() == []
 
 
+def test_low_loads_fill_the_axes_unless_all_loads_have_the_same_scale(cylinder, browser):
+    """The height of each curve over that of its axes, at the first load and at the last."""
+    browser.open(cylinder / "cylinder.html")
+    look = """return ['tractions', 'flux', 'gap'].map(id => {
+        const svg = document.getElementById(id).querySelector('svg');
+        const tall = each => each.getBBox().height;
+        const curves = [...svg.querySelectorAll('g > path[fill=none]:not(.upright)')];
+        return Math.max(...curves.map(tall)) / tall(svg.querySelector('clipPath rect'))})"""
+    seen = {}
+    for same in (False, True):
+        if same:
+            browser.press("#same", " ")
+        for key in ("home", "end"):
+            browser.press("#load", key)
+            seen[same, key] = browser.run(look)
+    assert min(seen[False, "home"] + seen[False, "end"]) > 0.85
+    assert seen[True, "home"][0] < 0.2 and seen[True, "home"][1] < 0.2
+    assert seen[True, "end"][:2] == seen[False, "end"][:2]
+    assert browser.messages() == []
+
+
+def test_rounding_is_not_stretched_over_the_axes(synthetic, browser):
+    def cold(file):
+        file["contact/CYLINDER/heat_flux"][0] *= 1e-12
+
+    browser.open(synthetic(cold))
+    look = """return Math.max(...[...document.querySelectorAll('#flux .tick')].map(
+        each => Number(each.textContent)))"""
+    last = browser.run(look)
+    browser.press("#load", "home")
+    assert browser.run(look) == last
+
+
 def test_every_picture_is_named_and_every_control_is_reached_and_labelled(cylinder, browser):
     browser.open(cylinder / "cylinder.html")
     bare = browser.run("""return [...document.querySelectorAll('svg')].filter(
@@ -163,7 +196,7 @@ def test_every_picture_is_named_and_every_control_is_reached_and_labelled(cylind
     for _ in range(20):
         browser.type("tab")
         reached.add(browser.run("return document.activeElement.id || document.activeElement.href"))
-    assert {"load", "interface", "quantity", "region", "scale", "fixed"} <= reached
+    assert {"load", "interface", "same", "quantity", "region", "scale", "fixed"} <= reached
     browser.printed(cylinder / "cylinder.pdf")
     assert (cylinder / "cylinder.pdf").read_bytes()[:4] == b"%PDF"
     assert browser.run("return document.querySelector('details').open"), "the deck is printed"

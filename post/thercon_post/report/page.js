@@ -38,6 +38,7 @@ function rangeOf(values, zero) {
    const room = high > low ? 0.06 * (high - low) : 0.5 * Math.abs(high) || 0.5;
    return [zero && low === 0 && high > 0 ? 0 : low - room, zero && high === 0 && low < 0 ? 0 : high + room];
 }
+const peak = values => values.reduce((most, v) => Math.abs(v) > most ? Math.abs(v) : most, 0);
 // lines: {x, y, colour, dash, mark, name}; clouds: {points, shape, colour, name}; uprights: [x]
 function chart(box, options) {
    const W = options.width || 480, H = options.height || 300;
@@ -156,13 +157,15 @@ function drawZones() {
    });
 }
 function profile(id, title, quantities, label, zero, caption) {
-   const c = contact(), m = c.at.length, lines = [], all = [], uprights = [];
+   const c = contact(), m = c.at.length, lines = [], all = [], now = [], uprights = [];
    for (const [key, name, colour, dash, factor = 1] of quantities) {
       const whole = c.profiles[key];
       if (!whole) continue;
-      // The range is that of all loads, so that the curves of two of them can be compared.
       for (let i = 0; i < whole.length; i++)
-         if (c.at[i % m] >= c.window[0] && c.at[i % m] <= c.window[1]) all.push(factor * whole[i]);
+         if (c.at[i % m] >= c.window[0] && c.at[i % m] <= c.window[1]) {
+            all.push(factor * whole[i]);
+            if (Math.floor(i / m) === row) now.push(factor * whole[i]);
+         }
       const values = Array.from(rowOf(whole, m), v => factor * v);
       const points = values.map((v, i) => [c.at[i], v, false]);
       // Tractions end where the contact does.
@@ -176,9 +179,10 @@ function profile(id, title, quantities, label, zero, caption) {
    if (!lines.length) return;
    for (const key of ['contact', 'stick']) uprights.push(...finite(rowOf(c.edges[key], 4)));
    const room = 0.02 * (c.window[1] - c.window[0]) || 0.5;
+   const isRounding = peak(now) <= 1e-6 * peak(all);
    chart($(id), {title: `${title} along interface ${c.name}, ${loadWords(row)}`, lines, uprights,
       xLabel: withUnit(c.axis, unit('length')), yLabel: label, caption,
-      xRange: [c.window[0] - room, c.window[1] + room], yRange: rangeOf(all, true)});
+      xRange: [c.window[0] - room, c.window[1] + room], yRange: rangeOf($('same').checked || isRounding ? all : now, true)});
 }
 function drawProfiles() {
    const c = contact(), said = loadWords(row), mu = c.friction;
@@ -244,7 +248,7 @@ function later() {
 const fields = data.fields ? fieldPicture(data, {$, floats, integers, show, escaped, ticks, loadWords, withUnit, later}) : null;
 if (!fields) $('fields').hidden = true;
 $('load').addEventListener('input', () => { row = Number($('load').value) - 1; later(); });
-if ($('interface')) $('interface').addEventListener('change', later);
+for (const id of ['interface', 'same']) if ($(id)) $(id).addEventListener('change', later);
 for (const form of document.forms) form.addEventListener('submit', event => event.preventDefault());
 addEventListener('beforeprint', () => { for (const each of document.querySelectorAll('details')) each.open = true; });
 $('load').value = String(count);

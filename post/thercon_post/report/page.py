@@ -92,7 +92,8 @@ def contact_section(result):
         for k, contact in enumerate(contacts_of(result))
     )
     choice = f'<p class="choice"><label for="interface">Interface</label> <select id="interface">' \
-             f"{options}</select></p>"
+             f"{options}</select> <label><input type=\"checkbox\" id=\"same\"> " \
+             "same scale at every load</label></p>"
     return f"""{choice}
 <div id="totals" aria-live="polite"></div>
 <div class="plots">
