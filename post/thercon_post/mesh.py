@@ -10,6 +10,9 @@ from .cells import curves, outlines
 from .style import plt
 
 MOST_MARKED = 80  # contact nodes are marked one by one up to here
+# The slave's band and nodes are wider than the master's, which lie upon them where the faces touch.
+SLAVE = {"color": style.VERMILION, "lw": 3.4, "ls": "solid", "marker": "o", "ms": 6.0}
+MASTER = {"color": style.BLUE, "lw": 1.8, "ls": (0, (2.2, 1.4)), "marker": "s", "ms": 2.4}
 
 
 def draw(result, options):
@@ -18,8 +21,8 @@ def draw(result, options):
     contacts = result.contacts() if result.contact_names else []
     model = bounds_of(cells.points)
     if contacts:
-        figure, (whole, close) = two_panels(model)
         window = contact_window(contacts, cells, cells.points)
+        figure, (whole, close) = two_panels(model, window)
         panels = [(whole, model, False), (close, window, True)]
     else:
         size = (style.SINGLE_COLUMN, style.SINGLE_COLUMN)
@@ -44,7 +47,7 @@ def draw(result, options):
     return style.write(figure, table(cells), options.out, name)
 
 
-def two_panels(model):
+def two_panels(model, window):
     """Return a figure and two axes: side by side for a tall model, stacked for a wide one."""
     width, height = np.ptp(model, axis=0)
     if height >= width:
@@ -56,12 +59,14 @@ def two_panels(model):
             figsize=(style.DOUBLE_COLUMN * 0.8, 4.3),
             gridspec_kw={"width_ratios": [1.0 / tall + 0.12, 1.0]},
         )
+    wide = style.DOUBLE_COLUMN * 0.7
+    heights = [max(tall / wide, 0.1) for wide, tall in (np.ptp(model, axis=0), np.ptp(window, axis=0))]
     return plt.subplots(
         2,
         1,
         layout="constrained",
-        figsize=(style.DOUBLE_COLUMN * 0.7, 6.0),
-        gridspec_kw={"height_ratios": [float(np.clip(height / width, 0.3, 1.0)), 1.0]},
+        figsize=(wide, 0.85 * wide * sum(heights) + 1.5),
+        gridspec_kw={"height_ratios": heights},
     )
 
 
@@ -123,22 +128,21 @@ def draw_elements(axes, cells, close):
 
 def draw_faces(axes, cells, faces, contact, close):
     """Mark the two faces of a contact: slave solid, master dashed; nodes in the close-up."""
-    width = 1.8 if close else 1.3
+    thin = 1.0 if close else 0.8
     slave, master = faces
     nodes = contact["slave_node"], contact["master_node"]
     if contact.pairing != "NODES":
         nodes = nodes[0], np.unique(cells.node_id[master[master >= 0]])
-    for edges, numbers, colour, dashes, marker, size in (
-        (slave, nodes[0], style.VERMILION, "solid", "o", 4.2),
-        (master, nodes[1], style.BLUE, (0, (2.2, 1.4)), "s", 2.4),
-    ):
+    for edges, numbers, looks in ((slave, nodes[0], SLAVE), (master, nodes[1], MASTER)):
         lines = curves(edges, cells.points)
+        width, colour = thin * looks["lw"], looks["color"]
         axes.add_collection(
-            LineCollection(lines, colors=colour, linewidths=width, linestyles=dashes, zorder=3)
+            LineCollection(lines, colors=colour, linewidths=width, linestyles=looks["ls"], zorder=3)
         )
         if close and len(numbers) <= MOST_MARKED:
             at = cells.points[np.isin(cells.node_id, numbers)]
-            axes.plot(*at.T, marker, ms=size, mfc="white", mec=colour, mew=0.8, zorder=4)
+            marks = {"ls": "none", "mfc": "white", "mew": 0.8, "zorder": 4}
+            axes.plot(*at.T, **(looks | marks))
 
 
 def mark_window(whole, close, window):
@@ -148,8 +152,9 @@ def mark_window(whole, close, window):
     whole.add_patch(Rectangle(window[0], *size, fill=False, linewidth=0.9, **looks))
     if whole.get_subplotspec().get_gridspec().nrows > 1:
         # Lines to a panel below would cross the labels between the two.
-        at = {"xytext": (-3, 3), "textcoords": "offset points", "ha": "right"}
-        whole.annotate("(b)", (window[1, 0], window[0, 1]), fontsize=7.5, zorder=6, **at)
+        at = {"xytext": (0, 3), "textcoords": "offset points", "ha": "right", "va": "bottom"}
+        box = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none"}
+        whole.annotate("(b)", window[1], fontsize=7.5, zorder=6, bbox=box, **at)
         return
     close.yaxis.tick_right()
     close.yaxis.set_label_position("right")
@@ -177,27 +182,8 @@ def legend_handles(cells, contacts):
     ]
     if contacts:
         handles += [
-            Line2D(
-                [],
-                [],
-                color=style.VERMILION,
-                lw=1.8,
-                marker="o",
-                ms=4.2,
-                mfc="white",
-                label="contact face, slave",
-            ),
-            Line2D(
-                [],
-                [],
-                color=style.BLUE,
-                lw=1.8,
-                ls=(0, (2.2, 1.4)),
-                marker="s",
-                ms=2.4,
-                mfc="white",
-                label="contact face, master",
-            ),
+            Line2D([], [], mfc="white", label=f"contact face, {name}", **looks)
+            for name, looks in (("slave", SLAVE), ("master", MASTER))
         ]
     return handles
 

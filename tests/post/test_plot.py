@@ -151,6 +151,36 @@ def test_the_legend_of_a_mesh_without_contact_leaves_the_axis_label_free(kept, t
     assert figure.legends[0].get_window_extent().y1 < label.y0
 
 
+def test_the_slave_face_is_seen_below_the_master_face_where_both_touch(kept, result):
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        nodes = {key: contact[key][()] - 1 for key in ("slave_node", "master_node")}
+        points = file["VTKHDF/Points"]
+        points[nodes["slave_node"]] = points[nodes["master_node"], :]
+    (figure,) = kept("mesh", result)
+    for axes in figure.axes:
+        faces = [each for each in axes.collections if each.get_zorder() == 3]
+        slave, master = (each.get_linewidth()[0] for each in faces)
+        assert slave > 1.5 * master
+    slave, master = (line.get_markersize() for line in figure.axes[1].lines)
+    assert slave > 1.5 * master
+    drawn = [line for line in figure.legends[0].get_lines() if line.get_marker() != "None"]
+    assert drawn[0].get_linewidth() > 1.5 * drawn[1].get_linewidth()
+
+
+def test_the_close_up_of_a_wide_model_is_named_clear_of_its_frame(kept, result):
+    with h5py.File(result, "r+") as file:
+        file["VTKHDF/Points"][:, 0] *= 4.0
+    (figure,) = kept("mesh", result)
+    (name,) = figure.axes[0].texts
+    (window,) = figure.axes[0].patches
+    assert name.get_text() == "(b)"
+    gap = name.get_window_extent().y0 - window.get_window_extent().y1
+    assert 0.0 < gap < 5.0
+    whole, close = (axes.get_tightbbox() for axes in figure.axes)
+    assert 0.0 < whole.y0 - close.y1 < 0.5 * figure.dpi
+
+
 @pytest.mark.parametrize("loads", [[540], [180, 360, 540]])
 def test_profiles_at_chosen_loads_hold_the_values_of_the_file(draw, result, tmp_path, loads):
     name = "-".join(["case.profiles", *map(str, loads)])
