@@ -1,5 +1,8 @@
 """Temperature, stress and errors on the deformed mesh."""
 
+import re
+from string import ascii_lowercase
+
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.tri import Triangulation
@@ -39,6 +42,7 @@ TITLES = {
     "stress_error": ("Estimated error of stress", "stress"),
     "heat_flux_error": ("Estimated error of heat flux", "flux"),
 }
+COLUMNS = 3  # of panels
 FINE_CELLS = 60000  # about as many parts as a page can show
 
 
@@ -67,7 +71,7 @@ def draw_row(result, row, options):
         window = mesh.contact_window(result.contacts(), result.cells, moved)
     figure, panels = layout(len(fields), window)
     inside = np.all((at >= window[0]) & (at <= window[1]), axis=1)
-    for axes, letter, (quantity, given) in zip(panels, "abcdefghij", fields.items()):
+    for axes, letter, (quantity, given) in zip(panels, ascii_lowercase, fields.items()):
         mesh.frame(axes, window, result.units, cut=options.region == "contact")
         scale = magnitude(result, quantity, step)
         if quantity in CELL_FIELDS:
@@ -79,6 +83,8 @@ def draw_row(result, row, options):
             draw_points(axes, grid, fine, values, quantity, scale, inside)
         draw_lines(axes, result.cells, moved)
         title = result.units.label(*TITLES[quantity])
+        if figure.axes[0].get_subplotspec().get_gridspec().ncols > 1:  # room for symbol and unit
+            title = re.sub(r" (?=[$(]|of )", "\n", title, count=1)
         style.panel_title(axes, title, letter if len(fields) > 1 else "")
     share_labels(panels)
     figure.supxlabel(words_below(result, row, options.scale), fontsize=8.5)
@@ -165,7 +171,7 @@ def magnitude(result, quantity, step):
 
 
 def layout(count, window):
-    """Return a figure and its axes: panels side by side, one below the other for wide models."""
+    """Return a figure and its axes: panels in rows, one below the other for wide models."""
     width, height = np.ptp(window, axis=0)
     if width > WIDE * height:
         size = (
@@ -174,22 +180,24 @@ def layout(count, window):
         )
         figure, panels = plt.subplots(count, 1, layout="compressed", figsize=size, squeeze=False)
     else:
-        each = style.DOUBLE_COLUMN / max(count, 2)
-        tall = min((each - 0.9) * height / width, 4.6) + 0.6
-        figure, panels = plt.subplots(
-            1, count, layout="compressed", figsize=(each * count, tall), squeeze=False
-        )
-    return figure, panels.ravel()
+        columns = min(count, COLUMNS)
+        rows = -(-count // columns)
+        each = style.DOUBLE_COLUMN / max(columns, 2)
+        size = (each * columns, rows * (min((each - 0.9) * height / width, 4.6) + 0.8))
+        figure, panels = plt.subplots(rows, columns, layout="compressed", figsize=size, squeeze=False)
+    for axes in panels.ravel()[count:]:
+        axes.remove()
+    return figure, panels.ravel()[:count]
 
 
 def share_labels(panels):
     """Leave out what a panel's neighbour says already."""
-    for axes in panels:
-        place = axes.get_subplotspec()
-        if not place.is_first_col():
+    columns = panels[0].get_subplotspec().get_gridspec().ncols
+    for number, axes in enumerate(panels):
+        if number % columns:
             axes.set_ylabel("")
             axes.tick_params(labelleft=False)
-        if not place.is_last_row():
+        if number + columns < len(panels):
             axes.set_xlabel("")
             axes.tick_params(labelbottom=False)
 

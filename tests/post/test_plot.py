@@ -350,6 +350,26 @@ def test_fields_of_chosen_quantities_only(tabulate, result, tmp_path):
     assert parser().parse_args(spread(["fields", "--quantity", "xx", "yy", "r"])).results == ["r"]
 
 
+def test_titles_of_fields_side_by_side_stand_apart(kept, result):
+    with h5py.File(result, "r+") as file:
+        file["VTKHDF/Points"][:, 0] *= 0.3  # a slender model has narrow panels
+    for quantities in ((), ("--quantity", "stress_error", "heat_flux_error")):
+        (figure,) = kept("fields", result, *quantities)
+        titles = [axes._left_title for axes in figure.axes]
+        boxes = [title.get_window_extent() for title in titles]
+        assert [title.get_text()[:3] for title in titles] == ["(a)", "(b)", "(c)"][: len(boxes)]
+        for left, right in zip(boxes, boxes[1:]):
+            assert right.x0 - left.x1 > 0.1 * figure.dpi
+
+def test_many_fields_are_drawn_in_rows_of_panels_large_enough(kept, result):
+    quantities = ["xx", "yy", "zz", "xy", "von_mises"]
+    (figure,) = kept("fields", result, "--region", "contact", "--quantity", *quantities)
+    boxes = [axes.get_window_extent() for axes in figure.axes]
+    assert len(boxes) == 5 and min(min(box.size) for box in boxes) > figure.dpi  # an inch
+    assert [bool(axes.get_xlabel()) for axes in figure.axes] == [False, False, True, True, True]
+    assert [bool(axes.get_ylabel()) for axes in figure.axes] == [True, False, False, True, False]
+
+
 def test_errors_are_drawn_element_by_element(kept, result, tmp_path):
     chosen = ["stress_error", "heat_flux_error"]
     (figure,) = kept("fields", result, "--load", 540, "--quantity", *chosen)
