@@ -29,14 +29,8 @@ def draw(result, options):
         value, bound, allowed = rows[:, 1], rows[:, 2], rows[:, 3]
         ratio = bound / allowed
         label = f"{name}, target {target_words(allowed[-1], unit)}{uncertain_words(ratio)}"
-        is_below = ratio < SMALLEST
-        any_below = any_below or is_below.any()
-        look = style.SERIES[number % len(style.SERIES)], style.MARKERS[number % len(style.MARKERS)]
-        shown = np.where(is_below, np.nan, ratio)
-        axes.plot(cost, shown, color=look[0], marker=look[1], ms=3.5, lw=0.9, label=label)
-        if is_below.any():
-            foot = np.full(is_below.sum(), SMALLEST)
-            axes.plot(cost[is_below], foot, "v", color=look[0], ms=4 + 2 * number, mfc="none")
+        any_below = any_below or np.any(ratio < SMALLEST)
+        draw_target(axes, cost, ratio, number, label)
         table = {"target": np.full(len(cost), name, dtype=object), "cpu_seconds": cost}
         table |= {"unknowns": rounds["unknowns"][:], "value": value, "bound": bound}
         tables.append(table | {"allowed": allowed})
@@ -45,6 +39,7 @@ def draw(result, options):
         axes.plot([], [], "v", color=style.GREY, ms=4, mfc="none", label="below the scale")
     axes.set_xscale("log")
     axes.set_yscale("log")
+    axes.set_xlim(style.decade(cost))
     for axis in (axes.xaxis, axes.yaxis):
         style.log_ticks(axis, *sorted(axis.get_view_interval()))
     axes.set_xlabel("CPU time of all rounds, s")
@@ -52,6 +47,23 @@ def draw(result, options):
     figure.legend(loc="outside lower center", ncols=2, fontsize=7)
     name = style.file_name(result, "accuracy")
     return style.write(figure, stack_tables(tables), options.out, name)
+
+
+def draw_target(axes, cost, ratio, number, label):
+    """Draw the rounds of one target; its entry in the legend shows a curve, lone points, marks at
+    the foot or nothing, as the picture does."""
+    colour = style.SERIES[number % len(style.SERIES)]
+    is_below = ratio < SMALLEST
+    shown = np.where(is_below, np.nan, ratio)
+    count = np.isfinite(shown).sum()
+    axes.plot(cost, shown, color=colour, marker=style.marker(number), ms=3.5, lw=0.9,
+              ls="solid" if count > 1 else "none", label=label if count else None)
+    if is_below.any():
+        foot = np.full(is_below.sum(), SMALLEST)
+        axes.plot(cost[is_below], foot, "v", color=colour, ms=4 + 2 * number, mfc="none",
+                  label=None if count else label)
+    elif count == 0:
+        axes.plot([], [], alpha=0.0, label=label)
 
 
 def uncertain_words(ratio):
@@ -66,7 +78,7 @@ def uncertain_words(ratio):
 
 def target_words(allowed, unit):
     """Return what the target of the last round allows, in words."""
-    return f"{allowed:.2g} {unit}".rstrip()
+    return f"{style.number_words(float(f'{allowed:.2g}'))} {unit}".rstrip()
 
 
 def targets(result, rounds):

@@ -120,13 +120,20 @@ def log_ticks(axis, low, high):
     axis.set_minor_formatter(NullFormatter())
 
 
+def decade(values):
+    """Return a range about values: a decade at least, so that what is equal looks equal."""
+    low, high = 0.7 * min(values), 1.4 * max(values)
+    short = max(1.0, 10.0 * low / high) ** 0.5
+    return low / short, high * short
+
+
 def number_words(value):
     """Return a number as a label: plain where that is short, else a power of ten."""
-    if 1e-3 <= value < 1e5:
+    if value == 0.0 or 1e-3 <= value < 1e5:
         return f"{value:g}"
     power = int(np.floor(np.log10(value) + 1e-9))
-    factor = round(value / 10.0**power)
-    return f"$10^{{{power}}}$" if factor == 1 else rf"${factor}\times10^{{{power}}}$"
+    factor = f"{value / 10.0**power:.3g}"
+    return f"$10^{{{power}}}$" if factor == "1" else rf"${factor}\times10^{{{power}}}$"
 
 
 def panel_title(axes, words, letter=""):

@@ -43,10 +43,27 @@ class Trade:
             raise UserError(f"{path}: no row has an error: there is nothing to draw")
 
     def panels(self):
+        """Return the columns that hold errors on the scale, the worst of all first."""
+        names = [name for name in self.known() if name not in self.exact()]
+        return sorted(names, key=lambda name: name != "error_worst")
+
+    def exact(self):
+        """Return the columns without a panel: all of their errors are below the scale."""
+        found = {name: [row[name] for row in [*self.rows, self.uncertainty] if row.get(name)]
+                 for name in self.known() if name != "error_worst"}
+        return [name for name, texts in found.items() if all(map(is_below, texts))]
+
+    def known(self):
         """Return the columns that hold errors."""
         names = [name for name in self.rows[0] if name.startswith("error_")]
-        names.sort(key=lambda name: name != "error_worst")
         return [name for name in names if any(row[name] for row in self.rows)]
+
+    def best(self):
+        """Return CPU seconds and worst errors, in percent, of the Pareto-optimal rows; nothing where
+        they make no curve on the scale."""
+        found = sorted((float(row["cpu_seconds"]), percent(row["error_worst"]))
+                       for row in self.rows if row["pareto"] == "1")
+        return found if len(found) > 1 and found[0][1] > SMALLEST else []
 
 
 def draw(path, options):
@@ -65,11 +82,10 @@ def figure_of(trade):
     )  # fmt: skip
     for number, (name, panel) in enumerate(zip(panels, axes.flat, strict=False)):
         draw_panel(panel, trade, name)
-        words = "worst of all" if name == "error_worst" else words_of(name.removeprefix("error_"))
-        style.panel_title(panel, words, ascii_lowercase[number])
+        style.panel_title(panel, quantity_words(name), ascii_lowercase[number])
     for panel in axes.flat[len(panels) :]:
         panel.set_axis_off()
-    times = decade([float(row["cpu_seconds"]) for row in trade.rows])
+    times = style.decade([float(row["cpu_seconds"]) for row in trade.rows])
     for number, panel in enumerate(axes.flat[: len(panels)]):
         panel.set_xlim(*times)
         style.log_ticks(panel.xaxis, *times)
@@ -78,8 +94,16 @@ def figure_of(trade):
             panel.set_xlabel("CPU time, s")
     for line in axes:
         line[0].set_ylabel("error, %")
-    figure.legend(handles=legend(trade), loc="outside lower center", ncols=5)
+    exact = ", ".join(quantity_words(name) for name in trade.exact())
+    exact = exact and f"no panel, all errors below {style.number_words(SMALLEST)} %: {exact}"
+    figure.legend(handles=legend(trade), loc="outside lower center", ncols=5, title=exact,
+                  title_fontsize=7.5)
     return figure
+
+
+def quantity_words(name):
+    """Return what the errors of a column are of."""
+    return "worst of all" if name == "error_worst" else words_of(name.removeprefix("error_"))
 
 
 def draw_panel(axes, trade, name):
@@ -103,16 +127,13 @@ def draw_panel(axes, trade, name):
             ms=3.2 - 0.5 * np.log2(factor), mfc="none" if factor > 1 else None, zorder=3,
         )  # fmt: skip
         if row["default"] == "1":
-            axes.plot(*at, "o", ms=9, mfc="none", mec=style.VERMILION, mew=0.9, zorder=4)
-    if name == "error_worst":
-        best = sorted(
-            (float(row["cpu_seconds"]), percent(row[name]))
-            for row in trade.rows
-            if row["pareto"] == "1"
-        )
+            axes.plot(*at, "o", ms=9, mfc="none", mec=style.VERMILION, mew=0.9, zorder=4,
+                      clip_on=False)  # fmt: skip
+    if name == "error_worst" and trade.best():
+        best = [(seconds, max(error, low)) for seconds, error in trade.best()]
         axes.step(*zip(*best, strict=True), where="post", color=style.BLUE, lw=0.8, zorder=1)
     if trade.uncertainty.get(name) and is_below(trade.uncertainty[name]):
-        axes.text(0.97, 0.03, f"uncertainty below {SMALLEST:g} %", transform=axes.transAxes,
+        axes.text(0.97, 0.03, f"uncertainty below {style.number_words(SMALLEST)} %", transform=axes.transAxes,
                   ha="right", va="bottom", fontsize=6, color=style.GREY)
     elif trade.uncertainty.get(name):
         axes.axhline(percent(trade.uncertainty[name]), color=style.GREY, lw=0.7, ls="--", zorder=1)
@@ -136,14 +157,7 @@ def ordinates(trade, name):
     shown = usual + [value for value in values[True] if value <= BEYOND * max(usual)]
     if trade.uncertainty.get(name) and not is_below(trade.uncertainty[name]):
         shown.append(percent(trade.uncertainty[name]))
-    return decade(shown)
-
-
-def decade(values):
-    """Return a range about values: a decade at least, so that what is equal looks equal."""
-    low, high = 0.7 * min(values), 1.4 * max(values)
-    short = max(1.0, 10.0 * low / high) ** 0.5
-    return low / short, high * short
+    return style.decade(shown)
 
 
 def is_beyond(trade, name):
@@ -191,7 +205,8 @@ def legend(trade):
     if any(row[name] and is_below(row[name]) for row in trade.rows for name in trade.panels()):
         handles.append(handle("below the scale", marker="v"))
     handles.append(handle("deck as written", marker="o", ms=8, mfc="none", color=style.VERMILION))
-    handles.append(handle("Pareto-optimal", ls="-", color=style.BLUE))
+    if trade.best():
+        handles.append(handle("Pareto-optimal", ls="-", color=style.BLUE))
     known = (trade.uncertainty.get(name) for name in trade.panels())
     if any(text and not is_below(text) for text in known):
         handles.append(handle("uncertainty of the reference", ls="--", color=style.GREY))

@@ -809,8 +809,9 @@ def write_trade(path, change=None):
 def test_trade_draws_the_quantities_that_there_are(kept, tmp_path):
     (figure,) = kept("trade", write_trade(tmp_path / "deck.trade.csv"))
     titles = [axes.get_title(loc="left") for axes in figure.axes if axes.lines]
-    assert titles == ["(a) worst of all", "(b) normal force", "(c) peak pressure",
-                      "(d) edge of contact"]  # fmt: skip
+    assert titles == ["(a) worst of all", "(b) normal force", "(c) peak pressure"]
+    words = figure.legends[0].get_title().get_text()
+    assert words == "no panel, all errors below $10^{-6}$ %: edge of contact"
     force = figure.axes[1]
     points = {(line.get_xdata()[0], line.get_ydata()[0]) for line in force.lines
               if len(line.get_xdata()) == 1}  # fmt: skip
@@ -845,7 +846,7 @@ def test_axes_of_a_trade_have_two_labelled_ticks_at_least(draw, tmp_path, factor
 
     draw("trade", write_trade(tmp_path / "deck.trade.csv", scaled))
     found = labelled_ticks(tmp_path / "out" / "deck.trade.svg")
-    assert len(found) == 2 * 4 and min(found) >= 2
+    assert len(found) == 2 * 3 and min(found) >= 2
 
 
 def test_another_method_far_off_does_not_stretch_the_scale_of_a_trade(kept, tmp_path):
@@ -882,9 +883,28 @@ def test_an_uncertainty_below_the_scale_is_told_and_not_drawn_elsewhere(kept, tm
         lines = [line for line in figure.axes[0].lines if line.get_linestyle() == "--"]
         words = [text.get_text() for text in figure.axes[0].texts]
         named = [text.get_text() for text in figure.legends[0].get_texts()]
-        dashed.append((len(lines), "uncertainty below 1e-06 %" in words,
+        dashed.append((len(lines), "uncertainty below $10^{-6}$ %" in words,
                        "uncertainty of the reference" in named))
     assert dashed == [(0, False, False), (1, False, True), (0, True, False)]
+
+
+@pytest.mark.parametrize(("errors", "curves"), [
+    ((0.1, 0.01), 1), ((0.1, 1e-12), 1), ((0.1, ""), 0), ((1e-12, 1e-13), 0),
+])
+def test_a_pareto_curve_is_in_the_legend_where_it_is_in_the_picture(kept, tmp_path, errors, curves):
+    """One row is no curve, and none is seen of rows below the scale."""
+    def optimal(rows):
+        best = [changed(row, error_worst=error or 0.5, pareto="1" if error else "0")
+                for row, error in zip(rows, errors)]
+        return [*best, changed(rows[4], pareto="0"), rows[5]]
+
+    (figure,) = kept("trade", write_trade(tmp_path / "deck.trade.csv", optimal))
+    worst = figure.axes[0]
+    drawn = [line for line in worst.lines if line.get_color() == style.BLUE]
+    assert len(drawn) == curves
+    assert all(line.get_ydata().min() >= worst.get_ylim()[0] for line in drawn)
+    named = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert named.count("Pareto-optimal") == curves
 
 
 def test_trade_leaves_its_table_alone(draw, tmp_path):
@@ -926,3 +946,27 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
     assert (foot.get_marker(), list(foot.get_xdata())) == ("v", [0.4])
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         "CYLINDER normal force, target 0.1 (uncertain in round 1)", "target", "below the scale"]
+
+
+@pytest.mark.parametrize(("bounds", "line", "marker"), [
+    ((4.0, 0.5), "-", "o"), ((np.nan, 0.5), "None", "o"), ((1e-9, 1e-9), "None", "v"),
+    ((np.nan, np.nan), "None", "None"),
+])
+def test_the_legend_of_an_accuracy_shows_what_is_drawn(kept, result, bounds, line, marker):
+    with h5py.File(result, "a") as file:
+        group = file.create_group("accuracy")
+        group["cpu_seconds"], group["unknowns"] = [0.1, 0.3], [100, 900]
+        rows = [[1, 1e4, 340.0 * bound, 340.0] for bound in bounds]
+        group["bounds/CYLINDER/normal_force"] = rows
+    (figure,) = kept("accuracy", result)
+    handle = figure.legends[0].legend_handles[0]
+    seen = handle.get_alpha() != 0.0
+    assert (handle.get_linestyle() if seen else "None") == line
+    assert (handle.get_marker() if seen else "None") == marker
+    assert "target 340" in figure.legends[0].get_texts()[0].get_text()
+
+
+def test_numbers_are_written_as_people_write_them():
+    words = [style.number_words(value) for value in (0.0, 0.05, 340.0, 1900.0, 3.4e7, 1e-6, 2e-6)]
+    assert words == ["0", "0.05", "340", "1900", r"$3.4\times10^{7}$", "$10^{-6}$",
+                     r"$2\times10^{-6}$"]  # fmt: skip
