@@ -110,6 +110,7 @@ class Picture:
             axes.plot(at[shown], values[shown], zorder=3, clip_on=False, **symbols)
         if quantity != "heat_flux":
             edges = self.edges("edges_contact", row)
+            edges = edges[(edges > at[0]) & (edges < at[-1])]  # no fall to zero at the face's end
             order = np.argsort(np.append(at, edges), kind="stable")
             at = np.append(at, edges)[order]
             values = np.append(values, np.zeros(len(edges)))[order]

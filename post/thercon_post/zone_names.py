@@ -1,6 +1,7 @@
 """Names of the regions of a zone diagram, where each has most room."""
 
 import numpy as np
+from matplotlib.patheffects import withStroke
 
 CURVES = ("edge_contact", "edge_stick")
 NO_STATE = -1  # outside the loads and pairs of the result
@@ -40,6 +41,7 @@ def name_regions(picture, axes):
             linespacing=0.95,
             zorder=5,
             fontsize=9,
+            path_effects=[withStroke(linewidth=1.6, foreground="white")],  # apart from the marks
             arrowprops=None if place == at else {"arrowstyle": "-", "lw": 0.6, "shrinkB": 0},
         )
 

@@ -17,7 +17,8 @@ from .zone_names import CURVES, name_regions
 PASSED_OVER = ("increment", "time", "s_edge_contact", "s_edge_stick")
 NAMES = {OPEN: ("I", "open"), SLIP: ("II", "slip"), STICK: ("III", "stick")}
 CURVE_NAMES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
-LINES = {"edge_contact": "solid", "edge_stick": (0, (5, 2))}
+LINES = {"edge_contact": "solid", "edge_stick": (0, (3.5, 1.5))}
+WIDTHS = {"edge_contact": 1.0, "edge_stick": 1.8}  # dashes are seen where they lie on the other
 FURTHER = {"color": style.BLACK, "lw": 0.9, "marker": "d", "ms": 3.4, "mew": 0.7}
 FURTHER_FILLS = {"edge_contact": style.BLACK, "edge_stick": "white"}
 TINTS = ("#FFFFFF", "#DCE8F2", "#FBE9C8")  # of open, slip, stick
@@ -140,7 +141,7 @@ class Picture:
     def draw_edges(self, axes, key):
         """Draw the main curve of sharpened edges, and the other edges of its kind where present."""
         main = self.edges(key)
-        axes.plot(self.abscissa, main, color="black", linestyle=LINES[key], lw=1.2, zorder=3)
+        axes.plot(self.abscissa, main, color="black", linestyle=LINES[key], lw=WIDTHS[key], zorder=3)
         for lonely in np.flatnonzero(is_lonely(main)):
             axes.plot(self.abscissa[lonely], main[lonely], "k_", ms=4, zorder=3)
         others = self.edges(key.replace("edge_", "edges_"))
@@ -160,7 +161,7 @@ class Picture:
         """Return the legend's entries: curves, pair states, digitised figures."""
         shown = [key for key in CURVES if not np.isnan(self.contact[key]).all()]
         handles = [
-            Line2D([], [], color="black", ls=LINES[key], lw=1.2, label=CURVE_NAMES[key])
+            Line2D([], [], color="black", ls=LINES[key], lw=WIDTHS[key], label=CURVE_NAMES[key])
             for key in shown
         ]
         handles += [

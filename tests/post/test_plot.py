@@ -267,6 +267,30 @@ def test_names_of_zones_stand_apart_inside_the_axes_where_there_are_results(kept
         assert not any(box.overlaps(other) for other in boxes[:number])
 
 
+def test_an_edge_of_stick_is_seen_where_it_is_the_edge_of_contact(kept, result):
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        for key in ("edge_{}", "edges_{}"):
+            contact[key.format("stick")][...] = contact[key.format("contact")][()]
+    (figure,) = kept("zones", result)
+    lines = [line for line in figure.axes[0].lines if len(line.get_xdata()) == 15
+             and line.get_linestyle() != "None"]  # fmt: skip
+    assert [line.get_linestyle() for line in lines] == ["-", "--"]
+    assert lines[1].get_linewidth() > 1.5 * lines[0].get_linewidth()
+    handles = figure.legends[0].legend_handles[:2]
+    assert [each.get_linewidth() for each in handles] == [each.get_linewidth() for each in lines]
+
+
+def test_a_traction_does_not_fall_to_zero_at_the_end_of_the_face(kept, result):
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        contact["status"][14], contact["pressure"][14] = 1, 50.0
+        contact["edges_contact"][14] = [contact["s"][-1], np.nan, np.nan, np.nan]
+    (figure,) = kept("profiles", result)
+    curves = [line for line in figure.axes[0].lines if np.all(line.get_ydata() == 50.0)]
+    assert [len(line.get_xdata()) for line in curves] == [21, 21], "the nodes and the line"
+
+
 def test_a_digitised_figure_has_a_legend_entry_for_each_of_its_curves(kept, result, tmp_path):
     figure = tmp_path / "fig3.csv"
     figure.write_text("load,edge_contact,edge_stick\n100,2.5,1\n900,7.5,4\n")
@@ -421,16 +445,25 @@ def test_bodies_whose_ranges_differ_tenfold_have_colour_bars_of_their_own(kept, 
     def bars(figure):
         return [axes.get_title(loc="left") for axes in figure.axes[0].child_axes]
 
+    def are_apart(figure):
+        bars = figure.axes[0].child_axes
+        return all(upper.get_window_extent().y0 - lower._left_title.get_window_extent().y1 > 1.0
+                   for upper, lower in zip(bars, bars[1:]))
+
     with h5py.File(result, "r+") as file:
         data = file["VTKHDF/PointData/temperature"]
         points = len(file["VTKHDF/Points"])
         upper = np.tile(np.arange(points) < points // 2, 15)
         given = data[...]
+        file["VTKHDF/Points"][:, 0] *= 2.0  # the bars of a square model are short
         for factor, titles in ((0.2, [""]), (0.01, ["body 1", "body 2"]), (0.0, [""])):
             data[...] = np.where(upper, given, 20.0 + factor * given)
             file.flush()
             (figure,) = kept("fields", result, "--quantity", "temperature")
             assert bars(figure) == titles
+            if factor == 0.01:
+                (figure,) = kept("fields", result, "--quantity", "temperature", "xx", "yy")
+                assert are_apart(figure)
         file["VTKHDF/CellData/stress_error"][...] = np.tile(np.where(np.arange(80) < 40, 1.0, 50.0)
                                                             * np.linspace(0.0, 1.0, 80), 15)
         file.flush()

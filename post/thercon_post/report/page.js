@@ -87,7 +87,7 @@ function legend(out, entries, width, left, top) {
       const room = 38 + 7 * entry.name.length;
       if (x > left && x + room > width) { x = left; y += 18; }
       out.push(entry.shape ? `<path d="${entry.shape(x + 12, y - 4)}" fill="${entry.fill}" stroke="${entry.colour}"/>` :
-         `<path d="M${x} ${y - 4}h24" stroke="${entry.colour}" stroke-width="1.8" stroke-dasharray="${entry.dash || ''}"/>`);
+         `<path d="M${x} ${y - 4}h24" stroke="${entry.colour}" stroke-width="${entry.width || 1.6}" stroke-dasharray="${entry.dash || ''}"/>`);
       out.push(`<text x="${x + 30}" y="${y}">${escaped(entry.name)}</text>`);
       x += room + 10;
    }
@@ -151,7 +151,7 @@ function drawZones() {
       ].filter(cloud => cloud.points.length),
       lines: [
          {x: abscissa, y: c.main.contact, colour: '#000', name: 'edge of contact'},
-         {x: abscissa, y: c.main.stick, colour: '#000', dash: '6 3', name: 'edge of stick'},
+         {x: abscissa, y: c.main.stick, colour: '#000', dash: '6 3', width: 2.6, name: 'edge of stick'},
       ].filter(line => finite(line.y).length),
       caption: `Zones. Each symbol is a contact point at one increment, except diamonds. ${part()}`,
    });
