@@ -9,6 +9,8 @@ from . import style
 from .cells import curves, outlines
 from .style import plt
 
+SMALLER = 0.8  # of the model: a larger close-up would show nothing new
+LEGEND_WIDTH = 4.6  # inches
 MOST_MARKED = 80  # contact nodes are marked one by one up to here
 # The slave's band and nodes are wider than the master's, which lie upon them where the faces touch.
 SLAVE = {"color": style.VERMILION, "lw": 3.4, "ls": "solid", "marker": "o", "ms": 6.0}
@@ -20,21 +22,23 @@ def draw(result, options):
     cells = result.cells
     contacts = result.contacts() if result.contact_names else []
     model = bounds_of(cells.points)
-    if contacts:
-        window = contact_window(contacts, cells, cells.points)
-        figure, (whole, close) = two_panels(model, window)
-        panels = [(whole, model, False), (close, window, True)]
+    near = contact_window(contacts, cells, cells.points) if contacts else model
+    has_close_up = np.max(np.ptp(near, axis=0)) < SMALLER * np.max(np.ptp(model, axis=0))
+    if has_close_up:
+        figure, (whole, close) = two_panels(model, near)
+        panels = [(whole, model, False), (close, near, True)]
     else:
-        size = (style.SINGLE_COLUMN, style.SINGLE_COLUMN)
+        width, height = np.ptp(model, axis=0)
+        size = (LEGEND_WIDTH, min(LEGEND_WIDTH, (LEGEND_WIDTH - 0.7) * height / width + 1.2))
         figure, whole = plt.subplots(layout="constrained", figsize=size)
-        panels = [(whole, model, False)]
+        panels = [(whole, model, True)]
     for axes, window, nodes in panels:
         draw_elements(axes, cells, nodes)
         for contact in contacts:
             draw_faces(axes, cells, result.faces(contact), contact, nodes)
-        frame(axes, window, result.units, cut=nodes)
-    if contacts:
-        mark_window(whole, close, panels[1][1])
+        frame(axes, window, result.units, cut=nodes and has_close_up)
+    if has_close_up:
+        mark_window(whole, close, near)
         style.panel_title(whole, "", "a")
         style.panel_title(close, "", "b")
     figure.legend(
@@ -49,18 +53,18 @@ def draw(result, options):
 
 def two_panels(model, window):
     """Return a figure and two axes: side by side for a tall model, stacked for a wide one."""
-    width, height = np.ptp(model, axis=0)
-    if height >= width:
-        tall = float(np.clip(height / width, 1.0, 4.0))
+    shares = [float(np.divide(*np.ptp(box, axis=0))) for box in (model, window)]
+    if shares[0] <= 1.0:
+        height = min(3.1, (style.DOUBLE_COLUMN * 0.8 - 1.7) / sum(shares))
         return plt.subplots(
             1,
             2,
             layout="constrained",
-            figsize=(style.DOUBLE_COLUMN * 0.8, 4.3),
-            gridspec_kw={"width_ratios": [1.0 / tall + 0.12, 1.0]},
+            figsize=(max(height * sum(shares) + 1.7, LEGEND_WIDTH), height + 1.2),
+            gridspec_kw={"width_ratios": [max(shares[0], 0.25) + 0.12, shares[1]]},
         )
     wide = style.DOUBLE_COLUMN * 0.7
-    heights = [max(tall / wide, 0.1) for wide, tall in (np.ptp(model, axis=0), np.ptp(window, axis=0))]
+    heights = [max(1.0 / share, 0.1) for share in shares]
     return plt.subplots(
         2,
         1,
@@ -181,8 +185,10 @@ def legend_handles(cells, contacts):
         for k, name in enumerate(body_names(cells))
     ]
     if contacts:
+        is_marked = any(len(contact["slave_node"]) <= MOST_MARKED for contact in contacts)
+        plain = {} if is_marked else {"marker": None}
         handles += [
-            Line2D([], [], mfc="white", label=f"contact face, {name}", **looks)
+            Line2D([], [], mfc="white", label=f"contact face, {name}", **(looks | plain))
             for name, looks in (("slave", SLAVE), ("master", MASTER))
         ]
     return handles

@@ -158,6 +158,7 @@ def test_the_slave_face_is_seen_below_the_master_face_where_both_touch(kept, res
         points = file["VTKHDF/Points"]
         points[nodes["slave_node"]] = points[nodes["master_node"], :]
     (figure,) = kept("mesh", result)
+    assert len(figure.axes) == 2
     for axes in figure.axes:
         faces = [each for each in axes.collections if each.get_zorder() == 3]
         slave, master = (each.get_linewidth()[0] for each in faces)
@@ -179,6 +180,24 @@ def test_the_close_up_of_a_wide_model_is_named_clear_of_its_frame(kept, result):
     assert 0.0 < gap < 5.0
     whole, close = (axes.get_tightbbox() for axes in figure.axes)
     assert 0.0 < whole.y0 - close.y1 < 0.5 * figure.dpi
+
+
+@pytest.mark.parametrize("columns", [10, 41])
+def test_a_close_up_of_the_whole_model_is_left_out(kept, tmp_path, columns):
+    path = tmp_path / "flat.vtkhdf"
+    write_result(path, columns=columns)
+    with h5py.File(path, "r+") as file:
+        file["contact/CYLINDER/status"][...] = 1
+        file["VTKHDF/Points"][:, 1] *= 0.1
+    (figure,) = kept("mesh", path)
+    (axes,) = figure.axes
+    assert not axes.texts and not axes.get_title(loc="left")
+    marked = [line.get_marker() for line in axes.lines]
+    assert marked == (["o", "s"] if columns == 10 else [])  # 83 nodes are too many
+    named = [line.get_marker() for line in figure.legends[0].get_lines()]
+    assert named == (marked or ["None", "None"])
+    gap = axes.get_tightbbox().y0 - figure.legends[0].get_window_extent().y1
+    assert 0.0 < gap < 0.5 * figure.dpi
 
 
 @pytest.mark.parametrize("loads", [[540], [180, 360, 540]])
