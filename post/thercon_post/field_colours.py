@@ -83,7 +83,7 @@ def draw_bar(axes, filled, levels, bodies, place):
     bar.set_ticks(levels[steps % every == 0])
     if count > 1:
         words = ", ".join(str(body) for body in sorted(bodies))
-        bar.ax.set_title(f"bod{'y' if len(bodies) == 1 else 'ies'} {words}", fontsize=7, pad=3,
+        bar.ax.set_title(f"bod{'y' if len(bodies) == 1 else 'ies'} {words}", fontsize=7, pad=6,
                          loc="left")
 
 
@@ -96,4 +96,4 @@ def bar_place(axes, number, count):
         return [1.0 + thick, 0.0, thick, 1.0]
     if width > WIDE * height:
         return [1.0 + thick + number * (thick + 0.12), 0.0, thick, 0.85]
-    return [1.0 + thick, (count - 1 - number) / count, thick, 0.74 / count]
+    return [1.0 + thick, (count - 1 - number) / count, thick, 0.7 / count]

@@ -184,7 +184,9 @@ def layout(count, window):
         rows = -(-count // columns)
         each = style.DOUBLE_COLUMN / max(columns, 2)
         size = (each * columns, rows * (min((each - 0.9) * height / width, 4.6) + 0.8))
-        figure, panels = plt.subplots(rows, columns, layout="compressed", figsize=size, squeeze=False)
+        figure, panels = plt.subplots(
+            rows, columns, layout="compressed", figsize=size, squeeze=False
+        )
     for axes in panels.ravel()[count:]:
         axes.remove()
     return figure, panels.ravel()[:count]

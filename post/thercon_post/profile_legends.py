@@ -14,6 +14,7 @@ QUANTITY_LINES = {
     "mu_p": (0, (1.2, 1.2)),
     "heat_flux": "solid",
 }
+MU_P_WIDTH = 1.4  # its dots are seen where friction lies on them
 
 COLUMNS = 2  # of the legend
 LEGEND_LINE = 0.16  # height of a line of the legend, in inches
@@ -51,6 +52,7 @@ def quantity_handles(picture, quantities):
             [],
             color="black",
             ls=QUANTITY_LINES[quantity],
+            **({"lw": MU_P_WIDTH} if quantity == "mu_p" else {}),
             marker=markers.get(quantity),
             mfc="white" if quantity == "shear" else "black",
             label=names[quantity],

@@ -114,6 +114,8 @@ class Picture:
             order = np.argsort(np.append(at, edges), kind="stable")
             at = np.append(at, edges)[order]
             values = np.append(values, np.zeros(len(edges)))[order]
+        if quantity == "mu_p":
+            looks["lw"] = profile_legends.MU_P_WIDTH
         for sign in (1, -1) if both else (1,):
             axes.plot(at, sign * values, zorder=2, **looks)
         return drawn

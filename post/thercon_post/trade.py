@@ -59,8 +59,8 @@ class Trade:
         return [name for name in names if any(row[name] for row in self.rows)]
 
     def best(self):
-        """Return CPU seconds and worst errors, in percent, of the Pareto-optimal rows; nothing where
-        they make no curve on the scale."""
+        """Return CPU seconds and worst errors, in percent, of the Pareto-optimal rows; nothing
+        where they make no curve on the scale."""
         found = sorted((float(row["cpu_seconds"]), percent(row["error_worst"]))
                        for row in self.rows if row["pareto"] == "1")
         return found if len(found) > 1 and found[0][1] > SMALLEST else []
@@ -133,8 +133,9 @@ def draw_panel(axes, trade, name):
         best = [(seconds, max(error, low)) for seconds, error in trade.best()]
         axes.step(*zip(*best, strict=True), where="post", color=style.BLUE, lw=0.8, zorder=1)
     if trade.uncertainty.get(name) and is_below(trade.uncertainty[name]):
-        axes.text(0.97, 0.03, f"uncertainty below {style.number_words(SMALLEST)} %", transform=axes.transAxes,
-                  ha="right", va="bottom", fontsize=6, color=style.GREY)
+        words = f"uncertainty below {style.number_words(SMALLEST)} %"
+        axes.text(0.97, 0.03, words, transform=axes.transAxes, ha="right", va="bottom", fontsize=6,
+                  color=style.GREY)  # fmt: skip
     elif trade.uncertainty.get(name):
         axes.axhline(percent(trade.uncertainty[name]), color=style.GREY, lw=0.7, ls="--", zorder=1)
     axes.set_xscale("log")

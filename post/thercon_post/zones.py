@@ -141,7 +141,8 @@ class Picture:
     def draw_edges(self, axes, key):
         """Draw the main curve of sharpened edges, and the other edges of its kind where present."""
         main = self.edges(key)
-        axes.plot(self.abscissa, main, color="black", linestyle=LINES[key], lw=WIDTHS[key], zorder=3)
+        looks = {"color": "black", "linestyle": LINES[key], "lw": WIDTHS[key]}
+        axes.plot(self.abscissa, main, zorder=3, **looks)
         for lonely in np.flatnonzero(is_lonely(main)):
             axes.plot(self.abscissa[lonely], main[lonely], "k_", ms=4, zorder=3)
         others = self.edges(key.replace("edge_", "edges_"))

@@ -300,6 +300,18 @@ def test_an_edge_of_stick_is_seen_where_it_is_the_edge_of_contact(kept, result):
     assert [each.get_linewidth() for each in handles] == [each.get_linewidth() for each in lines]
 
 
+def test_the_bound_of_friction_is_seen_where_friction_lies_on_it(kept, result):
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        contact["shear"][...] = -FRICTION * contact["pressure"][()]
+    (figure,) = kept("profiles", result)
+    handles = zip(figure.legends[0].get_texts(), figure.legends[0].legend_handles)
+    width = {text.get_text(): handle.get_linewidth() for text, handle in handles}
+    assert width[r"$\mu p$"] > 1.5 * width[r"friction $-\tau$"]
+    drawn = [line.get_linewidth() for line in figure.axes[0].lines]
+    assert drawn.count(width[r"$\mu p$"]) == 1
+
+
 def test_a_traction_does_not_fall_to_zero_at_the_end_of_the_face(kept, result):
     with h5py.File(result, "r+") as file:
         contact = file["contact/CYLINDER"]
@@ -466,6 +478,9 @@ def test_bodies_whose_ranges_differ_tenfold_have_colour_bars_of_their_own(kept, 
 
     def are_apart(figure):
         bars = figure.axes[0].child_axes
+        for bar in bars:
+            ticks = [label.get_window_extent().y1 for label in bar.get_yticklabels()]
+            assert bar._left_title.get_window_extent().y0 > max(ticks) - 0.01 * figure.dpi
         return all(upper.get_window_extent().y0 - lower._left_title.get_window_extent().y1 > 1.0
                    for upper, lower in zip(bars, bars[1:]))
 
