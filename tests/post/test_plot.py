@@ -687,7 +687,8 @@ def test_axes_have_the_units_of_the_file_or_none(tmp_path, units):
     with Result(path) as opened:
         contact = opened.contact("CYLINDER")
         figure = profiles.Picture(opened, contact, [8], options).draw([])
-        labels = [axes.get_ylabel() for axes in figure.axes] + [figure.axes[-1].get_xlabel().split("\n")[0]]
+        labels = [axes.get_ylabel() for axes in figure.axes]
+        labels.append(figure.axes[-1].get_xlabel().split("\n")[0])
         style.plt.close(figure)
         load = opened.units.load_label(opened.load_label)
     if units:
