@@ -61,9 +61,11 @@ contains
       type(refined_model_type), intent(in) :: refined
       type(contact_state_type), intent(in) :: contact    !! state of the old contact points
       real(dp) :: shared(2, refined%division%nodes)
+      logical :: has_friction(size(self%contact_state))
       integer :: k, old
 
       shared = slave_forces(self, refined)
+      has_friction = refined%points%has_friction()
       do k = 1, size(self%contact_state)
          old = refined%old_point(k)
          if (old == 0) cycle
@@ -72,7 +74,8 @@ contains
             self%direction(k) = contact%direction(old)
             self%gap(k) = contact%gap(old)
             self%force(k) = contact%force(old) + dot_product(on_slave, points%normal(:, k))
-            self%shear_force(k) = contact%shear_force(old) - &
+            ! Normals of new contact points may differ from those of old ones.
+            if (has_friction(k)) self%shear_force(k) = contact%shear_force(old) - &
                dot_product(on_slave, points%tangent(:, k))
          end associate
       end do

@@ -105,6 +105,15 @@ def test_friction_that_a_held_contact_point_lacks_is_in_the_bound(tmp_path, pair
     assert 0.01 * normal / sides < true <= bound
 
 
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_without_friction_the_shear_force_is_exact(tmp_path, pairing):
+    """Normals of the finer mesh differ on a curved face: nothing of the pressure is friction."""
+    changes = {"NAME=FACE": f"NAME=FACE, PAIRING={pairing}"}
+    deck = bare(HERTZ, tmp_path, "smooth.inp", ["*REFINE, LEVELS=1, SURFACE=CURVED"], changes)
+    value, bound, *_ = errors(solve(deck), "FACE")["shear_force"]
+    assert value == bound == 0.0
+
+
 @pytest.mark.parametrize("corner", [600, 720, 800])
 def test_a_corner_of_an_amplitude_is_no_scatter(tmp_path, corner):
     """Heated to a corner inside the step and cooled from there on: the bounds are as large as those of a
