@@ -29,6 +29,7 @@ from program import CYLINDER, run
 
 from thercon_post.comparison import from_frd, print_file
 from thercon_post.comparison.numbers import fortran_number
+from thercon_post.comparison.report import percent
 from thercon_post.comparison.template import read_template
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "compare.md"
@@ -338,3 +339,8 @@ def test_the_program_itself_gives_the_exit_status(result, tmp_path):
     assert (tmp_path / "case.compare.png").stat().st_size > 0
     wrong = subprocess.run([*program, "--only", "presure"], **end)
     assert wrong.returncode == 2 and wrong.stderr.startswith("compare: error: ")
+
+
+@pytest.mark.parametrize(("part", "words"), [(12.3456, "1230 %"), (0.012345, "1.23 %"), (0.0, "0 %")])
+def test_parts_are_written_in_per_cent_without_a_power_of_ten(part, words):
+    assert percent(part) == words

@@ -69,11 +69,16 @@ def row(name, group, all_keys):
         differences = [f"{outside} states", ""]
     else:
         largest = worst.difference[k]
-        share = f"{100.0 * largest / worst.largest:.3g} %" if worst.largest > 0.0 else "-"
+        share = percent(largest / worst.largest) if worst.largest > 0.0 else "-"
         differences = [f"{largest:.4g}", share]
     where = place(worst, k) if worst.difference[k] > 0.0 else ""
     values = [f"{worst.a[k]:.7g}", f"{worst.b[k]:.7g}"]
     return (*head, *differences, *values, outside, verdict, where)
+
+
+def percent(part):
+    """Return a part in per cent, to three digits and without a power of ten."""
+    return f"{float(f'{100.0 * part:.3g}'):g} %"
 
 
 def place(block, k):
