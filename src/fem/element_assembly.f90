@@ -39,6 +39,7 @@ contains
       associate (matrix => self%matrix, start => self%start, neighbour => self%neighbour)
          matrix%row_count = rows*nodes
          matrix%column_count = columns*nodes
+         matrix%in_pairs = rows == 2 .and. columns == 2
          allocate (matrix%row_start(rows*nodes + 1), matrix%column(rows*columns*size(neighbour)))
          allocate (matrix%value(rows*columns*size(neighbour)), source=0.0_dp)
          matrix%row_start(1) = 1
@@ -61,17 +62,18 @@ contains
       class(element_assembly_type), intent(inout) :: self
       integer, intent(in) :: nodes(:)                !! (n) nodes of the element
       real(dp), intent(in) :: block(:, :)            !! (rows*n, columns*n)
-      integer :: a, b, k, p, q
+      integer :: a, b, k, p, place(size(nodes)), q
 
       associate (rows => self%rows, columns => self%columns)
          do p = 1, size(nodes)
             do k = self%start(nodes(p)), self%start(nodes(p) + 1) - 1
                self%position(self%neighbour(k)) = columns*(k - self%start(nodes(p)))
             end do
+            place = self%position(nodes)
             do a = 1, rows
                associate (first => self%matrix%row_start(rows*(nodes(p) - 1) + a) - 1)
                   do q = 1, size(nodes)
-                     k = first + self%position(nodes(q))
+                     k = first + place(q)
                      do b = 1, columns
                         self%matrix%value(k + b) = self%matrix%value(k + b) + &
                            block(rows*(p - 1) + a, columns*(q - 1) + b)
