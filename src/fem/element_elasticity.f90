@@ -6,6 +6,7 @@
 !> in place of that at each point (B-bar: Hughes, Int. J. Num. Meth. Eng. 15 (1980) 1413), so that
 !> nearly incompressible materials do not lock them.
 module element_elasticity
+   use blas_lapack, only: dgemm
    use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4
    use kinds, only: dp
    use quadrature, only: integration_rule, point_count
@@ -33,25 +34,20 @@ contains
       real(dp), intent(in) :: e(:, :, :)
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
       real(dp) :: k(2*element_node_count(kind), 2*element_node_count(kind)) !! [stress length]
-      real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
-      real(dp) :: rows(2*element_node_count(kind), 4), weighted(4, 4), stress(4, 2)
-      integer :: g, i, j
+      real(dp) :: b(4, point_count(kind), 2*element_node_count(kind)), volumes(point_count(kind))
+      real(dp) :: stress(4, point_count(kind), 2*element_node_count(kind)), weighted(4, 4)
+      integer :: g, j
 
       call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
-      k = 0.0_dp
       do g = 1, size(volumes)
          weighted = volumes(g)*e(:, :, min(g, size(e, 3)))
-         rows = transpose(b(:, :, g))
-         do j = 1, size(k, 1), 2
-            stress = matmul(weighted, b(:, j:j + 1, g))
-            do i = 1, j + 1
-               k(i, j) = k(i, j) + rows(i, 1)*stress(1, 1) + rows(i, 2)*stress(2, 1) + &
-                  rows(i, 3)*stress(3, 1) + rows(i, 4)*stress(4, 1)
-               k(i, j + 1) = k(i, j + 1) + rows(i, 1)*stress(1, 2) + rows(i, 2)*stress(2, 2) + &
-                  rows(i, 3)*stress(3, 2) + rows(i, 4)*stress(4, 2)
-            end do
+         do j = 1, size(k, 1)
+            stress(:, g, j) = weighted(:, 1)*b(1, g, j) + weighted(:, 2)*b(2, g, j) + &
+               weighted(:, 3)*b(3, g, j) + weighted(:, 4)*b(4, g, j)
          end do
       end do
+      call dgemm('T', 'N', size(k, 1), size(k, 1), 4*size(volumes), 1.0_dp, b, 4*size(volumes), &
+         stress, 4*size(volumes), 0.0_dp, k, size(k, 1))
       do j = 2, size(k, 1)
          k(j, :j - 1) = k(:j - 1, j)
       end do
@@ -68,7 +64,7 @@ contains
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
       !> (2 nodes, nodes) [stress length^2/temperature]
       real(dp) :: load(2*element_node_count(kind), element_node_count(kind))
-      real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
+      real(dp) :: b(4, point_count(kind), 2*element_node_count(kind)), volumes(point_count(kind))
       real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
       real(dp) :: psi(element_node_count(kind)), force(2*element_node_count(kind))
       integer :: g, q
@@ -78,7 +74,7 @@ contains
       load = 0.0_dp
       do g = 1, size(volumes)
          psi = element_shape(kind, points(:, g))
-         force = volumes(g)*matmul(beta(:, min(g, size(beta, 2))), b(:, :, g))
+         force = volumes(g)*matmul(beta(:, min(g, size(beta, 2))), b(:, g, :))
          do q = 1, size(psi)
             load(:, q) = load(:, q) + force*psi(q)
          end do
@@ -93,13 +89,13 @@ contains
       real(dp), intent(in) :: stress(4)           !! xx, yy, zz, xy [stress]
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
       real(dp) :: force(2*element_node_count(kind))   !! (2 nodes) [force]
-      real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
+      real(dp) :: b(4, point_count(kind), 2*element_node_count(kind)), volumes(point_count(kind))
       integer :: g
 
       call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
       force = 0.0_dp
       do g = 1, size(volumes)
-         force = force - volumes(g)*matmul(stress, b(:, :, g))
+         force = force - volumes(g)*matmul(stress, b(:, g, :))
       end do
    end function element_stress_force
 
@@ -129,10 +125,10 @@ contains
       integer, intent(in) :: kind, plane
       real(dp), intent(in) :: coordinates(:, :), displacement(:, :)
       real(dp) :: dilatation
-      real(dp) :: b(4, 2*element_node_count(kind), point_count(kind)), volumes(point_count(kind))
+      real(dp) :: b(4, point_count(kind), 2*element_node_count(kind)), volumes(point_count(kind))
 
       call point_strain_matrices(kind, plane, coordinates, 1.0_dp, b, volumes)
-      dilatation = dot_product(mean_dilatation(b, volumes), reshape(displacement, [size(b, 2)]))
+      dilatation = dot_product(mean_dilatation(b, volumes), reshape(displacement, [size(b, 3)]))
    end function dilatation_of
 
    !> B at all integration points, with the mean dilatation where the element takes it, and the
@@ -141,14 +137,14 @@ contains
       integer, intent(in) :: kind, plane
       real(dp), intent(in) :: coordinates(:, :), thickness
       real(dp), intent(out) :: b(:, :, :), volumes(:)
-      real(dp) :: mean(size(b, 2))
+      real(dp) :: mean(size(b, 3))
       integer :: g
 
       call point_strain_matrices(kind, plane, coordinates, thickness, b, volumes)
       if (.not. has_mean_dilatation(kind, plane)) return
       mean = mean_dilatation(b, volumes)
       do g = 1, size(volumes)
-         call set_dilatation(mean, b(:, :, g))
+         call set_dilatation(mean, b(:, g, :))
       end do
    end subroutine strain_matrices
 
@@ -161,7 +157,7 @@ contains
 
       call integration_rule(kind, points, weights)
       do g = 1, size(weights)
-         call strain_matrix(kind, plane, coordinates, thickness, points(:, g), b(:, :, g), &
+         call strain_matrix(kind, plane, coordinates, thickness, points(:, g), b(:, g, :), &
             volumes(g))
       end do
       volumes = volumes*weights
@@ -190,12 +186,12 @@ contains
    !> Mean of eps_xx + eps_yy + eps_zz over the volume, per degree of freedom.
    pure function mean_dilatation(b, volumes) result(mean)
       real(dp), intent(in) :: b(:, :, :), volumes(:)
-      real(dp) :: mean(size(b, 2))
+      real(dp) :: mean(size(b, 3))
       integer :: g
 
       mean = 0.0_dp
       do g = 1, size(volumes)
-         mean = mean + volumes(g)*sum(b(:3, :, g), dim=1)
+         mean = mean + volumes(g)*sum(b(:3, g, :), dim=1)
       end do
       mean = mean/sum(volumes)
    end function mean_dilatation

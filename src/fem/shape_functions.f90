@@ -147,15 +147,24 @@ contains
       real(dp), intent(out) :: gradients(:, :)    !! (2, nodes) d psi/dx, d psi/dy [1/length]
       real(dp), intent(out) :: jacobian           !! d(x, y)/d(xi, eta) [length^2]
       real(dp) :: slope(2, element_node_count(kind)), map(2, 2)
+      integer :: q
 
       slope = local_gradients(kind, point)
-      map = matmul(slope, transpose(coordinates))
+      map = 0.0_dp
+      do q = 1, size(slope, 2)
+         map(:, 1) = map(:, 1) + slope(:, q)*coordinates(1, q)
+         map(:, 2) = map(:, 2) + slope(:, q)*coordinates(2, q)
+      end do
       jacobian = map(1, 1)*map(2, 2) - map(1, 2)*map(2, 1)
-      gradients = 0.0_dp
-      ! An element without area, which callers find by its Jacobian.
-      if (abs(jacobian) <= 0.0_dp) return
-      gradients(1, :) = (map(2, 2)*slope(1, :) - map(1, 2)*slope(2, :))/jacobian
-      gradients(2, :) = (map(1, 1)*slope(2, :) - map(2, 1)*slope(1, :))/jacobian
+      if (abs(jacobian) <= 0.0_dp) then
+         ! An element without area, which callers find by its Jacobian.
+         gradients = 0.0_dp
+         return
+      end if
+      do q = 1, size(slope, 2)
+         gradients(1, q) = (map(2, 2)*slope(1, q) - map(1, 2)*slope(2, q))/jacobian
+         gradients(2, q) = (map(1, 1)*slope(2, q) - map(2, 1)*slope(1, q))/jacobian
+      end do
    end subroutine element_gradients
 
    !> Shape functions of a side: first corner, midside node if there is one, second corner.
