@@ -28,35 +28,37 @@ contains
       c = product_of(transposed(s), product_of(a, t, .false.), .false.)
    end function between_spaces
 
-   !> A B, or its lower triangle.
+   !> A B; or its lower triangle, where the columns of B ascend in each row.
    pure function product_of(a, b, only_lower) result(c)
       type(sparse_matrix_type), intent(in) :: a, b
       logical, intent(in) :: only_lower
       type(sparse_matrix_type) :: c
-      integer :: columns(b%column_count), i, k, l, n, row_of(b%column_count)
+      integer :: columns(b%column_count), i, j, k, l, n, row_of(b%column_count)
       real(dp) :: row(b%column_count)
 
       c%row_count = a%row_count
       c%column_count = b%column_count
-      allocate (c%row_start(a%row_count + 1))
+      allocate (c%row_start(a%row_count + 1), c%column(0), c%value(0))
       c%row_start(1) = 1
       row_of = 0
       do i = 1, a%row_count
-         call find_columns(a, b, i, only_lower, row_of, columns, n)
-         c%row_start(i + 1) = c%row_start(i) + n
-      end do
-      allocate (c%column(c%row_start(a%row_count + 1) - 1), c%value(c%row_start(a%row_count + 1) &
-         - 1))
-      row_of = 0
-      row = 0.0_dp
-      do i = 1, a%row_count
-         call find_columns(a, b, i, only_lower, row_of, columns, n)
+         n = 0
          do k = a%row_start(i), a%row_start(i + 1) - 1
             ! A loop: sections with these subscripts would take memory for each.
             do l = b%row_start(a%column(k)), b%row_start(a%column(k) + 1) - 1
-               row(b%column(l)) = row(b%column(l)) + a%value(k)*b%value(l)
+               j = b%column(l)
+               if (only_lower .and. j > i) exit
+               if (row_of(j) /= i) then
+                  row_of(j) = i
+                  row(j) = 0.0_dp
+                  n = n + 1
+                  columns(n) = j
+               end if
+               row(j) = row(j) + a%value(k)*b%value(l)
             end do
          end do
+         c%row_start(i + 1) = c%row_start(i) + n
+         if (c%row_start(i + 1) > size(c%column)) call resize(c, 2*c%row_start(i + 1))
          associate (first => c%row_start(i), last => c%row_start(i + 1) - 1)
             c%column(first:last) = columns(:n)
             ! Most rows come in order, and sorting takes memory for each.
@@ -66,34 +68,25 @@ contains
                c%value(k) = row(c%column(k))
             end do
          end associate
-         do k = a%row_start(i), a%row_start(i + 1) - 1
-            do l = b%row_start(a%column(k)), b%row_start(a%column(k) + 1) - 1
-               row(b%column(l)) = 0.0_dp
-            end do
-         end do
       end do
+      call resize(c, c%row_start(a%row_count + 1) - 1)
    end function product_of
 
-   !> The columns of a row of A B, in the order in which they come.
-   pure subroutine find_columns(a, b, i, only_lower, row_of, columns, n)
-      type(sparse_matrix_type), intent(in) :: a, b
-      integer, intent(in) :: i
-      logical, intent(in) :: only_lower
-      integer, intent(inout) :: row_of(:)           ! (columns) row that a column was last found in
-      integer, intent(inout) :: columns(:)          ! the first n are set
-      integer, intent(out) :: n
-      integer :: k, l
+   !> Makes room for a number of entries, and keeps those that it has.
+   pure subroutine resize(matrix, entries)
+      type(sparse_matrix_type), intent(inout) :: matrix
+      integer, intent(in) :: entries
+      integer, allocatable :: column(:)
+      real(dp), allocatable :: value(:)
+      integer :: n
 
-      n = 0
-      do k = a%row_start(i), a%row_start(i + 1) - 1
-         do l = b%row_start(a%column(k)), b%row_start(a%column(k) + 1) - 1
-            if (row_of(b%column(l)) == i .or. (only_lower .and. b%column(l) > i)) cycle
-            row_of(b%column(l)) = i
-            n = n + 1
-            columns(n) = b%column(l)
-         end do
-      end do
-   end subroutine find_columns
+      n = min(entries, size(matrix%column))
+      allocate (column(entries), value(entries))
+      column(:n) = matrix%column(:n)
+      value(:n) = matrix%value(:n)
+      call move_alloc(column, matrix%column)
+      call move_alloc(value, matrix%value)
+   end subroutine resize
 
    !> A^T.
    pure function transposed(a) result(b)
