@@ -22,7 +22,7 @@ PARTS = {
         "increment_checks:check_heat", "increment_solution:conduct",
         "increment_solution:load_heat", "reduced_bodies:reduce_heat",
         "reduced_bodies:set_film", "load_integrals:unit_heat", "loads:card_heat",
-        "loads:film_matrix", "loads:heat_load", "point_properties:conductivity_in",
+        "loads:film_matrix", "loads:heat_load", "unit_loads:location_heat", "point_properties:conductivity_in",
         "scheme_properties", "scheme_start", "thermal_matrix",
     },
     "strain by heat": {
@@ -59,7 +59,7 @@ PARTS = {
     "paths to a contact zone": {"lemke_path"},
     "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",
                                   "unconstrained_motions"},
-    "films": {"films", "loads:film_matrix", "loads:integrate_films"},
+    "films": {"films", "loads:film_matrix", "unit_loads:film_matrix", "unit_loads:film_sides"},
     "estimated errors": {
         "companion_steps", "divided_faces", "doubled_increments", "error_estimator",
         "interface_quantities", "linked_relaxation", "mesh_bounds", "refined_model", "refined_points", "refinement_error", "value_courses",
