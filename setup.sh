@@ -311,7 +311,10 @@ esac
 case $command in
    cylinder) run_cylinder ;;
    test) run_test ;;
-   build) run_build ;;
+   build)
+      run_build
+      say "the program is build/release/thercon"
+      ;;
    lint) run_lint "$@" ;;
    coverage) run_coverage ;;
    verify) run_verify ;;

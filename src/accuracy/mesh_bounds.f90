@@ -13,7 +13,7 @@ module mesh_bounds
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
-   use contact_states, only: contact_slip, contact_stick
+   use contact_states, only: contact_open, contact_slip, contact_stick
    use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner
    use kinds, only: dp
    use quantity_types, only: find_quantity
@@ -54,7 +54,9 @@ contains
       real(dp) :: known_scatter(size(estimated)), length, locked, of_contact, shift
       integer :: q
 
-      known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter))
+      ! Without contact no edge passes a node; its end is a corner of the course, and no scatter.
+      known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter) .or. &
+         all(contact%contact_state == contact_open))
       bounds = merge(of_change_alone, of_change, size(energy) > 0 .or. ieee_is_nan(scatter))* &
          abs(change) + known_scatter
       if (size(energy) > 0) call add_energy(contact, energy, bounds)

@@ -177,9 +177,8 @@ contains
          character(*), intent(in) :: number
          character(:), allocatable :: with_unit
 
-         associate (quantity => estimated(accuracy%demands(d)%quantity))
-            with_unit = trim(number//' '//unit_label(quantity%unit, labels))
-         end associate
+         with_unit = trim(number//' '//unit_label(estimated(accuracy%demands(d)%quantity)%unit, &
+            labels))
       end function with_unit
    end function target_words
 
