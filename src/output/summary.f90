@@ -1,7 +1,7 @@
 !> What a run comes to, in a few lines: the quantities of every interface at the last accepted
 !> increment, with the bounds of their errors where these are estimated.
 module summary
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, zone_words
    use kinds, only: dp
@@ -11,6 +11,7 @@ module summary
    use run_summaries, only: or_blank
    use text, only: append, few_digits, percent, string_type, to_text
    use unit_labels, only: unit_label
+   use zone_edges, only: edges_kept
    implicit none
    private
    public :: summary_type, words_of
@@ -160,9 +161,30 @@ contains
          words = trim(words//' '//unit_label(estimated(q)%unit, model%units))
          if (zone /= '') words = words//', '//zone
          if (allocated(self%errors)) words = words//why_not(self%errors(i), q)
+         words = words//other_edges(estimated(q)%name, self%contacts(i), values(1))
          call append(lines, words)
       end do
    end subroutine add_quantities
+
+   !> Edges of a zone beside the outermost one, behind a semicolon; nothing where there are none.
+   pure function other_edges(name, contact, outermost) result(words)
+      character(*), intent(in) :: name               ! of a quantity
+      type(contact_record_type), intent(in) :: contact
+      real(dp), intent(in) :: outermost
+      character(:), allocatable :: words
+      real(dp) :: edges(edges_kept)
+      integer :: k
+
+      words = ''
+      edges = ieee_value(1.0_dp, ieee_quiet_nan)
+      if (name == 'edge_contact') edges = contact%edges_contact
+      if (name == 'edge_stick') edges = contact%edges_stick
+      do k = 1, size(edges)
+         if (ieee_is_nan(edges(k))) exit
+         if (abs(edges(k) - outermost) > 0.0_dp) words = words//', '//to_text(edges(k))
+      end do
+      if (words /= '') words = '; also at'//words(2:)
+   end function other_edges
 
    !> Whether the deck has a quantity: heat that it solves, friction in this interface.
    pure logical function is_had(quantity, model, i, contact)

@@ -312,3 +312,13 @@ def test_a_run_without_contact_says_what_came_of_it(tmp_path):
     assert lines[6].endswith("bar.vtkhdf, .lst, .sta, .cvg")
     listing = [" ".join(line.split()) for line in (tmp_path / "bar.lst").read_text().splitlines()]
     assert listing[listing.index("solved, 1 increment") + 3:][:5] == told
+
+
+def test_a_summary_tells_all_edges_of_a_zone(tmp_path):
+    """Both faces of the turbine joint slip at both ends."""
+    said = run("run", INPUT / "examples" / "turbine_joint.inp", "--out", tmp_path).stdout
+    with h5py.File(tmp_path / "turbine_joint.vtkhdf") as file:
+        for face in file["contact"].values():
+            outermost = face["edge_stick"][-1]
+            (other,) = (edge for edge in face["edges_stick"][-1][:2] if edge != outermost)
+            assert re.search(rf"\n    edge of stick +{outermost:g} .* mm; also at {other:g}\n", said)

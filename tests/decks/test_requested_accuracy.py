@@ -274,7 +274,7 @@ def test_an_edge_that_a_finer_mesh_does_not_have_is_uncertain(tmp_path):
     deck.write_text(text.replace("1., 1.\n", "0.25, 1.\n").replace("A.LEFT, 1\n", "").replace(
         "A.TOP, 2, 2, -0.01", "A.TOP, 2, 2, -0.01\nA.TOP, 1, 1, -0.001"))
     process = run("run", deck, "--out", tmp_path)
-    assert re.search(r"\n    edge of stick .*\(uncertain\): a finer mesh has no such edge\n",
+    assert re.search(r"\n    edge of stick .*\(uncertain\): a finer mesh has no such edge; also at 0.375\n",
                      process.stdout), process.stdout
     assert "\n    uncertain: a finer mesh has no such edge\n" in deck.with_suffix(".lst").read_text()
 
