@@ -1,7 +1,7 @@
 !> What a run comes to, in a few lines: the quantities of every interface at the last accepted
 !> increment, with the bounds of their errors where these are estimated.
 module summary
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, zone_words
    use kinds, only: dp
@@ -161,14 +161,16 @@ contains
          words = trim(words//' '//unit_label(estimated(q)%unit, model%units))
          if (zone /= '') words = words//', '//zone
          if (allocated(self%errors)) words = words//why_not(self%errors(i), q)
-         words = words//other_edges(estimated(q)%name, self%contacts(i), values(1))
+         words = words//other_edges(estimated(q)%name, points, self%contacts(i), &
+            values(1))
          call append(lines, words)
       end do
    end subroutine add_quantities
 
    !> Edges of a zone beside the outermost one, behind a semicolon; nothing where there are none.
-   pure function other_edges(name, contact, outermost) result(words)
+   pure function other_edges(name, points, contact, outermost) result(words)
       character(*), intent(in) :: name               ! of a quantity
+      type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
       real(dp), intent(in) :: outermost
       character(:), allocatable :: words
@@ -176,9 +178,8 @@ contains
       integer :: k
 
       words = ''
-      edges = ieee_value(1.0_dp, ieee_quiet_nan)
-      if (name == 'edge_contact') edges = contact%edges_contact
-      if (name == 'edge_stick') edges = contact%edges_stick
+      if (index(name, 'edge_') /= 1) return
+      edges = contact_values('edges_'//name(6:), points, contact)
       do k = 1, size(edges)
          if (ieee_is_nan(edges(k))) exit
          if (abs(edges(k) - outermost) > 0.0_dp) words = words//', '//to_text(edges(k))
