@@ -7,6 +7,7 @@ import resource
 import signal
 import subprocess
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import h5py
@@ -44,6 +45,13 @@ def children(process):
     """Return the numbers of a batch's processes."""
     return [int(number) for number in
             Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+
+
+def has_ended(process):
+    """Whether a process, of which no parent may have asked, has ended."""
+    with suppress(FileNotFoundError, ProcessLookupError):
+        return ") Z " in Path(f"/proc/{process}/stat").read_text()
+    return True
 
 
 def wait_until(what, seconds=PATIENCE):
@@ -306,8 +314,7 @@ def test_decks_end_with_a_batch_that_is_killed_and_the_table_holds_what_had_ende
                and all(table(tmp_path)[deck.stem]["outcome"] == "solved" for deck in GOOD))
     process.kill()
     process.communicate(timeout=PATIENCE)
-    wait_until(lambda: not Path(f"/proc/{child}").exists()
-               or ") Z " in Path(f"/proc/{child}/stat").read_text(), 1.0)
+    wait_until(lambda: has_ended(child), 1.0)
     assert len(lines_of(tmp_path / "long.sta")) < INCREMENTS
     assert table(tmp_path)["long"]["outcome"] == "running"
 

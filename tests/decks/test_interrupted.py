@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import time
+from contextlib import suppress
 from functools import partial
 
 import h5py
@@ -33,8 +34,11 @@ def deck(tmp_path_factory):
 
 
 def lines_of(sta):
-    """Return the lines of a .sta file without its heading."""
-    return sta.read_text().splitlines()[1:] if sta.exists() else []
+    """Return the lines of a .sta file without its heading; a run that begins creates the file,
+    deletes it and creates it again."""
+    with suppress(FileNotFoundError):
+        return sta.read_text().splitlines()[1:]
+    return []
 
 
 def interrupt(decks, folder, number, prepare=None):
