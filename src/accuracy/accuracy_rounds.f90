@@ -16,6 +16,7 @@ module accuracy_rounds
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use text, only: to_text
+   use value_courses, only: value_courses_type
    implicit none
    private
    public :: accuracy_rounds_type, accuracy_round_type, finding_type
@@ -77,6 +78,9 @@ module accuracy_rounds
       type(demand_type), allocatable :: demands(:)
       type(accuracy_round_type), allocatable :: rounds(:)    !! the last is the present one
       real(dp), allocatable :: largest(:)                    !! (demands) largest scale so far
+      !> (steps) the quantities at the last increments of each in the last round, as the error
+      !> estimator wrote them
+      type(value_courses_type), allocatable :: courses(:)
    contains
       procedure :: begin_round
       procedure :: drop_round
@@ -97,6 +101,7 @@ contains
       type(accuracy_round_type), allocatable :: rounds(:)
       integer :: i, n
 
+      if (.not. allocated(self%courses)) allocate (self%courses(steps))
       self%is_on = allocated(request%targets)
       self%goes_on = .false.
       if (.not. self%is_on) return

@@ -12,7 +12,7 @@ module error_estimator
    use increments, only: simulation_type
    use interface_quantities, only: quantities_of, quantities_of_state
    use kinds, only: dp
-   use mesh_bounds, only: bounds_of_mesh, stuck_forces
+   use mesh_bounds, only: bounds_of_mesh, locked_in
    use load_histories, only: step_clock_type
    use model, only: model_type
    use quantity_types, only: find_quantity
@@ -42,7 +42,7 @@ module error_estimator
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
       type(value_courses_type) :: courses          !! quantities at the increments before
-      real(dp), allocatable :: stuck(:)            !! (interfaces) largest stuck_forces so far
+      real(dp), allocatable :: friction(:)         !! (interfaces) largest of locked_in so far
       integer :: step = 0                          !! step of the present increment
       logical :: is_on = .false.                   !! whether there is anything to estimate
       character(:), allocatable :: why_not         !! why there is no finer mesh; else ''
@@ -74,7 +74,7 @@ contains
          call self%divided%start(model, error)
       end if
       if (allocated(error)) self%why_not = error%message
-      allocate (self%stuck(size(model%contacts)), source=0.0_dp)
+      allocate (self%friction(size(model%contacts)), source=0.0_dp)
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 
@@ -87,11 +87,13 @@ contains
    end subroutine begin_increment
 
    !> Follows an accepted increment; at the end of a step its record receives the bounds.
-   subroutine end_increment(self, model, simulation, record)
+   subroutine end_increment(self, model, simulation, record, courses)
       class(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation     !! the run; its state stays
       type(increment_record_type), intent(inout) :: record
+      !> (steps) at their ends in the round before, empty in the first; receives the present ones
+      type(value_courses_type), intent(inout) :: courses(:)
       real(dp) :: values(size(estimated), size(record%contacts))
       character(:), allocatable :: no_mesh
       integer :: i, q
@@ -108,7 +110,7 @@ contains
       do i = 1, size(record%contacts)
          associate (points => simulation%bodies%interfaces(i), contact => record%contacts(i))
             values(:, i) = quantities_of(points, contact)
-            self%stuck(i) = max(self%stuck(i), stuck_forces(points, contact))
+            self%friction(i) = max(self%friction(i), locked_in(points, contact))
          end associate
       end do
       call self%courses%follow(record%time, values)
@@ -116,9 +118,11 @@ contains
       allocate (record%errors(size(record%contacts)))
       call store(values, record%errors)
       no_mesh = self%why_not
-      if (no_mesh == '') call bound_mesh(self, model, simulation, record, no_mesh)
+      if (no_mesh == '') call bound_mesh(self, model, simulation, record, &
+         courses(record%step), no_mesh)
       if (no_mesh /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
          'estimated: '//no_mesh)
+      courses(record%step) = self%courses
       call bound_increments(self, model, simulation, record%errors)
       call bound_iteration(record)
       do i = 1, size(record%errors)
@@ -187,11 +191,12 @@ contains
    end subroutine store
 
    !> Bounds of the errors of the mesh.
-   subroutine bound_mesh(self, model, simulation, record, why_not)
+   subroutine bound_mesh(self, model, simulation, record, before, why_not)
       type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation
       type(increment_record_type), intent(inout) :: record
+      type(value_courses_type), intent(in) :: before         ! courses in the round before
       character(:), allocatable, intent(inout) :: why_not    ! why there are none; else it stays
       type(error_type), allocatable :: error
       type(step_clock_type) :: clock
@@ -218,7 +223,8 @@ contains
          energy_error(record%heat_flux_error)]
       do i = 1, size(record%errors)
          record%errors(i)%mesh = bounds_of_mesh(simulation%bodies%interfaces(i), &
-            record%contacts(i), change(:, i), self%courses%scatter(i), self%stuck(i), energy)
+            record%contacts(i), change(:, i), self%courses%scatter(i, before), self%friction(i), &
+            energy)
       end do
    end subroutine bound_mesh
 
@@ -238,6 +244,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(interface_errors_type), intent(inout) :: errors(:)
       real(dp) :: doubled(size(estimated), size(errors))
+      logical :: has_friction(size(simulation%bodies%points%friction))
       integer :: i, peak
 
       if (.not. self%doubled%is_led) return
@@ -247,11 +254,14 @@ contains
             model%steps(self%step)%scheme, doubled)
       end if
       peak = find_quantity(estimated, 'peak_pressure')
+      has_friction = simulation%bodies%points%has_friction()
       do i = 1, size(errors)
          errors(i)%increment = of_doubled_increments*abs(errors(i)%value - doubled(:, i))
-         if (simulation%bodies%interfaces(i)%pairing == pairing_surfaces .and. &
-            self%stuck(i) > 0.0_dp) errors(i)%increment(peak) = of_doubled_in_peak* &
-            abs(errors(i)%value(peak) - doubled(peak, i))
+         associate (start => simulation%bodies%points%interface_start)
+            if (simulation%bodies%interfaces(i)%pairing == pairing_surfaces .and. &
+               any(has_friction(start(i):start(i + 1) - 1))) errors(i)%increment(peak) = &
+               of_doubled_in_peak*abs(errors(i)%value(peak) - doubled(peak, i))
+         end associate
       end do
    end subroutine bound_increments
 

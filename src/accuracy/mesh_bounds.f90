@@ -20,7 +20,7 @@ module mesh_bounds
    use records, only: contact_record_type
    implicit none
    private
-   public :: bounds_of_mesh, stuck_forces
+   public :: bounds_of_mesh, locked_in
 
    !> Error in the change that halved elements make: errors that fall with h are just twice as
    !> large, and need some room; and where too few increments tell no scatter, or only elements at
@@ -41,12 +41,12 @@ module mesh_bounds
 contains
 
    !> The bounds, for the quantities with an estimate; NaN where none can be given.
-   pure function bounds_of_mesh(points, contact, change, scatter, stuck, energy) result(bounds)
+   pure function bounds_of_mesh(points, contact, change, scatter, friction, energy) result(bounds)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       type(contact_record_type), intent(in) :: contact   !! its state
       real(dp), intent(in) :: change(:)                  !! of the quantities by halved elements
       real(dp), intent(in) :: scatter(:)                 !! over increments; NaN: unknown
-      real(dp), intent(in) :: stuck                      !! largest of stuck_forces so far
+      real(dp), intent(in) :: friction                   !! largest of locked_in so far
       !> Squared relative errors of the energy norms of stress and heat flux [-], where only faces
       !> were halved; else none
       real(dp), intent(in) :: energy(:)
@@ -62,7 +62,7 @@ contains
       if (size(energy) > 0) call add_energy(contact, energy, bounds)
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
-      if (length > 0.0_dp) locked = stuck*nodal_spacing(points, contact%edge_contact)/length
+      if (length > 0.0_dp) locked = friction/length
       shift = 0.0_dp
       if (contact%normal_force > 0.0_dp) shift = length/contact%normal_force* &
          bounds(find_quantity(estimated, 'normal_force'))
@@ -161,15 +161,16 @@ contains
          <= same_place*edge_spacing(points, contact%edge_contact)
    end function ends_with_contact
 
-   !> Sum of the shear forces of stuck contact points, without their signs [force].
-   pure real(dp) function stuck_forces(points, contact)
+   !> Sum of the shear forces of stuck contact points, without their signs, times the spacing at
+   !> the edge of contact, over which the last of them came to stick [force length].
+   pure real(dp) function locked_in(points, contact)
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
 
-      stuck_forces = 0.0_dp
-      if (allocated(contact%shear)) stuck_forces = sum(abs(points%weight*contact%shear), &
-         mask=contact%contact_state == contact_stick)
-   end function stuck_forces
+      locked_in = 0.0_dp
+      if (allocated(contact%shear)) locked_in = sum(abs(points%weight*contact%shear), &
+         mask=contact%contact_state == contact_stick)*nodal_spacing(points, contact%edge_contact)
+   end function locked_in
 
    !> Friction that is missing where supports hold both nodes of a closed contact point along the
    !> face, and the one beside it slips: the part of the face that it stands for slips as well, but

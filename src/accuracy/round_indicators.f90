@@ -3,10 +3,10 @@
 !>
 !> Elements are divided where the energy norm of the error that recovery finds in stress and heat
 !> flux (Zienkiewicz & Zhu) is largest, each body and field counted by its relative error (the
-!> marking of Doerfler, SIAM J. Numer. Anal. 33 (1996) 1106), and at the edges of zones, where the
-!> fields of the interface have roots; there alone as long as an edge is only not resolved. For the
-!> peak pressure errors count by their influence on it: the field of a point force falls as 1/r,
-!> what an element cannot represent of it as 1/r^4.
+!> marking of Doerfler, SIAM J. Numer. Anal. 33 (1996) 1106), and near the edges of zones, where the
+!> fields of the interface have roots: each time those that are left there, so that their size falls
+!> with the distance. For the peak pressure errors count by their influence on it: the field of a
+!> point force falls as 1/r, what an element cannot represent of it as 1/r^4.
 module round_indicators
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use accuracy_rounds, only: accuracy_rounds_type, finding_type
@@ -20,24 +20,23 @@ module round_indicators
    use model, only: model_type
    use quantity_types, only: quantity_type
    use records, only: contact_record_type, increment_record_type
-   use refined_regions, only: element_levels_type
+   use refined_regions, only: division_type
    use variations, only: variation_type
    implicit none
    private
    public :: round_indicators_type
 
-   real(dp), parameter :: marked = 0.7_dp       !! part of the squared error that is marked
+   real(dp), parameter :: marked = 0.8_dp       !! part of the squared error that is marked
    real(dp), parameter :: far = 16.0_dp         !! bound over target that takes two divisions
    real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
-   real(dp), parameter :: near = 1.5_dp         !! spacings from an edge
    real(dp), parameter :: reach = 0.5_dp        !! of the contact length: where influence falls
-   integer, parameter :: most_levels = 3        !! divisions of an element in one round
+   integer, parameter :: most_levels = 2        !! divisions at an edge in one round
    integer, parameter :: most_halvings = 2      !! of the increments in one round
 
    !> What the ends of the steps of a round ask for.
    type :: round_indicators_type
       private
-      integer, allocatable :: levels(:)         !! (elements) divisions
+      type(division_type) :: division           !! of the elements
       integer :: halvings = 0                   !! of the increments
    contains
       procedure :: start
@@ -53,7 +52,8 @@ contains
       class(round_indicators_type), intent(out) :: self
       type(model_type), intent(in) :: model
 
-      allocate (self%levels(size(model%mesh%element_kind)), source=0)
+      allocate (self%division%levels(size(model%mesh%element_kind)), source=0)
+      allocate (self%division%points(2, 0), self%division%times(0))
    end subroutine start
 
    !> Takes the end of a step, whose findings the last round has.
@@ -64,8 +64,8 @@ contains
       type(accuracy_rounds_type), intent(in) :: rounds
       type(increment_record_type), intent(in) :: record
       type(finding_type) :: finding
-      real(dp) :: weight(size(self%levels))
-      integer :: at_edges, d, levels
+      real(dp) :: weight(size(self%division%levels))
+      integer :: d, levels
 
       do d = 1, size(rounds%demands)
          finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
@@ -75,10 +75,8 @@ contains
          if (levels == 0) cycle
          associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity)
             if (ieee_is_nan(record%errors(i)%mesh(q))) call mark_faces(self, model, i)
-            at_edges = levels_of_edges(interfaces(i), record, i, q, finding%allowed)
-            call mark_edges(self, model%mesh, interfaces(i), edges_for(q, record%contacts(i)), &
-               max(levels, at_edges))
-            if (at_edges > 0) cycle
+            call mark_edges(self, interfaces(i), edges_for(q, record%contacts(i)), &
+               max(levels, levels_of_edges(interfaces(i), record, i, q, finding%allowed)))
             weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
             call mark_elements(self, model%mesh, record, weight, levels)
          end associate
@@ -171,37 +169,42 @@ contains
       associate (contact => model%contacts(i), surfaces => model%mesh%surfaces)
          associate (elements => [surfaces(contact%slave)%faces(1, :), &
             surfaces(contact%master)%faces(1, :)])
-            self%levels(elements) = max(self%levels(elements), 1)
+            self%division%levels(elements) = max(self%division%levels(elements), 1)
          end associate
       end associate
    end subroutine mark_faces
 
-   !> Marks the elements at contact points near the edges of zones, on both faces.
-   subroutine mark_edges(self, mesh, points, edges, levels)
+   !> Marks the edges of zones on both faces, where elements are divided so often.
+   subroutine mark_edges(self, points, edges, levels)
       class(round_indicators_type), intent(inout) :: self
-      type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points
       real(dp), intent(in) :: edges(:)
       integer, intent(in) :: levels
-      logical :: at_edge(0:size(mesh%node_number))
-      integer :: e, i, k
+      real(dp) :: master(2), part_of_side, slave(2)
+      integer :: i, k
 
-      at_edge = .false.
-      associate (s => points%arc_length)
-         do k = 1, size(s)
-            do i = 1, size(edges)
-               if (ieee_is_nan(edges(i))) cycle
-               if (abs(s(k) - edges(i)) > near*max(s(min(k + 1, size(s))) - s(k), &
-                  s(k) - s(max(k - 1, 1)))) cycle
-               at_edge([points%slave_node(k), points%master_node(k)]) = .true.
-            end do
+      associate (s => points%arc_length, x => points%position, h => points%initial_gap, &
+         n => points%normal)
+         do i = 1, size(edges)
+            if (ieee_is_nan(edges(i)) .or. size(s) < 2) cycle
+            k = min(max(count(s <= edges(i)), 1), size(s) - 1)
+            part_of_side = min(max((edges(i) - s(k))/(s(k + 1) - s(k)), 0.0_dp), 1.0_dp)
+            slave = between(x(:, k), x(:, k + 1), part_of_side)
+            master = slave + between(h(k)*n(:, k), h(k + 1)*n(:, k + 1), part_of_side)
+            self%division%points = reshape([self%division%points, slave, master], &
+               [2, size(self%division%times) + 2])
+            self%division%times = [self%division%times, levels, levels]
          end do
       end associate
-      at_edge(0) = .false.
-      do e = 1, size(self%levels)
-         if (any(at_edge(mesh%element_nodes(:, e)))) self%levels(e) = max(self%levels(e), levels)
-      end do
    end subroutine mark_edges
+
+   !> The vector that lies between two.
+   pure function between(first, second, part_of_way) result(vector)
+      real(dp), intent(in) :: first(2), second(2), part_of_way
+      real(dp) :: vector(2)
+
+      vector = (1.0_dp - part_of_way)*first + part_of_way*second
+   end function between
 
    !> Marks the elements with the largest errors of stress and heat flux.
    subroutine mark_elements(self, mesh, record, weight, levels)
@@ -211,22 +214,25 @@ contains
       real(dp), intent(in) :: weight(:)   ! (elements) of squared errors
       integer, intent(in) :: levels
 
-      where (largest_part(weight*squared_errors(mesh, record), marked)) self%levels = max( &
-         self%levels, levels)
+      associate (of_elements => self%division%levels)
+         where (largest_part(weight*squared_errors(mesh, record), marked)) of_elements = max( &
+            of_elements, levels)
+      end associate
    end subroutine mark_elements
 
    !> Whether no other mesh and no other increments would help.
    pure logical function asks_for_nothing(self)
       class(round_indicators_type), intent(in) :: self
 
-      asks_for_nothing = self%halvings == 0 .and. .not. any(self%levels > 0)
+      asks_for_nothing = self%halvings == 0 .and. size(self%division%times) == 0 .and. &
+         .not. any(self%division%levels > 0)
    end function asks_for_nothing
 
    !> Adds the divisions and the increments of the next round to those of the present one.
    subroutine add_to(self, variation)
       class(round_indicators_type), intent(in) :: self
       type(variation_type), intent(inout) :: variation
-      type(element_levels_type), allocatable :: divisions(:)
+      type(division_type), allocatable :: divisions(:)
       integer :: n
 
       variation%increments = variation%increments*0.5_dp**self%halvings
@@ -234,7 +240,7 @@ contains
       if (allocated(variation%divisions)) n = size(variation%divisions)
       allocate (divisions(n + 1))
       if (n > 0) divisions(:n) = variation%divisions
-      divisions(n + 1)%levels = self%levels
+      divisions(n + 1) = self%division
       call move_alloc(divisions, variation%divisions)
    end subroutine add_to
 

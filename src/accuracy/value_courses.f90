@@ -47,17 +47,45 @@ contains
       self%values(kept, :, :) = values
    end subroutine follow
 
-   !> How much the quantities of an interface scatter; NaN where they have too few values.
-   pure function scatter(self, interface)
+   !> How much the quantities of an interface scatter; NaN where they have too few values. Where the
+   !> step was solved on another mesh too, no more than what the two differ by: a course that bends
+   !> by itself scatters on both alike.
+   pure function scatter(self, interface, other)
       class(value_courses_type), intent(in) :: self
       integer, intent(in) :: interface
+      type(value_courses_type), intent(in) :: other   !! on the other mesh; empty without one
       real(dp) :: scatter(size(self%values, 2))
+      real(dp) :: difference(kept, size(self%values, 2)), of_both, time(kept)
       integer :: q
 
+      if (allocated(other%values)) call compare(self, other, interface, time, difference)
       do q = 1, size(scatter)
          scatter(q) = scatter_of(self%time, self%values(:, q, interface), self%corners)
+         if (.not. allocated(other%values) .or. ieee_is_nan(scatter(q))) cycle
+         of_both = scatter_of(time, difference(:, q), self%corners)
+         if (.not. ieee_is_nan(of_both)) scatter(q) = min(scatter(q), of_both)
       end do
    end function scatter
+
+   !> What two courses differ by at the last instants that both have.
+   pure subroutine compare(self, other, interface, time, difference)
+      type(value_courses_type), intent(in) :: self, other
+      integer, intent(in) :: interface
+      real(dp), intent(out) :: time(:), difference(:, :)   ! as of the courses
+      integer :: j, k, n
+
+      time = self%time
+      difference = ieee_value(1.0_dp, ieee_quiet_nan)
+      n = kept
+      do k = kept, 1, -1
+         j = minloc(abs(other%time - self%time(k)), dim=1)
+         if (abs(other%time(j) - self%time(k)) > same_time*(self%time(kept) - self%time(kept - 1))) &
+            cycle
+         time(n) = self%time(k)
+         difference(n, :) = self%values(k, :, interface) - other%values(j, :, interface)
+         n = n - 1
+      end do
+   end subroutine compare
 
    !> How much the last values scatter about a smooth course. Increments so short that an edge of
    !> contact passes a node only in several of them tell it over every second one.

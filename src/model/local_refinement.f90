@@ -1,4 +1,4 @@
-!> Which elements a local refinement divides: those at a surface or of a set, or near them, and with
+!> Which elements a local refinement divides: those at a surface, of a set or at points, and with
 !> them those that must be divided so that elements side by side differ by one level, and so that
 !> faces whose nodes match still do.
 module local_refinement
@@ -15,10 +15,13 @@ module local_refinement
    use surface_chains, only: aligned_chains, chain_faces, surface_chain_type
    implicit none
    private
-   public :: elements_in_region, choose_neighbours
+   public :: elements_at_points, elements_in_region, choose_neighbours
 
    !> Part of DISTANCE= by which an element must come nearer: what only touches stays out.
    real(dp), parameter :: rounding = 1.0e-9_dp
+
+   !> Part of its longest side within which an element lies at a point.
+   real(dp), parameter :: near = 0.75_dp
 
 contains
 
@@ -65,6 +68,24 @@ contains
          end do
       end do
    end function elements_in_region
+
+   !> Elements with a corner near one of some points, measured by their own size.
+   pure function elements_at_points(mesh, points) result(at_point)
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: points(:, :)                 !! (2, n) [length]
+      logical :: at_point(size(mesh%element_number))       !! (elements)
+      real(dp) :: square
+      integer :: e, i, n
+
+      do e = 1, size(at_point)
+         n = element_corner_count(mesh%element_kind(e))
+         associate (x => mesh%coordinates(:, mesh%element_nodes(:n, e)))
+            square = near**2*maxval(sum((x - cshift(x, 1, dim=2))**2, dim=1))
+            at_point(e) = any([(sum((x - spread(points(:, i), 2, n))**2, dim=1) <= square, &
+               i=1, size(points, 2))])
+         end associate
+      end do
+   end function elements_at_points
 
    !> Sides from which the distance counts: those of the surfaces, or those that elements of the set
    !> do not share.

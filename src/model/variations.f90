@@ -3,7 +3,7 @@ module variations
    use controls, only: thermal_scheme_type
    use kinds, only: dp
    use model, only: model_type, verify_type
-   use refined_regions, only: element_levels_type, refined_region_type
+   use refined_regions, only: division_type, refined_region_type
    use steps, only: solves_heat
    implicit none
    private
@@ -25,7 +25,7 @@ module variations
       type(thermal_scheme_type), allocatable :: scheme   !! in all steps; unallocated as written
       !> divisions after those of the deck, one after the other, each of the elements that the one
       !> before leaves; unallocated for none
-      type(element_levels_type), allocatable :: divisions(:)
+      type(division_type), allocatable :: divisions(:)
    end type variation_type
 
 contains

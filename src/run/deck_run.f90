@@ -272,7 +272,8 @@ contains
                if (error%status == status_interrupted) record = increment_record_type()
                return
             end if
-            call estimator%end_increment(model, simulation, record)
+            call estimator%end_increment(model, simulation, record, &
+               output%run%accuracy%courses)
             call output%run%accuracy%follow(simulation%bodies%interfaces, record)
             if (output%run%accuracy%is_on .and. record%last_of_step) call self%indicators%take( &
                model, simulation%bodies%interfaces, output%run%accuracy, record)

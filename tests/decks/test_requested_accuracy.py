@@ -91,6 +91,35 @@ def test_targets_that_are_missed_are_told_with_status_4(tmp_path):
         assert file["accuracy/elements"][1] < 3 * 92
 
 
+def test_sides_at_an_edge_fall_with_the_distance_from_it(tmp_path):
+    """Two divisions where it lies leave most sides away from it as they are."""
+    cards = "*ACCURACY, ROUNDS=2", "edge_contact, 0.025, ABS, FACE"
+    result = solve(copy_deck(CYLINDER, tmp_path / "graded.inp", cards))
+    with h5py.File(result) as file:
+        s, edge = file["contact/FACE/s"][:], file["contact/FACE/edge_contact"][-1]
+    sides, middle = np.diff(s[::2]), 0.5 * (s[:-1:2] + s[2::2])
+    with h5py.File(solve(copy_deck(CYLINDER, tmp_path / "plain.inp"))) as file:
+        plain = np.diff(file["contact/FACE/s"][::2])
+    assert sides[np.argmin(abs(middle - edge))] < 0.3 * plain.max()
+    assert len(sides) < 2 * len(plain)
+    # Sides beside each other differ by one division at most, but for those of the deck's own mesh.
+    assert np.abs(np.log2(sides[1:] / sides[:-1])).max() < 1.0 + np.log2(plain[1:] / plain[:-1]).max()
+
+
+def test_a_course_that_bends_by_itself_keeps_no_request_from_its_target(tmp_path):
+    """The crack closes at once: heat and force bend on every mesh alike, by 23 and 2.5 % of them."""
+    deck = INPUT / "examples" / "cracked_plate.inp"
+    process = run("run", "--quiet", deck, "--out", tmp_path, "--accuracy", "1%")
+    assert process.returncode == 0, process.stderr
+    _, bounds, _ = rounds_of(tmp_path / "cracked_plate.vtkhdf", "CRACK")
+    step, value, bound, _ = bounds["heat_rate"][0]
+    assert step == 4 and bound > 0.1 * abs(value)
+    exact = {quantity: float(TOLD["cracked plate"][head]) for quantity, head in QUANTITIES.items()}
+    for quantity, rows in bounds.items():
+        if rows[-1][0] == 4:
+            assert abs(rows[-1][1] - exact[quantity]) <= rows[-1][2] <= rows[-1][3], quantity
+
+
 def test_increments_are_shortened_where_they_are_the_larger_part(tmp_path):
     """Friction with increments of 180: halving them reaches what no mesh does."""
     cards = "*ACCURACY, ROUNDS=2", "peak_pressure, 0.01"

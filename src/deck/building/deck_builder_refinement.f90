@@ -11,12 +11,12 @@ module deck_builder_refinement
    use deck_source, only: place_type
    use errors, only: error_type
    use kinds, only: dp, long
-   use local_refinement, only: choose_neighbours, elements_in_region
+   use local_refinement, only: choose_neighbours, elements_at_points, elements_in_region
    use memory_calls, only: check_memory
    use memory_needs, only: memory_needed
    use mesh, only: mesh_type
    use model, only: model_type
-   use refined_regions, only: refined_region_type
+   use refined_regions, only: division_type, refined_region_type
    use refinement, only: refine, refine_chosen
    implicit none
    private
@@ -99,8 +99,29 @@ contains
             call divide_once(context, place_type(), model, levels, report, error)
             if (allocated(error) .or. report%has_errors()) return
          end do
+         call divide_at_points(context, context%divisions(i), model, report, error)
+         if (allocated(error) .or. report%has_errors()) return
       end do
    end subroutine refine_model
+
+   !> Divides the elements at points, each time those that are left there.
+   !> Error: as check_memory.
+   subroutine divide_at_points(context, division, model, report, error)
+      type(deck_context_type), intent(in) :: context
+      type(division_type), intent(in) :: division
+      type(model_type), intent(inout) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: levels(:), chosen(:)
+      integer :: i, time
+
+      do time = 1, maxval([0, division%times])
+         chosen = pack([(i, i=1, size(division%times))], division%times >= time)
+         levels = merge(1, 0, elements_at_points(model%mesh, division%points(:, chosen)))
+         call divide_once(context, place_type(), model, levels, report, error)
+         if (allocated(error) .or. report%has_errors()) return
+      end do
+   end subroutine divide_at_points
 
    !> Divides the elements with levels above 0, and those that must be divided with them.
    !> Error: as check_memory.

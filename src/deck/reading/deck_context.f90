@@ -9,7 +9,7 @@ module deck_context
    use load_requests, only: request_list_type
    use mesh, only: set_type
    use quantity_types, only: quantity_type
-   use refined_regions, only: element_levels_type, refined_region_type
+   use refined_regions, only: division_type, refined_region_type
    use sorting, only: number_index_type
    use spelling, only: is_slip, nearest_known
    use text, only: read_integer, string_type, to_upper
@@ -53,7 +53,7 @@ module deck_context
       type(place_type) :: levels_place                    !! where it is
       type(refined_region_type), allocatable :: regions(:)   !! *REFINE with a surface or a set
       !> divisions that follow, as those of a variation
-      type(element_levels_type), allocatable :: divisions(:)
+      type(division_type), allocatable :: divisions(:)
       character(:), allocatable :: load_set   !! LOAD=: node set; unallocated when not given
       type(place_type) :: load_place                      !! where it is
       type(request_list_type) :: boundaries               !! *BOUNDARY
