@@ -102,17 +102,18 @@ contains
       end associate
    end function edge_spacing
 
-   !> Whether the pressure is largest at the first, at the last contact point.
+   !> Whether the pressure is largest at the first, at the last contact point; not without pressure.
    pure function peak_is_at_end(contact) result(at_end)
       type(contact_record_type), intent(in) :: contact    !! state of the interface
       logical :: at_end(2)
 
-      at_end = maxloc(contact%pressure, dim=1) == [1, size(contact%pressure)]
+      at_end = maxloc(contact%pressure, dim=1) == [1, size(contact%pressure)] .and. &
+         any(contact%pressure > 0.0_dp)
    end function peak_is_at_end
 
-   !> Whether the pressure is largest at a corner, where one of two faces of mortar points ends. It
-   !> varies as a power of the distance to there and has no limit (J. Dundurs, M.-S. Lee, J.
-   !> Elasticity 2 (1972) 109-112).
+   !> Whether the pressure is largest at a corner, where one of two faces ends. It varies as a power
+   !> of the distance to there and has no limit (J. Dundurs, M.-S. Lee, J. Elasticity 2 (1972)
+   !> 109-112).
    pure logical function peaks_at_corner(points, contact)
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! its state

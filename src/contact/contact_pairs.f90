@@ -7,6 +7,7 @@ module contact_pairs
    use contact_points, only: contact_points_type, no_radius
    use element_kinds, only: axisymmetric
    use errors, only: error_type, set_error, status_deck
+   use face_ends, only: one_goes_on
    use interface_checks, only: blame_corner, check_corner, check_covered, check_opposite, &
       check_shared, check_sides, check_weights, compare_lines
    use interface_warnings, only: mismatch_of_pairs
@@ -47,6 +48,7 @@ contains
       call set_geometry(mesh, slave, master, points)
       call check_sides(mesh, definition, slave, master, [first, last], error)
       if (allocated(error)) return
+      points%at_corner = one_goes_on(mesh, slave, master)
       points%side_nodes = slave%side_nodes
       points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       call cut_ends(first, last, points)

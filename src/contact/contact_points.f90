@@ -49,7 +49,7 @@ module contact_points
       !> How far the first contact point lies from the master's first end and the last one from its
       !> last end, along the slave; at least 0 [length]
       real(dp) :: to_end(2) = huge(1.0_dp)
-      !> Whether one face ends at the first, at the last of mortar points and the other goes on
+      !> Whether one face ends at the first, at the last contact point and the other goes on
       logical :: at_corner(2) = .false.
       type(edge_segment_type), allocatable :: segments(:)   !! of mortar points; none of node pairs
       type(hat_type), allocatable :: hats(:)   !! (m) hat functions of mortar points over these

@@ -34,9 +34,8 @@ requests for an accuracy all use it. It is the sum of three parts.
 A bound is *uncertain* (NaN in the result file) in models with equations, couplings or transformed axes,
 because the finer mesh has nodes that they do not name (a requested accuracy then compares its rounds);
 in a step of a single increment with friction; for an edge that the finer mesh or the companion run does
-not have; and for the peak pressure of mortar points at a corner, where one face ends and the other goes
-on. The pressure of such a punch grows without limit as the mesh is refined; with node pairs its bound is
-only large. Summary and listing say which of these it is.
+not have; and for a peak pressure at a corner, where one face ends and the other goes on. The pressure of
+such a punch grows without limit as the mesh is refined. Summary and listing say which of these it is.
 
 **How bounds are judged.** Each deck is solved on the mesh as it is and refined once and twice, with the
 increments as written and half as long. A true error is that to the converged value, on a mesh refined
