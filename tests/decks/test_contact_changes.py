@@ -212,6 +212,28 @@ def test_an_allowed_overlap_stays_with_mod_and_ends_with_new(tmp_path):
     follows(tmp_path, make, "MOD", "NEW")
 
 
+@pytest.mark.parametrize(("clearance", "interference", "told"), [
+    (-0.003, 0.002, None), (-0.002, 0.002, None), (-0.002, -0.001, None), (0.002, 0.001, None),
+    (0.0, -0.001, None), (0.001, 0.0, None), (None, -0.001, None),
+    (0.25, -0.75, "-0.5, the faces overlap by 0.5"),
+    (0.75, -0.25, "0.5, the faces are 0.5 apart"), (0.5, -0.5, "0, the faces touch"),
+    (-0.25, 0.75, "0.5, the faces are 0.5 apart")])
+def test_an_interference_against_a_clearance_is_warned_of(tmp_path, clearance, interference, told):
+    """But not where it allows an overlap, which is how a press fit is ramped up."""
+    cards = interfering("*CONTACT INTERFERENCE", f"{PAIR}, {interference!r}")
+    at = next(k for k, card in enumerate(cards) if card.startswith("*CLEARANCE"))
+    cards[at:at + 1] = [] if clearance is None else [
+        f"*CLEARANCE, MASTER=LOWER.TOP, SLAVE=UPPER.BOTTOM, VALUE={clearance!r}"]
+    process = run("check", write(tmp_path / "fit.inp", cards))
+    assert process.returncode == 0, process.stderr
+    found = [line for line in process.stderr.splitlines() if "work against each other" in line]
+    if told is None:
+        assert not found
+    else:
+        assert len(found) == 1 and f"with the sum, {told};" in found[0]
+        assert f"the interference {interference:g} and the *CLEARANCE {clearance:g} work" in found[0]
+
+
 # ADJUST= on *CONTACT PAIR.
 
 @pytest.mark.changes("CONTACT PAIR, ADJUST")

@@ -5,6 +5,7 @@ module deck_builder_contact_changes
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use contact_changes, only: contact_changes_type, friction_change_type, interference_type, &
       pair_change_type
+   use contact_definitions, only: contact_definition_type
    use deck_builder_contact, only: read_surface
    use deck_builder_friction, only: build_friction
    use deck_builder_interactions, only: find_interaction
@@ -13,7 +14,7 @@ module deck_builder_contact_changes
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use model, only: model_type
-   use text, only: string_type
+   use text, only: string_type, to_text
    implicit none
    private
    public :: build_contact_change
@@ -158,9 +159,33 @@ contains
                model, report, given%contact)
             call need_field(cards%data(j), 3, 'interference', report, given%value, valid)
          end if
-         if (given%contact > 0 .and. valid) changes%interferences = [changes%interferences, given]
+         if (given%contact == 0 .or. .not. valid) cycle
+         changes%interferences = [changes%interferences, given]
+         if (.not. given%shrinks) call check_clearance(cards%data(j), model%contacts( &
+            given%contact), given%value, report)
       end do
    end subroutine change_interferences
+
+   !> Warns of an interference against a clearance, but not where it allows a part of an overlap.
+   subroutine check_clearance(data, contact, interference, report)
+      type(data_card_type), intent(in) :: data
+      type(contact_definition_type), intent(in) :: contact
+      real(dp), intent(in) :: interference
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: meaning
+
+      if (contact%clearance*interference >= 0.0_dp) return
+      associate (gap => contact%clearance + interference)
+         if (contact%clearance < 0.0_dp .and. gap <= 0.0_dp) return
+         meaning = 'the faces touch'
+         if (gap < 0.0_dp) meaning = 'the faces overlap by '//to_text(-gap)
+         if (gap > 0.0_dp) meaning = 'the faces are '//to_text(gap)//' apart'
+         call report%warning(field_place(data, 3), contact%title()//': the interference '// &
+            to_text(interference)//' and the *CLEARANCE '//to_text(contact%clearance)// &
+            ' work against each other: with the sum, '//to_text(gap)//', '//meaning// &
+            '; give the gap that is meant by one of them')
+      end associate
+   end subroutine check_clearance
 
    !> The interface of the two surfaces that a data card names; 0 after an error.
    subroutine read_contact(data, most, layout, model, report, contact)
