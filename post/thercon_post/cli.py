@@ -3,6 +3,7 @@
 import argparse
 import sys
 from contextlib import ExitStack
+from itertools import chain
 
 from . import accuracy, convergence, fields, mesh, profiles, style, trade, zones
 from .errors import UserError
@@ -142,7 +143,7 @@ def add_fields(picture):
 def spread(arguments):
     """Write `--load 180 360 RESULT` as `--load 180 --load 360 RESULT`, and the like."""
     words, option, values = [], None, 0
-    for word in arguments:
+    for word in chain.from_iterable(map(parted, arguments)):
         if word in SEVERAL:
             option, values = word, 0
         elif option and values and SEVERAL[option](word):
@@ -152,6 +153,17 @@ def spread(arguments):
         values += word not in SEVERAL
         words.append(word)
     return words
+
+
+def parted(word):
+    """Return `--load=180` as the two words `--load 180`, and the like."""
+    option, _, value = word.partition("=")
+    return [option, value] if value and option in SEVERAL else [word]
+
+
+def is_name(word):
+    """Whether a word may be the name of a quantity, misspelt or not: no option and no file."""
+    return not word.startswith("-") and "." not in word and "/" not in word
 
 
 def is_number(word):
@@ -164,7 +176,7 @@ def is_number(word):
 
 
 # Options that take several values -> what tells a value from the RESULT that may follow.
-SEVERAL = {"--load": is_number, "--increment": is_number, "--quantity": FIELD_SOURCES.__contains__}
+SEVERAL = {"--load": is_number, "--increment": is_number, "--quantity": is_name}
 
 
 def run(arguments):

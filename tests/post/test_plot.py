@@ -29,6 +29,7 @@ from thercon_post import element_fields, field_colours, fields, mesh  # noqa: E4
 from thercon_post import profiles, style, trade, zones  # noqa: E402
 from thercon_post.cells import Cells  # noqa: E402
 from thercon_post.cli import main, parser, spread  # noqa: E402
+from thercon_post.errors import UserError  # noqa: E402
 from thercon_post.fine_mesh import refine  # noqa: E402
 from thercon_post.overlay import read_overlays  # noqa: E402
 from thercon_post.result import Result  # noqa: E402
@@ -402,7 +403,19 @@ def test_fields_of_chosen_quantities_only(tabulate, result, tmp_path):
     assert tabulate("fields", result, "--quantity", "xy") == three("case.fields-xy")
     columns = table(tmp_path, "case.fields-xy.csv")
     assert "xy" in columns and "temperature" not in columns
-    assert parser().parse_args(spread(["fields", "--quantity", "xx", "yy", "r"])).results == ["r"]
+    for named in (["--quantity", "xx", "yy"], ["--quantity=xx", "yy"]):
+        for words in ([*named, "r.vtkhdf"], [*named, "--out", "o", "r.vtkhdf"], ["r.vtkhdf", *named]):
+            options = parser().parse_args(spread(["fields", *words]))
+            assert (options.results, options.quantity) == (["r.vtkhdf"], ["xx", "yy"])
+
+
+@pytest.mark.parametrize("last", [True, False])
+def test_a_quantity_that_there_is_not_is_named(last):
+    """And not the next word, whichever of several names is misspelt."""
+    for names in (["xx", "mises"], ["mises", "xx"], ["xx", "mises", "yy"]):
+        words = [["--quantity", *names], ["r.vtkhdf"]]
+        with pytest.raises(UserError, match="invalid choice: 'mises' .choose from 'temperature'"):
+            parser().parse_args(spread(["fields", *sum(words[:: 1 - 2 * last], [])]))
 
 
 def test_titles_of_fields_side_by_side_stand_apart(kept, result):
