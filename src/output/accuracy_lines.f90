@@ -11,7 +11,7 @@ module accuracy_lines
    use unit_labels, only: unit_label
    implicit none
    private
-   public :: add_accuracy, missed_words
+   public :: add_targets, add_rounds, missed_words
 
    integer, parameter :: name_width = 30   !! columns of interface and quantity
    integer, parameter :: most_named = 3    !! targets in one line
@@ -19,14 +19,15 @@ module accuracy_lines
 
 contains
 
-   !> Adds verdict, targets and rounds; no line where nothing is requested.
-   subroutine add_accuracy(accuracy, interfaces, labels, lines)
+   !> Adds the verdict, then a line for each target, and what holds for several of them; no line
+   !> where nothing is requested.
+   subroutine add_targets(accuracy, interfaces, labels, lines)
       type(accuracy_rounds_type), intent(in) :: accuracy
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(unit_labels_type), intent(in) :: labels           !! units of the deck
       type(string_type), allocatable, intent(inout) :: lines(:)
       character(name_width) :: name
-      integer :: d, i
+      integer :: d
 
       if (.not. accuracy%is_on) return
       if (size(accuracy%rounds) == 0) then
@@ -36,19 +37,29 @@ contains
       call append(lines, verdict(accuracy))
       do d = 1, size(accuracy%demands)
          name = demand_name(accuracy, d, interfaces)
-         call append(lines, '   '//name//' '//target_words(accuracy, d, labels))
+         call append(lines, name//' '//target_words(accuracy, d, labels))
       end do
       if (any([(is_of_more(accuracy, d), d=1, size(accuracy%demands))])) call append(lines, &
-         '   % of an edge: of the closed length; of a small value: of a part of the largest so far')
+         '% of an edge: of the closed length; of a small value: of a part of the largest so far')
       if (size(accuracy%rounds) > 1 .and. accuracy%checks_passed + &
          accuracy%checks_failed > 0) call append(lines, &
-         '   the *VERIFY checks were judged in round 1, on the deck as written')
+         'the *VERIFY checks were judged in round 1, on the deck as written')
+   end subroutine add_targets
+
+   !> Adds the table of the rounds; no line where there is none.
+   subroutine add_rounds(accuracy, lines)
+      type(accuracy_rounds_type), intent(in) :: accuracy
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      integer :: i
+
+      if (.not. accuracy%is_on) return
+      if (size(accuracy%rounds) == 0) return
       call append(lines, '   round   CPU seconds    unknowns    elements  increments  '// &
          'largest bound/target')
       do i = 1, size(accuracy%rounds)
          call append(lines, round_words(i, accuracy%rounds(i)))
       end do
-   end subroutine add_accuracy
+   end subroutine add_rounds
 
    !> Whether the per cent told of a target are not those of its value.
    pure logical function is_of_more(accuracy, d)

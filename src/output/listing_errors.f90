@@ -5,7 +5,7 @@ module listing_errors
    use contact_quantities, only: estimated
    use increment_quantities, only: body_values
    use kinds, only: dp
-   use listing_text, only: column, print_wrapped
+   use listing_text, only: column, page_width, print_wrapped
    use quantity_types, only: of_bodies, quantity_type
    use records, only: increment_record_type, interface_errors_type
    use summary, only: words_of
@@ -52,6 +52,7 @@ contains
       integer, intent(in) :: unit                          !! unit of the listing
       character(*), intent(in) :: name                     !! name of the interface
       type(interface_errors_type), intent(in) :: errors
+      character(page_width) :: line
       integer :: k, q, width
 
       width = maxval([(len(words_of(estimated(q)%name)), q=1, size(estimated))])
@@ -62,10 +63,11 @@ contains
       do q = 1, size(estimated)
          associate (value => errors%value(q), bound => errors%bound(q))
             if (.not. is_worth_telling(q, value, bound)) cycle
-            write (unit, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
+            write (line, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
                name_of(q, width), column(value, 14, 6), bound_word(bound), &
                percent(bound, value), shown(errors%mesh(q), 12), shown(errors%increment(q), 14), &
                shown(errors%iteration(q), 14), largest_part(errors, q)
+            write (unit, '(a)') trim(line)
          end associate
       end do
       do q = 1, size(estimated)

@@ -5,7 +5,7 @@
 !> is whole. Until then nothing of it is in the files.
 module run_output
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use accuracy_lines, only: add_accuracy
+   use accuracy_lines, only: add_rounds, add_targets
    use contact_points, only: contact_points_type
    use errors, only: error_type
    use kinds, only: dp
@@ -214,10 +214,18 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), allocatable :: lines(:)
+      type(string_type), allocatable :: targets(:)
+      integer :: i
 
-      allocate (lines(0))
+      allocate (lines(0), targets(0))
       call self%listing%summary%add_lines(model, interfaces, lines)
-      call add_accuracy(self%run%accuracy, interfaces, model%units, lines)
+      call add_targets(self%run%accuracy, interfaces, model%units, targets)
+      do i = 1, size(targets)
+         ! The verdict is the first one.
+         if (i > 1) targets(i)%value = '   '//targets(i)%value
+         call append(lines, targets(i)%value)
+      end do
+      call add_rounds(self%run%accuracy, lines)
    end function summary_lines
 
    !> One line for each *VERIFY card that failed, and one for all that could not be judged.

@@ -61,6 +61,21 @@ def test_true_errors_are_inside_the_target_and_the_bound(tmp_path, deck, percent
     assert "REQUESTED ACCURACY" in listing and "not met" not in listing
 
 
+def test_the_listing_has_a_bullet_for_each_sentence_and_none_in_the_table(tmp_path):
+    """No line ends in blanks but those of the summary, which is written over."""
+    told = run("run", CYLINDER, "--out", tmp_path, "--accuracy", "1%").stdout
+    said = told[told.index("  requested accuracy"):told.index("  results:")].splitlines()
+    table = next(k for k, line in enumerate(said) if line.startswith("     round "))
+    listing = (tmp_path / "cylinder.lst").read_text()
+    section = listing[listing.index("REQUESTED ACCURACY\n"):].split("\n\n", 2)
+    assert table == 7 and [f"   - {line.strip()}" for line in said[:table]] == section[0].splitlines()[2:]
+    assert said[table:] == section[1].splitlines()
+    summary = listing[:listing.index("INCREMENTS\n")].count("\n")
+    lines = listing[:listing.rindex("\nDECK\n")].splitlines()
+    assert len(lines) > summary + 500
+    assert not [line for line in lines[summary:] if line.endswith(" ")]
+
+
 @pytest.mark.changes("ACCURACY", "ACCURACY, ROUNDS")
 def test_targets_that_are_missed_are_told_with_status_4(tmp_path):
     """One round does not reach what two do; a target in the unit of the quantity is taken as such."""

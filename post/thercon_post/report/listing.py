@@ -38,7 +38,7 @@ class Listing:
 
     outcome: str = ""
     ended_early: str = ""  # why, and what the results hold
-    accuracy: str = ""  # whether a requested one is reached, and why not
+    accuracy: list = field(default_factory=list)  # whether a requested one is reached, and its targets
     checks: list = field(default_factory=list)
     warnings: list = field(default_factory=list)
 
@@ -65,7 +65,8 @@ def read_listing(path, cards):
         elif remark and found.checks:
             setattr(found.checks[-1], *remark.groups())
     found.warnings = items(section(lines, "WARNINGS"))
-    found.accuracy = "".join(items(section(lines, "REQUESTED ACCURACY"))[:1])
+    # The table of rounds is set off from the targets.
+    found.accuracy = items(takewhile(str.strip, section(lines, "REQUESTED ACCURACY")))
     return found
 
 

@@ -51,7 +51,8 @@ def facts(result, listing):
     ]
     rows += [(words, escape(text(run[key]))) for key, words in FACTS.items() if key in run]
     if "accuracy" in result.file:
-        words = listing.accuracy.removeprefix("requested accuracy ") if listing else ""
+        words = listing.accuracy[0] if listing and listing.accuracy else ""
+        words = words.removeprefix("requested accuracy ")
         rows += [("requested accuracy", escape(words) or accuracy_words(result.file["accuracy"]))]
     rows += [("time of the run", f"{seconds:.2f} s")]
     listed = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in rows)
