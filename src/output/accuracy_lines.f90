@@ -13,7 +13,7 @@ module accuracy_lines
    private
    public :: add_targets, add_rounds, missed_words
 
-   integer, parameter :: name_width = 30   !! columns of interface and quantity
+   integer, parameter :: name_width = 30   !! least columns of interface and quantity
    integer, parameter :: most_named = 3    !! targets in one line
    real(dp), parameter :: rounding = 1.0e-12_dp   !! relative
 
@@ -26,7 +26,7 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(unit_labels_type), intent(in) :: labels           !! units of the deck
       type(string_type), allocatable, intent(inout) :: lines(:)
-      character(name_width) :: name
+      character(:), allocatable :: name
       integer :: d
 
       if (.not. accuracy%is_on) return
@@ -37,6 +37,7 @@ contains
       call append(lines, verdict(accuracy))
       do d = 1, size(accuracy%demands)
          name = demand_name(accuracy, d, interfaces)
+         name = name//repeat(' ', max(name_width - len(name), 0))
          call append(lines, name//' '//target_words(accuracy, d, labels))
       end do
       if (any([(is_of_more(accuracy, d), d=1, size(accuracy%demands))])) call append(lines, &

@@ -14,13 +14,14 @@ POST = Path(__file__).resolve().parents[2] / "post"
 sys.path.insert(0, str(POST))
 
 from browser import Browser  # noqa: E402
-from program import run, write_deck  # noqa: E402
+from program import CYLINDER, run, write_deck  # noqa: E402
 from synthetic import write_result  # noqa: E402
 
 from thercon_post import stresses  # noqa: E402
 from thercon_post.report.cli import main  # noqa: E402
 from thercon_post.report.data import kept_steps  # noqa: E402
 from thercon_post.report.listing import read_listing  # noqa: E402
+from thercon_post.report.tables import missed  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -333,6 +334,7 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
         group["cpu_seconds"], group["unknowns"] = [0.125, 0.3], [100, 900]
         group["elements"], group["increments"] = [10, 40], [15, 30]
         group.attrs["reached"], group.attrs["later_round_begun"] = 0, 1
+        file["run"].attrs["seconds_iterate"] = 12.5
         bounds = group.create_group("bounds/CYLINDER")
         bounds["normal_force"] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 0.25, 0.1]]
         bounds["peak_pressure"] = [[1, 5000.0, 1320.0, 0.1], [1, 5.1, 0.1, 0.1]]
@@ -349,7 +351,35 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
     assert rows[0][1:3] == ["–", "–"] and rows[0][-1].startswith("nothing to judge")
     assert rows[1][1:4] == ["uncertain", "0.25", "0.1"] and ">not met<" in rows[1][-1]
     assert rows[2][1:4] == ["1300", "0.1", "0.1"] and ">met<" in rows[2][-1]
+    assert "<dd>12.50 s in round 2; all rounds took 0.42 CPU seconds</dd>" in text
     assert "Rounds of the" not in synthetic().read_text()
+
+
+@pytest.mark.parametrize(("said", "shown"), [
+    ("uncertain, target 5 %, step 1 with 6.5 MPa (no limit: it grows from mesh to mesh)",
+     ", step 1 with 6.5 MPa (no limit: it grows from mesh to mesh)"),
+    ("bound 7 % of 5 MPa cm^2, target 5 %, step 2 (mostly of the mesh); the peak is at an end of the face",
+     ", step 2 (mostly of the mesh); the peak is at an end of the face"),
+    ("bound 0.2 MPa cm^2, target 0.1 MPa cm^2 (mostly of the increments)", " (mostly of the increments)"),
+    ("uncertain, target 5 %: a single increment does not tell its error",
+     ": a single increment does not tell its error")])
+def test_step_and_reason_stand_beside_a_target_that_is_missed(said, shown):
+    lines = ["requested accuracy not reached after 4 rounds", "A heat rate                    met: bound 2 %",
+             "AA peak pressure               not met: bound 9 %, target 5 % (another)",
+             f"A peak pressure                not met: {said}"]
+    assert missed(lines, "A peak pressure") == shown
+    assert missed(lines, "A heat rate") == missed([], "A peak pressure") == ""
+
+
+def test_the_page_takes_step_and_reason_from_the_listing(tmp_path):
+    for name in ("brake_pad.inp", "brake_pad.mesh"):
+        shutil.copy(CYLINDER.parents[1] / "examples" / name, tmp_path)
+    status, said = run(tmp_path / "brake_pad.inp", "--accuracy", "5%")
+    assert status == 4, said
+    assert main([str(tmp_path / "brake_pad.vtkhdf"), "--out", str(tmp_path)]) == 0
+    text = (tmp_path / "brake_pad.html").read_text()
+    assert '<span class="fail">not met</span>, step 1 with ' in text
+    assert "MPa (no limit: it grows from mesh to mesh)</td>" in text
 
 
 def test_what_is_no_result_is_refused(tmp_path, capsys):

@@ -20,7 +20,7 @@ def page(result):
     heading = text(result.file["run"].attrs.get("heading", "")) or result.name
     sections = [
         ("summary", "Summary", tables.facts(result, listing) + tables.bounds(result)
-         + tables.rounds(result)),
+         + tables.rounds(result, listing)),
         *([("contact", "Contact", contact_section(result))] if result.contact_names else []),
         ("fields", "Fields", FIELDS),
         ("history", "History", '<div id="histories" class="plots"></div>'),

@@ -1,5 +1,6 @@
 """Tables of the page that do not change with the load."""
 
+import re
 from html import escape
 
 import numpy as np
@@ -54,7 +55,11 @@ def facts(result, listing):
         words = listing.accuracy[0] if listing and listing.accuracy else ""
         words = words.removeprefix("requested accuracy ")
         rows += [("requested accuracy", escape(words) or accuracy_words(result.file["accuracy"]))]
-    rows += [("time of the run", f"{seconds:.2f} s")]
+    spent = f"{seconds:.2f} s"
+    if "accuracy" in result.file:
+        cpu = result.file["accuracy/cpu_seconds"][:]
+        spent += f" in round {len(cpu)}; all rounds took {sum(cpu):.2f} CPU seconds"
+    rows += [("time of the run", spent)]
     listed = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in rows)
     return f'<dl class="facts">{listed}</dl>'
 
@@ -111,7 +116,7 @@ def accuracy_words(group):
     return words + (f"; round {count + 1} was begun" if group.attrs["later_round_begun"] else "")
 
 
-def rounds(result):
+def rounds(result, listing):
     """Return the rounds of a requested accuracy: what each cost, and its bounds."""
     group = result.file.get("accuracy")
     if group is None:
@@ -126,12 +131,20 @@ def rounds(result):
     told = table("Rounds of the requested accuracy", head, found, range(1, 5))
     head = ["interface", "quantity", *(f"round {k + 1}" for k in range(len(found))), "target",
             "unit", "verdict"]
-    rows = [[escape(name), words, *target_cells(each, unit)] for name, words, unit, each in named]
+    said = listing.accuracy if listing else []
+    rows = [[escape(name), words, *target_cells(each, unit, missed(said, f"{name} {words}"))]
+            for name, words, unit, each in named]
     return told + table("Error bounds of each round against their targets", head, rows,
                         range(2, len(found) + 3))
 
 
-def target_cells(rows, unit):
+def missed(said, target):
+    """Return step and reason of a target that is not met, as the listing says them."""
+    words = re.compile(re.escape(target) + r" +not met: .*, target .*?(, step .*| \(.*|: .*|)$")
+    return next((found[1] for found in map(words.match, said) if found), "")
+
+
+def target_cells(rows, unit, reason):
     """Return the bounds of all rounds, target, unit and verdict of the last one."""
     step, _, bound, allowed = rows[-1]
     cells = ["–" if each[0] == 0 else "uncertain" if np.isnan(each[2]) else number(each[2], 2)
@@ -140,7 +153,7 @@ def target_cells(rows, unit):
         return [*cells, "–", unit, "nothing to judge at the ends of the steps"]
     verdict = "met" if bound <= allowed else "not met"
     look = "pass" if bound <= allowed else "fail"
-    return [*cells, number(allowed, 2), unit, f'<span class="{look}">{verdict}</span>']
+    return [*cells, number(allowed, 2), unit, f'<span class="{look}">{verdict}</span>{escape(reason)}']
 
 
 def number(value, digits=6):
