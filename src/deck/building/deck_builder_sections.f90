@@ -9,6 +9,7 @@ module deck_builder_sections
       set_names
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, has_stand_in
+   use element_kinds, only: axisymmetric
    use kinds, only: dp
    use materials, only: section_type
    use mesh, only: mesh_type, set_type
@@ -35,16 +36,21 @@ contains
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= 'SOLID SECTION') cycle
          n = n + 1
-         call build_section(cards, cards%keywords(k), context, model, report, model%sections(n))
+         call build_section(cards, cards%keywords(k), model, report, model%sections(n))
          call give_section(cards%keywords(k), n, context%line_sets, model%mesh, report, &
             context%sections_sound)
+         if (cards%keywords(k)%last_data >= cards%keywords(k)%first_data) cycle
+         if (any(model%mesh%element_section == n .and. &
+            model%mesh%element_plane /= axisymmetric)) then
+            call context%note('*SOLID SECTION without a thickness: '// &
+               to_text(model%sections(n)%thickness))
+         end if
       end do
    end subroutine build_sections
 
-   subroutine build_section(cards, card, context, model, report, section)
+   subroutine build_section(cards, card, model, report, section)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(section_type), intent(out) :: section
@@ -63,10 +69,7 @@ contains
          call report_unknown('material', name, names, parameter_place(card, 'MATERIAL'), report)
       end if
       call take_orientation(card, model, report, section)
-      if (card%last_data < card%first_data) then
-         call context%note('*SOLID SECTION without a thickness: '//to_text(section%thickness))
-         return
-      end if
+      if (card%last_data < card%first_data) return
       valid = .true.
       associate (data => cards%data(card%first_data))
          call take_field(data, 1, 'thickness', report, section%thickness, valid)
