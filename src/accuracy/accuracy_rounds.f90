@@ -11,7 +11,7 @@ module accuracy_rounds
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, zone_words
-   use interface_quantities, only: closed_length, edge_spacing, peak_is_at_end, peaks_at_corner
+   use interface_quantities, only: closed_length, is_end_of_face, peak_is_at_end, peaks_at_corner
    use kinds, only: dp
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
@@ -210,16 +210,13 @@ contains
       type(interface_errors_type), intent(in) :: errors
       real(dp), intent(in) :: scale
       type(finding_type) :: finding
-      type(quantity_type) :: quantity
 
-      quantity = estimated(demand%quantity)
       associate (q => demand%quantity)
          finding%value = errors%value(q)
          finding%allowed = demand%target*merge(scale, 1.0_dp, demand%is_relative)
          finding%is_there = .not. ieee_is_nan(finding%value) .and. scale > 0.0_dp
          if (.not. finding%is_there) return
-         if (quantity%resolution > 0.0_dp) finding%is_there = &
-            edge_spacing(points, finding%value) > 0.0_dp
+         finding%is_there = .not. is_end_of_face(estimated(q), points, finding%value)
          finding%mesh = errors%mesh(q)
          finding%increment = errors%increment(q) + errors%iteration(q)
          finding%bound = errors%bound(q)

@@ -8,13 +8,14 @@ module interface_quantities
    use increment_records, only: measure_contact
    use friction_laws, only: friction_law_type
    use kinds, only: dp
+   use quantity_types, only: quantity_type
    use records, only: contact_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: carrying_conductance, solution_state_type
    implicit none
    private
-   public :: closed_length, contact_of, edge_spacing, peak_is_at_end, peaks_at_corner, &
-      quantities_of, quantities_of_state
+   public :: closed_length, contact_of, edge_spacing, is_end_of_face, peak_is_at_end, &
+      peaks_at_corner, quantities_of, quantities_of_state
 
 contains
 
@@ -101,6 +102,16 @@ contains
          end do
       end associate
    end function edge_spacing
+
+   !> Whether a value is an edge at the end of the face: the mesh does not move it.
+   pure logical function is_end_of_face(quantity, points, value)
+      type(quantity_type), intent(in) :: quantity
+      type(contact_points_type), intent(in) :: points   !! the contact points of the interface
+      real(dp), intent(in) :: value                     !! of the quantity; NaN: none
+
+      is_end_of_face = quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(value)
+      if (is_end_of_face) is_end_of_face = edge_spacing(points, value) <= 0.0_dp
+   end function is_end_of_face
 
    !> Whether the pressure is largest at the first, at the last contact point; not without pressure.
    pure function peak_is_at_end(contact) result(at_end)

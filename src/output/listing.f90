@@ -150,7 +150,7 @@ contains
       call print_warnings(self, record)
       if (allocated(record%errors)) then
          do i = 1, size(interfaces)
-            call print_interface_errors(self%text%unit, interfaces(i)%name, record%errors(i))
+            call print_interface_errors(self%text%unit, interfaces(i), record%errors(i))
          end do
       end if
       call print_requested(self%text%unit, record, model)

@@ -2,8 +2,10 @@
 !> quantities, with the parts of mesh, increments and iteration beside each other.
 module listing_errors
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use increment_quantities, only: body_values
+   use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, page_width, print_wrapped
    use quantity_types, only: of_bodies, quantity_type
@@ -47,22 +49,26 @@ contains
       end do
    end subroutine print_body_errors
 
-   !> Prints the bounds of an interface. What has no value, or no part in the deck, is left out.
-   subroutine print_interface_errors(unit, name, errors)
+   !> Prints the bounds of an interface. What has no value, or no part in the deck, is left out, and
+   !> so are edges at the end of the face.
+   subroutine print_interface_errors(unit, points, errors)
       integer, intent(in) :: unit                          !! unit of the listing
-      character(*), intent(in) :: name                     !! name of the interface
+      type(contact_points_type), intent(in) :: points      !! the contact points of the interface
       type(interface_errors_type), intent(in) :: errors
       character(page_width) :: line
       integer :: k, q, width
+      logical :: is_told(size(estimated))
 
       width = maxval([(len(words_of(estimated(q)%name)), q=1, size(estimated))])
-      write (unit, '(/, 3a)') '   BOUNDS OF THE ERRORS OF ', name, &
+      write (unit, '(/, 3a)') '   BOUNDS OF THE ERRORS OF ', points%name, &
          ': how far values may be off to either side, with the parts of each bound'
       write (unit, '(4x, a, a14, a13, a11, a12, 2a14, a14)') repeat(' ', width), 'value', &
          'bound', '%', 'mesh', 'increments', 'iteration', 'largest part'
       do q = 1, size(estimated)
          associate (value => errors%value(q), bound => errors%bound(q))
-            if (.not. is_worth_telling(q, value, bound)) cycle
+            is_told(q) = is_worth_telling(q, value, bound) .and. &
+               .not. is_end_of_face(estimated(q), points, value)
+            if (.not. is_told(q)) cycle
             write (line, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
                name_of(q, width), column(value, 14, 6), bound_word(bound), &
                percent(bound, value), shown(errors%mesh(q), 12), shown(errors%increment(q), 14), &
@@ -72,7 +78,8 @@ contains
       end do
       do q = 1, size(estimated)
          associate (why_not => errors%why_not(q)%value)
-            if (why_not == '' .or. any([(errors%why_not(k)%value == why_not, k=1, q - 1)])) cycle
+            if (why_not == '' .or. .not. is_told(q)) cycle
+            if (any([(is_told(k) .and. errors%why_not(k)%value == why_not, k=1, q - 1)])) cycle
             call print_wrapped(unit, '    ', 'uncertain: '//why_not)
          end associate
       end do

@@ -4,6 +4,7 @@ module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, zone_words
+   use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use model, only: model_type
    use quantity_types, only: needs_heat, quantity_type
@@ -144,6 +145,7 @@ contains
       character(value_width) :: value
       real(dp) :: values(1)
       integer :: q
+      logical :: is_bounded
 
       do q = 1, size(estimated)
          if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
@@ -156,11 +158,17 @@ contains
          end if
          value = to_text(values(1))
          words = '  '//name//adjustr(value)
-         if (allocated(self%errors)) words = words//bound_words(self%errors(i)%bound(q), &
-            values(1))
+         is_bounded = allocated(self%errors) .and. &
+            .not. is_end_of_face(estimated(q), points, values(1))
+         if (is_bounded) then
+            words = words//bound_words(self%errors(i)%bound(q), values(1))
+         else if (allocated(self%errors)) then
+            words = words//repeat(' ', bound_width)
+            if (zone == '') zone = 'up to an end of the face'
+         end if
          words = trim(words//' '//unit_label(estimated(q)%unit, model%units))
          if (zone /= '') words = words//', '//zone
-         if (allocated(self%errors)) words = words//why_not(self%errors(i), q)
+         if (is_bounded) words = words//why_not(self%errors(i), q)
          words = words//other_edges(estimated(q)%name, points, self%contacts(i), &
             values(1))
          call append(lines, words)

@@ -216,7 +216,12 @@ def test_files_without_a_step_are_skipped_in_a_batch_only(good, bad, tmp_path):
 def test_a_summary_tells_zones_without_an_edge(tmp_path):
     """The faces of the press fit are closed from end to end, those of the rods open."""
     press_fit = run("run", INPUT / "examples" / "press_fit.inp", "--out", tmp_path).stdout
-    assert re.search(r"\n    edge of contact +10 \+- .* mm, whole face\n", press_fit)
+    assert re.search(r"\n    edge of contact +10 +mm, whole face\n", press_fit)
+    bounds = (tmp_path / "press_fit.lst").read_text().split("BOUNDS OF THE ERRORS OF SEAT")[1].split("\n\n")[0]
+    assert "peak pressure" in bounds and "edge" not in bounds
+    pellets = run("run", INPUT / "examples" / "fuel_pellet.inp", "--out", tmp_path).stdout
+    assert re.search(r"\n    edge of contact +10 +mm, up to an end of the face; also at 7.25\n", pellets)
+    assert re.search(r"\n    edge of contact +0.36\d+ \+- .* mm\n", pellets)
     assert "edge of stick" not in press_fit, "there is no friction"
     rods = run("run", INPUT / "rods" / "r2.inp", "--out", tmp_path).stdout
     assert re.search(r"\n    edge of contact +none \(open\)\n", rods)
@@ -321,4 +326,5 @@ def test_a_summary_tells_all_edges_of_a_zone(tmp_path):
         for face in file["contact"].values():
             outermost = face["edge_stick"][-1]
             (other,) = (edge for edge in face["edges_stick"][-1][:2] if edge != outermost)
-            assert re.search(rf"\n    edge of stick +{outermost:g} .* mm; also at {other:g}\n", said)
+            end = ", up to an end of the face" if outermost == face["s"][-1] else ""
+            assert re.search(rf"\n    edge of stick +{outermost:g} .* mm{end}; also at {other:g}\n", said)

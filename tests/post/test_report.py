@@ -371,13 +371,25 @@ def test_step_and_reason_stand_beside_a_target_that_is_missed(said, shown):
     assert missed(lines, "A heat rate") == missed([], "A peak pressure") == ""
 
 
+def page_of_example(folder, name, *options, status=0):
+    """Solve an example in a folder; return the text of its page."""
+    for end in ("inp", "mesh"):
+        shutil.copy(CYLINDER.parents[1] / "examples" / f"{name}.{end}", folder)
+    found, said = run(folder / f"{name}.inp", *options)
+    assert found == status, said
+    assert main([str(folder / f"{name}.vtkhdf"), "--out", str(folder)]) == 0
+    return (folder / f"{name}.html").read_text()
+
+
+def test_an_edge_at_the_end_of_the_face_has_no_bound(tmp_path):
+    text = page_of_example(tmp_path, "press_fit")
+    row = re.search(r'<th scope="row">edge of contact, s</th>(.*?)</tr>', text)[1]
+    assert re.findall(r"<td[^>]*>(.*?)</td>", row) == ["10", "none: end of the face", "mm", "–", "–", "–"]
+    assert re.search(r'<th scope="row">peak pressure</th>.*?<td[^>]*>± ', text)
+
+
 def test_the_page_takes_step_and_reason_from_the_listing(tmp_path):
-    for name in ("brake_pad.inp", "brake_pad.mesh"):
-        shutil.copy(CYLINDER.parents[1] / "examples" / name, tmp_path)
-    status, said = run(tmp_path / "brake_pad.inp", "--accuracy", "5%")
-    assert status == 4, said
-    assert main([str(tmp_path / "brake_pad.vtkhdf"), "--out", str(tmp_path)]) == 0
-    text = (tmp_path / "brake_pad.html").read_text()
+    text = page_of_example(tmp_path, "brake_pad", "--accuracy", "5%", status=4)
     assert '<span class="fail">not met</span>, step 1 with ' in text
     assert "MPa (no limit: it grows from mesh to mesh)</td>" in text
 

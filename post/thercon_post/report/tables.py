@@ -82,7 +82,7 @@ def bounds(result):
         for key, values in contact.totals().items():
             if np.isnan(values[-1]) or (key == "shear_force" and not values[-1]):
                 continue
-            rows.append(bound_row(result, contact.name, key, float(values[-1])))
+            rows.append(bound_row(result, contact, key, float(values[-1])))
             rows[-1][0] = words_of(key) + (", s" if key.startswith("edge_") else "")
             rows[-1][3] = contact.unit(key)
         head = ["quantity", "value", "error bound", "unit", "by the mesh", "by increments",
@@ -92,12 +92,15 @@ def bounds(result):
     return "".join(found)
 
 
-def bound_row(result, name, key, value):
-    """Return value, bound and its parts; words where nothing is known of them."""
-    errors = result.file.get(f"errors/{name}/{key}")
+def bound_row(result, contact, key, value):
+    """Return value, bound and its parts; words where nothing is known of them, or to be known."""
+    errors = result.file.get(f"errors/{contact.name}/{key}")
     row = ["", number(value), "not estimated", "", "–", "–", "–"]
     if errors is None or len(errors) == 0 or result.file["errors/time"][-1] != \
             result.history["time"][-1]:
+        return row
+    if key.startswith("edge_") and value >= contact["s"][-1]:
+        row[2] = "none: end of the face"
         return row
     _, bound, *parts = errors[-1]
     row[4:] = [number(part, 2) for part in parts]
