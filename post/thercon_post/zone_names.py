@@ -1,4 +1,4 @@
-"""Names of the regions of a zone diagram, where each has most room."""
+"""Names of the regions of a zone diagram, where each has room and covers the fewest marks."""
 
 import numpy as np
 from matplotlib.patheffects import withStroke
@@ -7,13 +7,17 @@ CURVES = ("edge_contact", "edge_stick")
 NO_STATE = -1  # outside the loads and pairs of the result
 LABEL_GRID = (60, 48)  # where region names may stand: loads x places
 LABEL_ROOM = 0.08  # room that a name needs around its middle, in parts of the axes
+MARK = 1.8  # half the size of a mark, in points
+LOOKS = {"ha": "center", "va": "center", "linespacing": 0.95, "fontsize": 9}
 
 
 def name_regions(picture, axes):
-    """Write I, II and III where each region has most room around it.
+    """Write I, II and III where each region has room for it, on the fewest marks; of several such
+    places where there is most room.
 
     A region too narrow for its name has it outside, with a line, so that no curve is covered.
     """
+    axes.figure.draw_without_rendering()  # so that the size of the axes is known
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     u, v = (np.linspace(0.0, 1.0, n) for n in LABEL_GRID)
     states = states_at(picture, left + u * (right - left), low + v * (high - low)).ravel()
@@ -26,24 +30,47 @@ def name_regions(picture, axes):
     }
     taken = []
     for state, at in sorted(middles.items(), key=lambda item: -room[item[1]]):
-        place = at
+        words = "\n".join(picture.names[state])
+        covered = marks_under(picture, axes, words, u, v)
         if room[at] < LABEL_ROOM:
-            place = free_place(points, room, points[at], points[taken])
+            place = free_place(points, room, points[at], points[taken], covered)
+        else:
+            fits = np.flatnonzero((states == state) & (room >= LABEL_ROOM))
+            place = at = fits[np.lexsort((-room[fits], covered[fits]))[0]]
         taken.append(place)
         axes.annotate(
-            "\n".join(picture.names[state]),
+            words,
             xy=points[at],
             xytext=points[place],
             xycoords="axes fraction",
             textcoords="axes fraction",
-            ha="center",
-            va="center",
-            linespacing=0.95,
             zorder=5,
-            fontsize=9,
+            **LOOKS,
             path_effects=[withStroke(linewidth=1.6, foreground="white")],  # apart from the marks
             arrowprops=None if place == at else {"arrowstyle": "-", "lw": 0.6, "shrinkB": 0},
         )
+
+
+def marks_under(picture, axes, words, u, v):
+    """Return how many marks a name covers, by the place of its middle: of contact points, which lie
+    on lines of one load and of one place, and of further edges."""
+    measured, frame = axes.text(0.5, 0.5, words, **LOOKS), axes.get_window_extent()
+    box, mark = measured.get_window_extent(), MARK * axes.figure.dpi / 72.0
+    measured.remove()
+    wide, high = 0.5 * box.width + mark, 0.5 * box.height + mark
+    edges = np.hstack([picture.edges(f"edges_{key[5:]}") for key in CURVES])
+    loads = np.repeat(picture.abscissa, edges.shape[1])[~np.isnan(edges.ravel())]
+
+    def under(values, at, axis):
+        """Return whether marks are near a middle, (middles, marks)."""
+        pixels = axes.transData.transform(np.stack([values, values], axis=1))[:, axis]
+        start, size = ((frame.x0, frame.width), (frame.y0, frame.height))[axis]
+        return np.abs(start + at[:, None] * size - pixels) < (wide, high)[axis]
+
+    columns = np.sum(under(picture.abscissa, u, 0), axis=1)
+    rows = np.sum(under(picture.coordinate, v, 1), axis=1)
+    further = under(loads, u, 0).astype(int) @ under(edges[~np.isnan(edges)], v, 1).astype(int).T
+    return (np.outer(columns, rows) + further).ravel()
 
 
 def states_at(picture, loads, places):
@@ -82,9 +109,11 @@ def room_around(points, states):
     return room
 
 
-def free_place(points, room, target, taken):
-    """Return the number of the point near `target` that has room for a name, clear of others."""
+def free_place(points, room, target, taken, covered):
+    """Return the number of a point near `target` that has room for a name, clear of others: up to
+    twice as far as the nearest one if fewer marks are covered there."""
     clear = np.linalg.norm(points - target, axis=1)
     for other in taken:
         room = np.minimum(room, 0.5 * np.linalg.norm(points - other, axis=1))
-    return int(np.argmin(np.where(room >= min(LABEL_ROOM, room.max()), clear, np.inf)))
+    clear = np.where(room >= min(LABEL_ROOM, room.max()), clear, np.inf)
+    return int(np.lexsort((clear, np.where(clear <= 2.0 * clear.min(), covered, np.inf)))[0])

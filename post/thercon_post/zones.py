@@ -90,13 +90,13 @@ class Picture:
         unit = self.result.units.names.get("length", "")
         part = self.contact.part_words(self.coordinate, window, unit)
         axes.set_xlabel(f"{self.abscissa_label}\n{part}".rstrip())
-        name_regions(self, axes)
         figure.legend(
             handles=self.legend_handles(overlays),
             loc="outside lower center",
             ncols=3,
             columnspacing=1.4,
         )
+        name_regions(self, axes)
         return figure
 
     @staticmethod

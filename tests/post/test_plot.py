@@ -287,6 +287,36 @@ def test_names_of_zones_stand_apart_inside_the_axes_where_there_are_results(kept
         assert not any(box.overlaps(other) for other in boxes[:number])
 
 
+@pytest.mark.parametrize("count", [5, 60])
+def test_names_of_zones_cover_no_mark_where_there_is_room_between_them(kept, tmp_path, count):
+    """Of a few loads, in whose middle is a column of marks; of many no further edge."""
+    path = tmp_path / "slip.vtkhdf"
+    write_result(path, loads=tuple(np.linspace(300.0, 900.0, count)))
+    with h5py.File(path, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        contact["status"][...] = 1
+        contact["status"][:, -1] = 0
+        contact["edge_contact"][...] = contact["s"][-2]
+        for key in ("edge_stick", "edges_contact", "edges_stick"):
+            contact[key][...] = np.nan
+
+    def name_and_marks(kinds):
+        (figure,) = kept("zones", path)
+        (axes,) = figure.axes
+        marks = [axes.transData.transform(line.get_xydata()) for line in axes.lines
+                 if line.get_marker() in kinds]  # fmt: skip
+        (box,) = [text.get_window_extent() for text in axes.texts if text.get_text() == "II\nslip"]
+        middle = np.mean(axes.transData.inverted().transform(box), axis=0)
+        return middle, np.vstack(marks), box
+
+    (_, place), marks, box = name_and_marks(".os")
+    assert len(marks) == 21 * count and (count > 5 or box.count_contains(marks) == 0)
+    with h5py.File(path, "r+") as file:
+        file["contact/CYLINDER/edges_contact"][:, 0] = place
+    _, marks, box = name_and_marks("d")
+    assert len(marks) == count and box.count_contains(marks) == 0
+
+
 def test_an_edge_of_stick_is_seen_where_it_is_the_edge_of_contact(kept, result):
     with h5py.File(result, "r+") as file:
         contact = file["contact/CYLINDER"]
