@@ -72,15 +72,16 @@ contains
       type(value_courses_type), intent(in) :: self, other
       integer, intent(in) :: interface
       real(dp), intent(out) :: time(:), difference(:, :)   ! as of the courses
+      real(dp) :: same
       integer :: j, k, n
 
+      same = same_time*(self%time(kept) - self%time(kept - 1))
       time = self%time
       difference = ieee_value(1.0_dp, ieee_quiet_nan)
       n = kept
       do k = kept, 1, -1
          j = minloc(abs(other%time - self%time(k)), dim=1)
-         if (abs(other%time(j) - self%time(k)) > same_time*(self%time(kept) - self%time(kept - 1))) &
-            cycle
+         if (abs(other%time(j) - self%time(k)) > same) cycle
          time(n) = self%time(k)
          difference(n, :) = self%values(k, :, interface) - other%values(j, :, interface)
          n = n - 1
