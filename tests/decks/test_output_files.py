@@ -5,16 +5,14 @@ import resource
 import signal
 import subprocess
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import h5py
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
 from deck_runs import CYLINDER, PROGRAM, copy_deck, run
-from test_interrupted import heat, lines_of
+from test_interrupted import INCREMENTS, PATIENCE, heat, lines_of
 
-INCREMENTS = 20000
-PATIENCE = 60.0
 SMALL = [
     *without_unused_surfaces(block("BLOCK", [0.0, 1.0], [0.0, 1.0])),
     *solid("BLOCK", 1000.0, 0.25),
@@ -32,14 +30,14 @@ def small(tmp_path):
 
 
 @contextmanager
-def running(deck, out, prepare=None):
+def running(deck, out):
     """Run a deck of many increments until some of them are in place; then let the caller go on."""
     process = subprocess.Popen(
         [PROGRAM, "run", str(deck), "--out", str(out)], text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )
     try:
-        wait_until(lambda: len(lines_of(out / f"{deck.stem}.sta")) > 5 or process.poll() is not None)
+        wait_until(lambda: len(lines_of(out / f"{deck.stem}.sta")) > 5)
         yield process
     finally:
         process.kill()
@@ -51,6 +49,14 @@ def wait_until(condition):
     while not condition():
         assert time.monotonic() < until
         time.sleep(0.005)
+
+
+def size_of(path):
+    """Return the size of a file, 0 where there is none; a run that begins may create it, delete it
+    and create it again."""
+    with suppress(FileNotFoundError):
+        return path.stat().st_size
+    return 0
 
 
 def names(folder):
@@ -196,14 +202,29 @@ def test_a_limit_of_file_sizes_is_said_with_its_reason(tmp_path):
     assert "File too large" in process.stderr
 
 
-def test_a_working_file_that_cannot_be_renamed_stays_and_is_named(tmp_path):
-    deck = copy_deck(CYLINDER, tmp_path / "long.inp", ["*REFINE, LEVELS=2", *WRONG_CHECK])
-    listing = tmp_path / "long.lst"
-    process = subprocess.Popen([PROGRAM, "run", "--quiet", str(deck), "--out", str(tmp_path)],
+def in_the_way(deck, out):
+    """Run a deck, with a folder in place of its result file from between the trial of its name and
+    its first use, a tenth of a second later; return the process, None where that was missed."""
+    process = subprocess.Popen([PROGRAM, "run", "--quiet", str(deck), "--out", str(out)],
                                text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    # Between the trial and the first increment; a folder stands for any reason a system may have.
-    wait_until(lambda: listing.exists() and listing.stat().st_size > 0)
-    (tmp_path / "long.vtkhdf").mkdir()
+    wait_until(lambda: size_of(out / f"{deck.stem}.lst") > 0)
+    try:
+        (out / f"{deck.stem}.vtkhdf").mkdir()
+    except FileExistsError:
+        process.kill()
+        process.communicate()
+        (out / f"{deck.stem}.vtkhdf").unlink()
+        (out / f"{deck.stem}.lst").unlink()
+        return None
+    return process
+
+
+def test_a_working_file_that_cannot_be_renamed_stays_and_is_named(tmp_path):
+    """A folder stands for any reason a system may have."""
+    deck = heat(tmp_path, "long.inp", INCREMENTS)
+    deck.write_text("\n".join([deck.read_text().split("*VERIFY")[0], *WRONG_CHECK, ""]))
+    listing = tmp_path / "long.lst"
+    process = next(filter(None, (in_the_way(deck, tmp_path) for _ in range(50))))
     _, messages = process.communicate(timeout=PATIENCE)
     assert process.returncode == 3, messages
     assert messages.count("error:") == 1, messages
