@@ -3,6 +3,7 @@
 import csv
 import os
 import pty
+import re
 import resource
 import signal
 import subprocess
@@ -54,12 +55,18 @@ def has_ended(process):
     return True
 
 
-def wait_until(what, seconds=PATIENCE):
+def wait_until(what):
     """Wait until something holds."""
-    until = time.monotonic() + seconds
+    until = time.monotonic() + PATIENCE
     while not what():
         assert time.monotonic() < until
         time.sleep(0.002)
+
+
+def awaits(process, number):
+    """Whether a signal has been sent to a process that has not taken it yet."""
+    words = Path(f"/proc/{process}/status").read_text()
+    return int(re.search(r"ShdPnd:\s*(\w+)", words)[1], 16) >> number - 1 & 1
 
 
 @pytest.fixture
@@ -164,30 +171,33 @@ def test_a_crash_is_named_and_takes_no_other_deck_along(tmp_path, single, long):
 
 
 def test_decks_that_run_are_listed_so_at_once_and_every_second(tmp_path, long):
+    """On a busy machine not every second is kept: some table comes so soon after the one before."""
     other, rest = heat(tmp_path, "other.inp", INCREMENTS), heat(tmp_path, "rest.inp", 1)
     process = start([long, other, rest], tmp_path, "--jobs", 2)
-    wait_until((tmp_path / "long.lst").exists)
-    time.sleep(0.5)
-    rows = [table(tmp_path)]
-    for _ in range(2):
-        time.sleep(1.5)
+    wait_until(lambda: (tmp_path / TABLE).exists()
+               and [row["outcome"] for row in table(tmp_path).values()].count("running") == 2)
+    rows, soon = [table(tmp_path)], []
+    while len(soon) < 2:
+        wait_until(lambda: table(tmp_path)["long"]["seconds"] != rows[-1]["long"]["seconds"])
         rows.append(table(tmp_path))
+        before, after = (float(row["long"]["seconds"]) for row in rows[-2:])
+        soon += [after] if after - before < 1.5 else []
     process.kill()
     process.communicate()
     for row in rows:
         assert [row[name]["outcome"] for name in row] == ["running", "running", "not run"]
         assert row["long"]["status"] == row["long"]["reason"] == ""
     for column in "increments", "iterations", "seconds":
-        assert float(rows[0]["long"][column]) < float(rows[1]["long"][column]) \
-            < float(rows[2]["long"][column])
+        found = [float(row["long"][column]) for row in rows]
+        assert found == sorted(found) and found[0] < found[-1]
 
 
-def test_the_end_of_a_deck_is_in_the_table_within_a_second(tmp_path, long):
+def test_the_end_of_a_deck_is_in_the_table_while_others_run(tmp_path, long):
     other = heat(tmp_path, "other.inp", INCREMENTS)
     process = start([long, other], tmp_path, "--jobs", 2)
     wait_until(lambda: len(lines_of(tmp_path / "long.sta")) > 10)
     os.kill(min(children(process)), signal.SIGKILL)
-    time.sleep(1.0)
+    wait_until(lambda: table(tmp_path)["long"]["outcome"] != "running")
     rows = table(tmp_path)
     process.kill()
     process.communicate()
@@ -211,7 +221,7 @@ def test_a_batch_whose_caller_ignores_the_ends_of_children_sees_them(tmp_path):
     process = start(GOOD, tmp_path, preexec_fn=lambda: signal.signal(
         signal.SIGCHLD, signal.SIG_IGN))
     try:
-        process.communicate(timeout=PATIENCE / 4)
+        process.communicate(timeout=PATIENCE)
     finally:
         process.kill()
     assert process.returncode == 0
@@ -248,19 +258,32 @@ def test_too_little_memory_for_any_deck_is_said(tmp_path):
 
 
 def test_as_many_decks_run_at_a_time_as_are_asked_for(tmp_path):
-    decks = [heat(tmp_path, f"{name}.inp", INCREMENTS // 10) for name in "abcd"]
+    """They are pipes, so that each runs until it is given its cards."""
+    text = heat(tmp_path, "short.inp", 10).read_text()
+    decks = [tmp_path / f"{name}.inp" for name in "abcd"]
+    for deck in decks:
+        os.mkfifo(deck)
+    pipes = {}
+
+    def running():
+        for deck in decks:
+            with suppress(OSError):   # nobody reads it
+                if deck not in pipes:
+                    pipes[deck] = os.open(deck, os.O_WRONLY | os.O_NONBLOCK)
+        return set(pipes)
+
     process = start(decks, tmp_path, "--jobs", 3, "--quiet")
-    seen = set()
-    while process.poll() is None:
-        try:
-            seen.add(len(children(process)))
-        except OSError:
-            break
-        time.sleep(0.001)
+    wait_until(lambda: running() == set(decks[:3]))
+    with pytest.raises(subprocess.TimeoutExpired):
+        process.wait(timeout=0.3)
+    assert running() == set(decks[:3])
+    for deck in decks:
+        wait_until(lambda deck=deck: deck in running())
+        os.write(pipes[deck], text.encode())
+        os.close(pipes[deck])
     output, messages = process.communicate(timeout=PATIENCE)
     assert (output, process.returncode) == ("", 0)
     assert "error" not in messages
-    assert max(seen) == 3
 
 
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGINT"])
@@ -295,6 +318,7 @@ def test_a_second_signal_kills(tmp_path, long):
     (child,) = children(process)
     os.kill(child, signal.SIGSTOP)
     process.send_signal(signal.SIGINT)
+    wait_until(lambda: awaits(child, signal.SIGINT))   # two that come at once are one
     with pytest.raises(subprocess.TimeoutExpired):
         process.wait(timeout=1.5)
     process.send_signal(signal.SIGINT)
@@ -314,7 +338,7 @@ def test_decks_end_with_a_batch_that_is_killed_and_the_table_holds_what_had_ende
                and all(table(tmp_path)[deck.stem]["outcome"] == "solved" for deck in GOOD))
     process.kill()
     process.communicate(timeout=PATIENCE)
-    wait_until(lambda: has_ended(child), 1.0)
+    wait_until(lambda: has_ended(child))
     assert len(lines_of(tmp_path / "long.sta")) < INCREMENTS
     assert table(tmp_path)["long"]["outcome"] == "running"
 

@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 import threading
-import time
 
 import h5py
 import pytest
@@ -36,13 +35,11 @@ def check(deck, *arguments):
 
 
 def refused(deck, message, *arguments):
-    """Assert that a deck is refused with this one message, within seconds."""
-    since = time.monotonic()
+    """Assert that a deck is refused with this one message."""
     status, said = check(deck, *arguments)
     assert status == 1, said[-400:]
     assert said.count(b"error:") == 1, said[:800]
     assert message.encode() in said, said[:800]
-    assert time.monotonic() - since < 20.0
     assert max(map(len, said.splitlines())) < 400
 
 

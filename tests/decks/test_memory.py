@@ -53,7 +53,7 @@ def test_the_estimate_is_not_under_the_peak_nor_twice_as_much(tmp_path, source, 
 @pytest.mark.parametrize("command", ["check", "run"])
 def test_what_no_machine_has_is_refused_before_it_is_refined(tmp_path, command):
     deck = copy_deck(CYLINDER, tmp_path / "large.inp", ["*REFINE, LEVELS=6"])
-    process = run(command, deck, folder=tmp_path, seconds=20)
+    process = run(command, deck, folder=tmp_path, seconds=60)
     if process.returncode == 0:
         pytest.skip("this machine has the memory")
     assert process.returncode == 3

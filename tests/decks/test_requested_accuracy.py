@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 
 import h5py
 import numpy as np
@@ -16,6 +17,7 @@ from blocks import without_unused_surfaces, write
 from changes import note_changes
 from deck_runs import COUPLED, CYLINDER, DECKS, HERTZ, INPUT, PROGRAM, copy_deck, run, solve
 from physics import material, mesh
+from test_interrupted import PATIENCE
 
 sys.path.insert(0, str(DECKS.parent / "documents"))
 from document import Document  # noqa: E402
@@ -380,10 +382,18 @@ def in_a_later_round(folder, seconds):
 
 def wait_for(process, path, words):
     """Wait until a file of a run holds some words."""
-    until = time.monotonic() + 60.0
-    while not (path.exists() and words in path.read_text()):
+    until = time.monotonic() + PATIENCE
+    while words not in text_of(path):
         assert process.poll() is None and time.monotonic() < until
         time.sleep(0.01)
+
+
+def text_of(path):
+    """Return the text of a file, none where it is not there: a run that begins may create it, delete
+    it and create it again."""
+    with suppress(FileNotFoundError):
+        return path.read_text()
+    return ""
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.3, 1.2])
@@ -391,7 +401,7 @@ def test_a_signal_in_a_later_round_keeps_the_last_whole_one(tmp_path, seconds):
     """Wherever it comes: while the next round is prepared, reduced, or solved."""
     process = in_a_later_round(tmp_path, seconds)
     process.send_signal(signal.SIGINT)
-    output, words = process.communicate(timeout=60.0)
+    output, words = process.communicate(timeout=PATIENCE)
     assert process.returncode == 5, words
     whole = kept_round(tmp_path, "deck", words)
     assert f"ended by SIGINT in round {whole + 1} " in words
@@ -406,7 +416,7 @@ def test_a_first_round_that_is_not_whole_has_no_row(tmp_path):
         stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     wait_for(process, tmp_path / "deck.sta", "\n")
     process.send_signal(signal.SIGINT)
-    output, words = process.communicate(timeout=60.0)
+    output, words = process.communicate(timeout=PATIENCE)
     assert process.returncode == 5, words
     told = "requested accuracy not reached: round 1 did not come to its end\n"
     assert told in output and told in (tmp_path / "deck.lst").read_text()
@@ -474,7 +484,7 @@ def test_memory_that_runs_out_in_a_later_round_keeps_the_last_whole_one(tmp_path
     """As where others take it meanwhile, which no estimate can foresee."""
     process = in_a_later_round(tmp_path, seconds)
     resource.prlimit(process.pid, resource.RLIMIT_AS, (1000000, 1000000))
-    output, words = process.communicate(timeout=60.0)
+    output, words = process.communicate(timeout=PATIENCE)
     assert process.returncode == 3, words
     assert kept_round(tmp_path, "deck", words) > 0
     assert "deck.inp: out of memory, 45 increments" in output and "results: " in output
@@ -488,8 +498,8 @@ def test_a_run_keeps_its_lock_from_round_to_round(tmp_path):
         [PROGRAM, "run", "--quiet", "--accuracy", "0.3%", deck, "--out", tmp_path],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     listing = tmp_path / "deck.lst"
-    while not (listing.exists() and listing.stat().st_size > 0):
-        assert process.poll() is None
+    while not text_of(listing) and process.poll() is None:
+        pass
     with listing.open() as file:
         while True:
             try:
@@ -497,7 +507,7 @@ def test_a_run_keeps_its_lock_from_round_to_round(tmp_path):
                 break
             except BlockingIOError:
                 pass
-        words = process.communicate(timeout=60.0)[1]
+        words = process.communicate(timeout=PATIENCE)[1]
     assert process.returncode == 0, words
     assert rounds_of(tmp_path / "deck.vtkhdf")[2] == 1
 

@@ -10,7 +10,7 @@ import os
 import re
 import signal
 import subprocess
-import time
+from contextlib import contextmanager
 
 import h5py
 import numpy as np
@@ -260,7 +260,7 @@ def test_cheap_rows_are_repeated_and_their_figures_make_sense(r2):
 def r1(tmp_path_factory):
     """Return rows, output and folder of a trade of R1 that stops early."""
     out = tmp_path_factory.mktemp("r1") / "new" / "folder"
-    return *trade(INPUT / "rods" / "r1.inp", out, "--quiet", "--limit", "0.01"), out
+    return *trade(INPUT / "rods" / "r1.inp", out, "--quiet", "--limit", "0.001"), out
 
 
 def test_only_the_table_is_left_and_rows_out_of_balance_are_named(r1):
@@ -280,7 +280,7 @@ def test_a_deck_that_fails_as_written_has_a_table_and_its_status(tmp_path):
     for path in (INPUT / "rods").iterdir():
         text = path.read_text().replace("METHOD=NEWTON", "METHOD=PICARD")
         (deck.parent / path.name).write_text(text)
-    rows, process = trade(deck, tmp_path, "--limit", "0.01", status=2)
+    rows, process = trade(deck, tmp_path, "--limit", "0.001", status=2)
     (default,) = (row for row in rows if row["default"] == "1")
     assert default["status"] == "2"
     assert "the deck as written fails" in process.stderr
@@ -294,7 +294,7 @@ def test_settings_and_width_reach_the_deck(tmp_path):
     assert refused.returncode == 1
     assert "nothing" in refused.stderr.lower()
     rows, _ = trade(INPUT / "rods" / "r1.inp", tmp_path, "--set", "gap=-1.E-4", "--width", "99",
-                    "--limit", "0.01")
+                    "--limit", "0.001")
     solved = [row for row in rows if row["status"] == "0"]
     assert solved
     assert all(row["error_normal_force"] for row in solved)
@@ -334,25 +334,37 @@ def children(process):
         return [int(number) for number in file.read().split()]
 
 
+@contextmanager
+def in_first_row(folder):
+    """Start a trade of R1, which reads a part of its deck through a pipe, and so does its first row;
+    while that waits for it, let the caller go on with the trade and the number of its child."""
+    deck = copied(INPUT / "rods" / "r1.inp", folder / "decks")
+    part = deck.with_name("rods.inc")
+    whole, pipe = part.with_name("whole"), part.with_name("pipe")
+    part.rename(whole)
+    os.mkfifo(part)
+    os.mkfifo(pipe)
+    process = subprocess.Popen([PROGRAM, "trade", str(deck), "--out", str(folder), "--limit", "0.001"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    with part.open("w") as file:   # waits for the trade
+        pipe.rename(part)
+        file.write(whole.read_text())
+    with part.open("w"):           # waits for the row
+        whole.rename(part)
+        (child,) = children(process)
+        yield process, child
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_the_trade_and_its_child(number, tmp_path):
-    process = subprocess.Popen([PROGRAM, "trade", str(CYLINDER), "--out", str(tmp_path)],
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    found = []
-    for _ in range(2000):
-        found = children(process)
-        if found:
-            break
-        time.sleep(0.002)
-    assert found
-    process.send_signal(number)
-    _, said = process.communicate(timeout=60)
+    with in_first_row(tmp_path) as (process, child):
+        process.send_signal(number)
+        _, said = process.communicate(timeout=60)
     assert process.returncode == 5
     assert "ended by " + number.name in said
-    assert not list(tmp_path.iterdir())
-    for child in found:
-        with pytest.raises(ProcessLookupError):
-            os.kill(child, 0)
+    assert [path.name for path in tmp_path.iterdir()] == ["decks"]
+    with pytest.raises(ProcessLookupError):
+        os.kill(child, 0)
 
 
 def test_a_trade_that_a_signal_ends_keeps_the_rows_that_were_measured(tmp_path):
@@ -378,19 +390,12 @@ def test_a_trade_that_a_signal_ends_keeps_the_rows_that_were_measured(tmp_path):
 
 
 def test_a_row_that_the_system_kills_is_only_that_row_s_failure(tmp_path):
-    """As it does where memory runs out; here the first child dies as soon as it is seen."""
-    deck = tmp_path / "cylinder.inp"
-    text = CYLINDER.read_text().replace("20., 900.", "180., 900.")
-    deck.write_text(text[: text.index("*VERIFY")])
-    process = subprocess.Popen([PROGRAM, "trade", str(deck), "--out", str(tmp_path),
-                                "--limit", "0.01", "--quiet"], stderr=subprocess.PIPE, text=True)
-    found = []
-    while not found and process.poll() is None:
-        found = children(process)
-    os.kill(found[0], signal.SIGKILL)
-    _, said = process.communicate(timeout=300)
+    """As it does where memory runs out."""
+    with in_first_row(tmp_path) as (process, child):
+        os.kill(child, signal.SIGKILL)
+        _, said = process.communicate(timeout=300)
     assert process.returncode == 0, said
-    with open(tmp_path / "cylinder.trade.csv", newline="") as file:
+    with open(tmp_path / "r1.trade.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     (failed,) = (row for row in rows if row["status"] not in ("0", ""))
     assert (failed["row"], failed["status"]) == ("1", "3")
@@ -399,7 +404,7 @@ def test_a_row_that_the_system_kills_is_only_that_row_s_failure(tmp_path):
 
 def test_rows_beside_each_other_find_the_same(r1, tmp_path):
     alone, *_ = r1
-    beside, _ = trade(INPUT / "rods" / "r1.inp", tmp_path, "--limit", "0.01", "--jobs", "2")
+    beside, _ = trade(INPUT / "rods" / "r1.inp", tmp_path, "--limit", "0.001", "--jobs", "2")
     errors = [[row[f"error_{name}"] for name in QUANTITIES] for row in alone if not row["varied"]]
     assert errors[:6] == [[row[f"error_{name}"] for name in QUANTITIES]
                           for row in beside if not row["varied"]][:6]

@@ -23,7 +23,8 @@ class Browser:
         self.base = f"http://127.0.0.1:{port}/session"
         options = {"args": [*ARGUMENTS, f"--window-size={size[0]},{size[1]}"]}
         wanted = {"browserName": "chrome", "goog:chromeOptions": options,
-                  "goog:loggingPrefs": {"browser": "ALL"}}
+                  "goog:loggingPrefs": {"browser": "ALL"},
+                  "timeouts": {"script": 100000}}   # less than that of a call [ms]
         found = self.call("", {"capabilities": {"alwaysMatch": wanted}})
         self.base += f"/{found['sessionId']}"
 

@@ -38,9 +38,10 @@ def run(deck, *options):
 
 
 def increments_in(sta):
-    """Return the running numbers that stand in a .sta file, without its heading."""
+    """Return the running numbers that stand in a .sta file, without its heading; a run that goes on
+    may just be writing the last line."""
     try:
-        lines = sta.read_text().splitlines()
+        lines = sta.read_text().rpartition("\n")[0].splitlines()
     except FileNotFoundError:   # a run that begins tries whether it can be written, and removes it
         return []
     return [int(line.split()[0]) for line in lines[1:]]
