@@ -51,6 +51,17 @@ quietly() {
    return "$status"
 }
 
+# Runs a command that asks the network, twice more where it fails.
+patiently() {
+   local pause
+   for pause in 5 30; do
+      quietly "$@" && return
+      say "this failed: $*; once more in $pause s"
+      sleep "$pause"
+   done
+   quietly "$@"
+}
+
 # Prints which of the Debian packages named are not installed.
 missing_packages() {
    local installed
@@ -70,6 +81,12 @@ as_root() {
    fi
 }
 
+# Another apt-get, as of the system's timers, is waited for.
+apt_install() {
+   as_root apt-get update || true # the lists at hand may do
+   as_root apt-get -o DPkg::Lock::Timeout=300 install --yes --no-install-recommends "$@"
+}
+
 install_packages() {
    local missing
    command -v dpkg-query >/dev/null ||
@@ -82,8 +99,7 @@ install_packages() {
       exit 1
    fi
    say "installing Debian packages: ${missing[*]}"
-   quietly as_root apt-get update || true # the lists at hand may do
-   quietly as_root apt-get install --yes --no-install-recommends "${missing[@]}" ||
+   patiently apt_install "${missing[@]}" ||
       fail "apt-get could not install: ${missing[*]}"
 }
 
@@ -109,7 +125,7 @@ make_venv() {
    for file in "$@"; do
       arguments+=(--requirement "$file")
    done
-   quietly "$folder/bin/python" -m pip install --disable-pip-version-check --no-input \
+   patiently "$folder/bin/python" -m pip install --disable-pip-version-check --no-input \
       "${arguments[@]}" || fail "pip could not install the Python packages"
    venv_contents "$folder" "$@" >"$folder/contents"
 }

@@ -48,11 +48,11 @@ def children(process):
             Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
 
 
-def has_ended(process):
-    """Whether a process, of which no parent may have asked, has ended."""
+def state_of(process):
+    """Return the state of a process as ps names it, nothing once it is gone."""
     with suppress(FileNotFoundError, ProcessLookupError):
-        return ") Z " in Path(f"/proc/{process}/stat").read_text()
-    return True
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    return ""
 
 
 def wait_until(what):
@@ -317,6 +317,7 @@ def test_a_second_signal_kills(tmp_path, long):
     wait_until(lambda: len(lines_of(tmp_path / "long.sta")) > 10)
     (child,) = children(process)
     os.kill(child, signal.SIGSTOP)
+    wait_until(lambda: state_of(child) == "T")
     process.send_signal(signal.SIGINT)
     wait_until(lambda: awaits(child, signal.SIGINT))   # two that come at once are one
     with pytest.raises(subprocess.TimeoutExpired):
@@ -338,7 +339,7 @@ def test_decks_end_with_a_batch_that_is_killed_and_the_table_holds_what_had_ende
                and all(table(tmp_path)[deck.stem]["outcome"] == "solved" for deck in GOOD))
     process.kill()
     process.communicate(timeout=PATIENCE)
-    wait_until(lambda: has_ended(child))
+    wait_until(lambda: state_of(child) in ("", "Z"))
     assert len(lines_of(tmp_path / "long.sta")) < INCREMENTS
     assert table(tmp_path)["long"]["outcome"] == "running"
 
