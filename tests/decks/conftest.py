@@ -1,4 +1,8 @@
-"""Holds tests to the cards that they say they change; see changes.py."""
+"""Holds tests to the cards that they say they change; see changes.py. Ends what a failed one leaves."""
+
+import os
+import signal
+from pathlib import Path
 
 import pytest
 from changes import CHANGED
@@ -15,3 +19,12 @@ def changes_what_it_says(request):
     yield
     said = {card for mark in request.node.iter_markers("changes") for card in mark.args}
     assert said <= CHANGED, f"not changed by this test: {sorted(said - CHANGED)}"
+
+
+@pytest.fixture(autouse=True)
+def no_run_goes_on():
+    """End the runs that a test which failed has left, so that they disturb no other one."""
+    yield
+    own = os.getpid()
+    for child in Path(f"/proc/{own}/task/{own}/children").read_text().split():
+        os.kill(int(child), signal.SIGKILL)   # gone only once waited for
