@@ -15,29 +15,29 @@ from program import increments_in, run, start, write_deck
 KILLS = 12
 MOST_TRIES = 400
 POLL_SECONDS = 0.0005
-REFINEMENT = "*REFINE, LEVELS=1"
+STEPS = 6
 SEED = 1987
+
+
+def write_long_deck(folder):
+    """Write the published deck in some steps, the end of each of which is published."""
+    deck = write_deck(folder / "cylinder.inp", ["*REFINE, LEVELS=1"])
+    head, step = deck.read_text().split("*VERIFY")[0].split("*STEP")
+    assert "\n20., 900." in step and "TOP, 11, 11, 900." in step
+    for k in range(STEPS):
+        ramp = step.replace("\n20., 900.", "\n15., 150.")
+        head += "*STEP" + ramp.replace("TOP, 11, 11, 900.", f"TOP, 11, 11, {150 * (k + 1)}.")
+    deck.write_text(head)
+    return deck
 
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory):
-    """Return all numbers of an undisturbed run and the time it took behind its first .sta line."""
-    deck = write_deck(tmp_path_factory.mktemp("reference") / "cylinder.inp", [REFINEMENT])
-    process = start(deck)
-    wait_for_first_line(process, deck)
-    since = time.monotonic()
-    said, _ = process.communicate()
-    assert process.returncode == 0, said
-    return numbers_in(deck.with_suffix(".vtkhdf")), time.monotonic() - since
-
-
-def wait_for_first_line(process, deck):
-    """Wait until the .sta file has the line of an increment; return whether the run goes on."""
-    while process.poll() is None:
-        if increments_in(deck.with_suffix(".sta")):
-            return True
-        time.sleep(POLL_SECONDS)
-    return False
+    """Return all numbers of an undisturbed run."""
+    deck = write_long_deck(tmp_path_factory.mktemp("reference"))
+    status, said = run(deck)
+    assert status == 0, said
+    return numbers_in(deck.with_suffix(".vtkhdf"))
 
 
 def numbers_in(path):
@@ -68,19 +68,17 @@ def working_copies(deck):
     return list(deck.parent.glob(deck.stem + ".vtkhdf.*.tmp"))
 
 
-def kill_once(deck, chance, seconds):
-    """Kill a run somewhere behind its first .sta line; return whether it was still alive then."""
+def kill_once(deck, chance, named):
+    """Kill a run somewhere behind the .sta line of an increment; return whether it was still alive
+    then."""
     process = start(deck)
-    if not wait_for_first_line(process, deck):
-        return False
+    while process.poll() is None and len(increments_in(deck.with_suffix(".sta"))) < named:
+        time.sleep(POLL_SECONDS)
     if chance.random() < 0.5:
-        time.sleep(chance.uniform(0.0, seconds))
+        time.sleep(chance.uniform(0.0, 0.1))
     else:
         # In the midst of writing: the working copy has just appeared.
-        until = time.monotonic() + chance.uniform(0.0, seconds)
-        while process.poll() is None:
-            if time.monotonic() > until and working_copies(deck):
-                break
+        while process.poll() is None and not working_copies(deck):
             time.sleep(POLL_SECONDS)
         time.sleep(chance.uniform(0.0, 0.01))
     alive = process.poll() is None
@@ -102,16 +100,16 @@ def check_what_is_left(deck, reference):
     return len(named)
 
 
-def kill_many(folder, kills, seed, reference, seconds):
+def kill_many(folder, kills, seed, reference):
     """Kill as many runs; return the numbers of increments that their .sta files named."""
     chance = random.Random(seed)
-    deck = write_deck(folder / "cylinder.inp", [REFINEMENT])
+    deck = write_long_deck(folder)
     last = len(reference["history/time"])
     named = []
     for _ in range(MOST_TRIES):
         for extension in (".sta", ".vtkhdf"):
             deck.with_suffix(extension).unlink(missing_ok=True)
-        if not kill_once(deck, chance, seconds):
+        if not kill_once(deck, chance, chance.randrange(1, last)):
             continue
         increments = check_what_is_left(deck, reference)
         if 0 < increments < last:
@@ -122,14 +120,13 @@ def kill_many(folder, kills, seed, reference, seconds):
 
 
 def test_a_killed_run_leaves_every_increment_of_its_sta(reference, tmp_path):
-    numbers, seconds = reference
     workers = max(1, min(2, os.cpu_count() or 1))
     folders = [tmp_path / str(worker) for worker in range(workers)]
     for folder in folders:
         folder.mkdir()
     with ThreadPoolExecutor(workers) as pool:
         jobs = [
-            pool.submit(kill_many, folder, KILLS // workers, SEED + worker, numbers, seconds)
+            pool.submit(kill_many, folder, KILLS // workers, SEED + worker, reference)
             for worker, folder in enumerate(folders)
         ]
         named = [job.result() for job in jobs]
@@ -142,7 +139,7 @@ def test_a_killed_run_leaves_every_increment_of_its_sta(reference, tmp_path):
     deck.with_suffix(".vtkhdf.99.tmp").write_bytes(b"left by a killed run")
     status, said = run(deck)
     assert status == 0, said
-    assert check_what_is_left(deck, numbers) == len(numbers["history/time"])
+    assert check_what_is_left(deck, reference) == len(reference["history/time"])
     assert not working_copies(deck)
 
 
