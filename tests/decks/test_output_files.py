@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 import h5py
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
-from deck_runs import CYLINDER, PROGRAM, copy_deck, run
+from deck_runs import PROGRAM, run
 from test_interrupted import INCREMENTS, PATIENCE, heat, lines_of
 
 SMALL = [
