@@ -5,7 +5,7 @@
 !> that this part of the change bounds what is left. Where nothing else is known of the mesh, every
 !> round divides both faces (`round_indicators`), and the larger one of the last two changes is the
 !> bound: one change can be small by chance. A pressure that has no limit has no bound whatever the
-!> changes are.
+!> changes are, and where it is at a corner, no round is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type
@@ -49,6 +49,7 @@ module accuracy_rounds
       real(dp) :: increment = 0.0_dp       !! of increments and iteration; NaN: uncertain
       real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: uncertain
       real(dp) :: allowed = 0.0_dp         !! what the target allows
+      logical :: is_at_corner = .false.    !! whether there one face ends: it has no limit
       logical :: has_limit = .true.        !! whether it tends to one as the mesh is refined
       character(:), allocatable :: why_not !! why the run has no bound; empty where it has
       character(:), allocatable :: instead !! what there is where it has no value or no edge
@@ -177,7 +178,8 @@ contains
                finding%instead = instead_of(estimated(self%demands(d)%quantity), contact)
                if (is_peak(self%demands(d))) then
                   finding%is_at_end = any(peak_is_at_end(contact))
-                  finding%has_limit = .not. (peaks_at_corner(points, contact) .or. &
+                  finding%is_at_corner = peaks_at_corner(points, contact)
+                  finding%has_limit = .not. (finding%is_at_corner .or. &
                      grows(self%rounds, d, record%step))
                end if
             end associate
@@ -346,7 +348,9 @@ contains
       call name_idle(self)
       self%reason = ''
       if (self%is_reached()) return
-      if (self%stands_still()) then
+      if (only_corners_are_missed(self%rounds(size(self%rounds))%findings)) then
+         self%reason = 'a pressure without a limit meets no target'
+      else if (self%stands_still()) then
          self%reason = 'the last two came no nearer to the targets'
       else if (nothing_is_left) then
          self%reason = 'there is nothing left to refine'
@@ -356,6 +360,13 @@ contains
          self%goes_on = .true.
       end if
    end subroutine conclude
+
+   !> Whether all that misses its target is a pressure at a corner, which no mesh brings there.
+   pure logical function only_corners_are_missed(findings)
+      type(finding_type), intent(in) :: findings(:, :)
+
+      only_corners_are_missed = all(findings%is_met() .or. findings%is_at_corner)
+   end function only_corners_are_missed
 
    !> Whether the last two rounds brought no target nearer that is not met, as where pressures grow
    !> without limit.

@@ -69,7 +69,7 @@ contains
 
       do d = 1, size(rounds%demands)
          finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
-         if (finding%is_met()) cycle
+         if (finding%is_met() .or. finding%is_at_corner) cycle
          self%halvings = max(self%halvings, halvings_for(finding))
          levels = levels_for(finding)
          if (levels == 0) cycle

@@ -200,9 +200,12 @@ contains
       character(:), allocatable :: reason
 
       reason = ' (mostly of the mesh)'
-      if (.not. finding%has_limit) reason = ' (no limit: it grows from mesh to mesh)'
-      if (ieee_is_nan(finding%bound)) then
-         if (finding%has_limit) reason = ': '//finding%why_not
+      if (finding%is_at_corner) then
+         reason = ' (no limit: it is at a corner, where one face ends)'
+      else if (.not. finding%has_limit) then
+         reason = ' (no limit: it grows from mesh to mesh)'
+      else if (ieee_is_nan(finding%bound)) then
+         reason = ': '//finding%why_not
       else if (finding%increment > finding%mesh) then
          reason = ' (mostly of the increments)'
       end if
