@@ -26,8 +26,9 @@ module mesh_bounds
    !> large, and need some room; and where too few increments tell no scatter, or only elements at
    !> the faces are halved.
    real(dp), parameter :: of_change = 2.1_dp, of_change_alone = 3.0_dp
-   !> Error of shear force, with hats too, and of peak pressure in what friction locked in.
-   real(dp), parameter :: of_locked = 0.4_dp, of_locked_with_hats = 0.6_dp, of_locked_in_peak = 0.15_dp
+   !> Error of shear force, that with hats, and that of peak pressure in what friction locked in.
+   real(dp), parameter :: of_locked = 0.4_dp, of_locked_with_hats = 0.6_dp
+   real(dp), parameter :: of_locked_in_peak = 0.15_dp
    !> Errors of edges in the spacing: one at a node itself, and one of stick where contact ends too;
    !> of others the table of quantities tells.
    real(dp), parameter :: at_node = 0.25_dp, of_both = 0.15_dp
