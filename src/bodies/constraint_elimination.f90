@@ -89,7 +89,7 @@ contains
    !> The constraints as matrices.
    pure subroutine set_matrices(rows, found, unknown, constraints)
       type(constraint_rows_type), intent(in) :: rows
-      type(elimination_type), intent(in) :: found
+      type(elimination_type), intent(inout) :: found
       integer, intent(in) :: unknown(:)
       type(linear_constraints_type), intent(inout) :: constraints
       type(sum_list_type) :: written, links, plain
@@ -132,7 +132,7 @@ contains
    !> the degrees of freedom that have them.
    pure subroutine set_ties(rows, found, last, constraints)
       type(constraint_rows_type), intent(in) :: rows
-      type(elimination_type), intent(in) :: found
+      type(elimination_type), intent(inout) :: found
       integer, intent(in) :: last               ! value before the prescribed ones
       type(linear_constraints_type), intent(inout) :: constraints
       integer, allocatable :: value(:)

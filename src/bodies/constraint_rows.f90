@@ -7,7 +7,7 @@
 !> a tie.
 module constraint_rows
    use kinds, only: dp
-   use sum_lists, only: add_terms, sum_list_type
+   use sum_lists, only: sum_list_type
    implicit none
    private
    public :: row_origin_type, of_support, of_hanging, of_equation, of_tie, of_contact
@@ -62,6 +62,8 @@ module constraint_rows
       logical, allocatable :: tie(:)            !! (rows) those of degrees of freedom alone
       integer, allocatable :: written(:)        !! (rows) what a tie writes, 0 for a condition
       real(dp), allocatable :: least(:)         !! (rows) coefficient below which none is left
+      !> (values) term of each in the sum that is resolved; else 0
+      integer, allocatable, private :: term(:)
    end type elimination_type
 
 contains
@@ -101,7 +103,7 @@ contains
       type(elimination_type), intent(inout) :: found    ! its least coefficients are set
       integer :: i, k, n
 
-      allocate (found%writer(values), found%entry(values), source=0)
+      allocate (found%writer(values), found%entry(values), found%term(values), source=0)
       allocate (found%linked(rows%count), source=.false.)
       allocate (found%written(rows%count), source=0)
       found%tie = [(is_tie(rows, i), i=1, rows%count)]
@@ -213,34 +215,53 @@ contains
    !> A sum by the values that nothing writes, each once. What writes a value has no values that
    !> were written before, so those written first are replaced first, and each of them once.
    pure subroutine resolve(found, sums, i, value, coefficient)
-      type(elimination_type), intent(in) :: found
+      type(elimination_type), intent(inout) :: found
       class(sum_list_type), intent(in) :: sums
       integer, intent(in) :: i
       integer, allocatable, intent(out) :: value(:)
       real(dp), allocatable, intent(out) :: coefficient(:)
-      integer :: k, writer
+      integer :: k, l, n, writer
       real(dp) :: factor, scale
 
       value = sums%value(sums%start(i):sums%start(i + 1) - 1)
       coefficient = sums%coefficient(sums%start(i):sums%start(i + 1) - 1)
       if (all(found%writer(value) == 0)) return
       scale = maxval(abs(coefficient))
+      n = size(value)
+      found%term(value) = [(k, k=1, n)]
       do
-         k = minloc(found%writer(value), mask=found%writer(value) > 0, dim=1)
+         k = minloc(found%writer(value(:n)), mask=found%writer(value(:n)) > 0, dim=1)
          if (k == 0) exit
          writer = found%writer(value(k))
          factor = coefficient(k)
-         coefficient = [coefficient(:k - 1), coefficient(k + 1:)]
-         value = [value(:k - 1), value(k + 1:)]
+         found%term(value(n)) = k
+         found%term(value(k)) = 0
+         value(k) = value(n)
+         coefficient(k) = coefficient(n)
+         n = n - 1
          if (abs(factor) <= dropped*scale) cycle
          associate (first => found%sums%start(writer), last => found%sums%start(writer + 1) - 1)
-            call add_terms(found%sums%value(first:last), &
-               factor*found%sums%coefficient(first:last), value, coefficient)
+            if (n + last - first >= size(value)) then
+               value = [value, value, found%sums%value(first:last)]
+               coefficient = [coefficient, coefficient, found%sums%coefficient(first:last)]
+            end if
+            do l = first, last
+               associate (term => found%term(found%sums%value(l)))
+                  if (term == 0) then
+                     n = n + 1
+                     term = n
+                     value(n) = found%sums%value(l)
+                     coefficient(n) = 0.0_dp
+                  end if
+                  coefficient(term) = coefficient(term) + factor*found%sums%coefficient(l)
+               end associate
+            end do
          end associate
       end do
-      associate (kept => abs(coefficient) > dropped*scale)
-         value = pack(value, kept)
-         coefficient = pack(coefficient, kept)
+      found%term(value(:n)) = 0
+      associate (kept => abs(coefficient(:n)) > dropped*scale)
+         value = pack(value(:n), kept)
+         coefficient = pack(coefficient(:n), kept)
       end associate
    end subroutine resolve
 

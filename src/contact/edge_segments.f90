@@ -9,7 +9,7 @@
 module edge_segments
    use conductance_laws, only: conductance, conductance_law_type
    use kinds, only: dp
-   use mortar_sides, only: face_line_type, opposed_shapes, opposed_shapes_type, side_type, sides_of
+   use mortar_sides, only: face_line_type, opposed_shapes, opposed_shapes_type, side_type
    use quadrature, only: gauss_point_10, gauss_weight_10
    implicit none
    private
@@ -130,18 +130,15 @@ contains
    end function cubics
 
    !> The segments of two faces that lie opposite each other.
-   pure function edge_segments_of(slave, master, nodes, thickness, about_axis, point_of) &
-      result(segments)
-      type(face_line_type), intent(in) :: slave, master
+   pure function edge_segments_of(side, master, nodes, section, point_of) result(segments)
+      type(side_type), intent(in) :: side(:)  !! of the slave
+      type(face_line_type), intent(in) :: master
       integer, intent(in) :: nodes(:)         !! of the slave, then of the master
-      real(dp), intent(in) :: thickness       !! not used about an axis [length]
-      logical, intent(in) :: about_axis       !! whether areas are swept round the axis x = 0
+      real(dp), intent(in) :: section         !! thickness, 0 about an axis [length]
       integer, intent(in) :: point_of(:)      !! (corners) contact point of each; 0 for none
       type(edge_segment_type), allocatable :: segments(:)
-      type(side_type), allocatable :: side(:)
       integer :: count_of, k, pass, s
 
-      side = sides_of(slave, master)
       do pass = 1, 2
          count_of = 0
          do s = 1, size(side)
@@ -170,11 +167,11 @@ contains
          do i = 1, support
             xi = 0.5_dp*(side%kinks(k) + side%kinks(k + 1) + &
                (side%kinks(k + 1) - side%kinks(k))*node(i))
-            shapes = opposed_shapes(side, k, xi, master, merge(0.0_dp, thickness, about_axis))
+            shapes = opposed_shapes(side, k, xi, master, section)
             segment%area(i) = width*shapes%area
             segment%difference(:, i) = segment%area(i)*[shapes%of_slave, -shapes%of_master]
          end do
-         segment%nodes = nodes([side%nodes, size(slave%x, 2) + shapes%facing])
+         segment%nodes = nodes([side%nodes, size(nodes) - size(master%x, 2) + shapes%facing])
       end function segment_of
    end function edge_segments_of
 

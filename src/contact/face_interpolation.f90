@@ -5,7 +5,7 @@ module face_interpolation
    use chain_geometry, only: side_positions
    use kinds, only: dp
    use mortar_sides, only: beside_normal, face_line_type, hats, opposite_coordinate, &
-      side_opposite, side_type, sides_of
+      side_opposite, side_type
    use sum_lists, only: sum_list_type
    implicit none
    private
@@ -19,20 +19,20 @@ contains
 
    !> Sums over the contact points that give each node its contact quantities; without terms where
    !> the node is outside the covered part.
-   pure subroutine interpolate_on_faces(slave, master, point_of, own_point, on_slave, on_master)
-      type(face_line_type), intent(in) :: slave, master
+   pure subroutine interpolate_on_faces(side, master, point_of, own_point, on_slave, on_master)
+      type(side_type), intent(in) :: side(:)  !! of the slave
+      type(face_line_type), intent(in) :: master
       integer, intent(in) :: point_of(:)      !! (corners) contact point of each; 0 for none
       logical, intent(in) :: own_point(:)     !! (corners) whether the point is the corner itself
       type(sum_list_type), intent(out) :: on_slave    !! (nodes of the slave, contact points)
       type(sum_list_type), intent(out) :: on_master   !! (nodes of the master, contact points)
-      type(side_type), allocatable :: side(:)
       real(dp) :: xi
-      integer :: corner, k, per_side, s
+      integer :: corner, k, nodes, per_side, s
 
-      side = sides_of(slave, master)
-      per_side = slave%side_nodes - 1
-      call on_slave%reserve(size(slave%x, 2), 2*size(slave%x, 2))
-      do k = 1, size(slave%x, 2)
+      per_side = size(side(1)%nodes) - 1
+      nodes = maxval(side(size(side))%nodes)
+      call on_slave%reserve(nodes, 2*nodes)
+      do k = 1, nodes
          s = min((k - 1)/per_side + 1, size(side))
          xi = 2.0_dp*(k - 1 - (s - 1)*per_side)/per_side - 1.0_dp
          if (modulo(k - 1, per_side) == 0) then

@@ -10,7 +10,7 @@ module mortar_points
    use kinds, only: dp
    use mesh, only: mesh_type
    use mortar_segments, only: integrate_segments, mortar_integrals_type
-   use mortar_sides, only: face_line_type
+   use mortar_sides, only: face_line_type, side_type, sides_of
    use sparse_matrix, only: sparse_matrix_type
    use sum_lists, only: sum_list_type
    use surface_chains, only: surface_chain_type
@@ -38,12 +38,15 @@ contains
       type(contact_points_type), intent(inout) :: points !! its name and its axis are set
       type(mortar_integrals_type) :: integrals
       type(face_line_type) :: slave_line, master_line
+      type(side_type), allocatable :: side(:)
       integer, allocatable :: corner(:), owner(:), kept(:), point_of(:)
       integer :: c
 
       slave_line = line_of(slave)
       master_line = line_of(master)
-      call integrate_segments(slave_line, master_line, thickness, points%about_axis, integrals)
+      side = sides_of(slave_line, master_line)
+      call integrate_segments(slave_line, master_line, side, thickness, points%about_axis, &
+         integrals)
       corner = slave%nodes(1::slave%side_nodes - 1)
       owner = owners(integrals, slave%closed, [(any(master%nodes == corner(c)), c=1, size(corner))])
       kept = pack([(c, c=1, size(corner))], owner == [(c, c=1, size(corner))])
@@ -66,10 +69,10 @@ contains
       points%tangent = slave_line%outward*reshape([-points%normal(2, :), points%normal(1, :)], &
          shape(points%normal), order=[2, 1])
       call set_means(slave, master, integrals, owner, kept, points)
-      call set_face_nodes(slave_line, master_line, [slave%nodes, master%nodes], point_of, &
+      call set_face_nodes(side, master_line, [slave%nodes, master%nodes], point_of, &
          owner == [(c, c=1, size(owner))], points)
-      points%segments = edge_segments_of(slave_line, master_line, [slave%nodes, master%nodes], &
-         thickness, points%about_axis, point_of)
+      points%segments = edge_segments_of(side, master_line, [slave%nodes, master%nodes], &
+         merge(0.0_dp, thickness, points%about_axis), point_of)
       points%hats = hats_of(points%segments, size(kept))
       points%initial_gap = initial_gaps(points, mesh%coordinates)
       allocate (points%master_node, mold=points%slave_node)
@@ -178,8 +181,9 @@ contains
    end subroutine set_means
 
    !> The nodes of both faces that carry contact quantities.
-   pure subroutine set_face_nodes(slave, master, nodes, point_of, own_point, points)
-      type(face_line_type), intent(in) :: slave, master
+   pure subroutine set_face_nodes(side, master, nodes, point_of, own_point, points)
+      type(side_type), intent(in) :: side(:)           ! of the slave
+      type(face_line_type), intent(in) :: master
       integer, intent(in) :: nodes(:)                  ! of the slave, then of the master
       integer, intent(in) :: point_of(:)               ! (corners) contact point of each; 0 for none
       logical, intent(in) :: own_point(:)              ! (corners) whether it is the corner itself
@@ -187,7 +191,7 @@ contains
       type(sum_list_type) :: on_face(2)
       integer :: i, k, n
 
-      call interpolate_on_faces(slave, master, point_of, own_point, on_face(1), on_face(2))
+      call interpolate_on_faces(side, master, point_of, own_point, on_face(1), on_face(2))
       allocate (points%face_node(0))
       call points%at_face_nodes%reserve(size(nodes), 2*size(nodes))
       n = 0

@@ -26,7 +26,7 @@
 module mortar_segments
    use chain_geometry, only: length_between, side_positions, two_pi
    use kinds, only: dp
-   use mortar_sides, only: face_line_type, hats, outward_normals, project, side_type, sides_of
+   use mortar_sides, only: face_line_type, hats, outward_normals, project, side_type
    use quadrature, only: gauss_point_10, gauss_weight_10
    use shape_functions, only: side_shape, side_slope
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
@@ -63,8 +63,9 @@ module mortar_segments
 contains
 
    !> Integrates over all segments.
-   pure subroutine integrate_segments(slave, master, thickness, about_axis, integrals)
+   pure subroutine integrate_segments(slave, master, side, thickness, about_axis, integrals)
       type(face_line_type), intent(in) :: slave, master
+      type(side_type), intent(in) :: side(:)  !! of the slave
       real(dp), intent(in) :: thickness       !! not used about an axis [length]
       logical, intent(in) :: about_axis       !! whether areas are swept round the axis x = 0
       type(mortar_integrals_type), intent(out) :: integrals
@@ -72,9 +73,7 @@ contains
       integer :: corners, k, s
       integer, allocatable :: segments(:)
       type(segment_sums_type) :: sums
-      type(side_type), allocatable :: side(:)
 
-      side = sides_of(slave, master)
       corners = size(side) + merge(0, 1, slave%closed)
       allocate (sums%weight(corners), sums%whole(corners), sums%beyond(corners), source=0.0_dp)
       allocate (sums%apart(corners), source=huge(1.0_dp))

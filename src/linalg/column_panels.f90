@@ -15,7 +15,7 @@ module column_panels
    integer, parameter :: widths(8) = [64, 48, 32, 16, 8, 4, 2, 1]
    integer, parameter :: rest = 32        !! fewer columns that are left may be one panel
    integer, parameter :: narrow = 16      !! columns that a diagonal block is updated by
-   integer, parameter :: zero_share = 12  !! entries for each zero that is stored above first rows
+   integer, parameter :: zero_share = 4   !! entries for each zero that is stored above first rows
 
    !> The panels. Entry (i, j) of panel p is value(place(p, i, j)).
    type :: column_panels_type

@@ -31,32 +31,36 @@ module skyline
 
 contains
 
-   !> Takes over a symmetric matrix.
-   pure subroutine set_matrix(self, lower, tail)
+   !> Takes over a symmetric matrix in another order.
+   pure subroutine set_matrix(self, lower, position, tail)
       class(skyline_type), intent(inout) :: self
-      type(sparse_matrix_type), intent(in) :: lower  !! lower triangle by rows, in the final order
+      type(sparse_matrix_type), intent(in) :: lower  !! lower triangle by rows
+      integer, intent(in) :: position(:)             !! (rows) new position of each row
       integer, intent(in) :: tail                    !! number of tail columns, the last ones
-      integer :: i, j, k
+      integer :: i, j, k, row
 
       self%order = lower%row_count
       self%leading = self%order - tail
-      allocate (self%first_row(self%order))
-      do j = 1, self%order
-         self%first_row(j) = min(lower%column(lower%row_start(j)), j, self%leading + 1)
+      self%first_row = [(min(j, self%leading + 1), j=1, self%order)]
+      do row = 1, self%order
+         do k = lower%row_start(row), lower%row_start(row + 1) - 1
+            i = min(position(row), position(lower%column(k)))
+            j = max(position(row), position(lower%column(k)))
+            self%first_row(j) = min(self%first_row(j), i)
+         end do
       end do
       call self%columns%set_profile(self%first_row, self%leading)
       allocate (self%schur(tail, tail), source=0.0_dp)
-      do j = 1, self%order
-         associate (columns => self%columns)
-            do k = lower%row_start(j), lower%row_start(j + 1) - 1
-               i = lower%column(k)
-               if (i <= self%leading) then
-                  columns%value(columns%place(columns%panel(j), i, j)) = lower%value(k)
-               else
-                  self%schur(i - self%leading, j - self%leading) = lower%value(k)
-               end if
-            end do
-         end associate
+      do row = 1, self%order
+         do k = lower%row_start(row), lower%row_start(row + 1) - 1
+            i = min(position(row), position(lower%column(k)))
+            j = max(position(row), position(lower%column(k)))
+            if (i <= self%leading) then
+               self%columns%value(self%columns%place(self%columns%panel(j), i, j)) = lower%value(k)
+            else
+               self%schur(i - self%leading, j - self%leading) = lower%value(k)
+            end if
+         end do
       end do
    end subroutine set_matrix
 

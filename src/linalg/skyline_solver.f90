@@ -3,7 +3,7 @@ module skyline_solver
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
-   use ordering, only: adjacency, alike_unknowns, permuted_lower, profile_order, ungrouped
+   use ordering, only: adjacency, alike_unknowns, profile_order, ungrouped
    use skyline, only: skyline_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
@@ -41,7 +41,7 @@ contains
       group = alike_unknowns(lower, leading)
       self%position(:leading) = ungrouped(group, profile_order(adjacency(lower, group)))
       self%position(leading + 1:) = [(i, i=leading + 1, self%order)]
-      call self%skyline%set_matrix(permuted_lower(lower, self%position), tail)
+      call self%skyline%set_matrix(lower, self%position, tail)
       call self%skyline%factor_leading(bad_column)
       self%full_flops = self%skyline%leading_flops
       self%smallest_pivot = self%skyline%smallest_pivot

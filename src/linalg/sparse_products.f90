@@ -1,8 +1,7 @@
 !> Products of sparse matrices, row by row (F. G. Gustavson, ACM Trans. Math. Softw. 4 (1978) 250).
 module sparse_products
    use kinds, only: dp
-   use sorting, only: sort_order
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
    public :: between_spaces, congruent
@@ -15,7 +14,7 @@ contains
       type(sparse_matrix_type), intent(in) :: t     !! (n, m) columns of a row in any order
       type(sparse_matrix_type) :: lower             !! (m, m)
 
-      lower = product_of(transposed(t), product_of(a, t, .false.), .true.)
+      lower = in_order(product_of(transposed(t), product_of(a, t, .false.), .true.))
    end function congruent
 
    !> S^T A T.
@@ -25,10 +24,10 @@ contains
       type(sparse_matrix_type), intent(in) :: t     !! (l, m) columns of a row in any order
       type(sparse_matrix_type) :: c                 !! (k, m)
 
-      c = product_of(transposed(s), product_of(a, t, .false.), .false.)
+      c = in_order(product_of(transposed(s), product_of(a, t, .false.), .false.))
    end function between_spaces
 
-   !> A B; or its lower triangle, where the columns of B ascend in each row.
+   !> A B or its lower triangle, the columns of a row in any order.
    pure function product_of(a, b, only_lower) result(c)
       type(sparse_matrix_type), intent(in) :: a, b
       logical, intent(in) :: only_lower
@@ -47,7 +46,7 @@ contains
             ! A loop: sections with these subscripts would take memory for each.
             do l = b%row_start(a%column(k)), b%row_start(a%column(k) + 1) - 1
                j = b%column(l)
-               if (only_lower .and. j > i) exit
+               if (only_lower .and. j > i) cycle
                if (row_of(j) /= i) then
                   row_of(j) = i
                   row(j) = 0.0_dp
@@ -61,9 +60,6 @@ contains
          if (c%row_start(i + 1) > size(c%column)) call resize(c, 2*c%row_start(i + 1))
          associate (first => c%row_start(i), last => c%row_start(i + 1) - 1)
             c%column(first:last) = columns(:n)
-            ! Most rows come in order, and sorting takes memory for each.
-            if (any(columns(2:n) < columns(:n - 1))) c%column(first:last) = &
-               columns(sort_order(columns(:n)))
             do k = first, last
                c%value(k) = row(c%column(k))
             end do
@@ -88,20 +84,41 @@ contains
       call move_alloc(value, matrix%value)
    end subroutine resize
 
-   !> A^T.
-   pure function transposed(a) result(b)
-      type(sparse_matrix_type), intent(in) :: a
+   !> The same matrix, the columns of each row ascending.
+   pure function in_order(a) result(b)
+      type(sparse_matrix_type), intent(in) :: a     !! columns of a row in any order
       type(sparse_matrix_type) :: b
-      type(triplet_list_type) :: list
-      integer :: i, k
 
-      call list%reserve(a%row_start(a%row_count + 1) - 1)
-      do i = 1, a%row_count
+      b = transposed(transposed(a))
+   end function in_order
+
+   !> A^T, the columns of each row ascending.
+   pure function transposed(a) result(b)
+      type(sparse_matrix_type), intent(in) :: a     !! columns of a row in any order
+      type(sparse_matrix_type) :: b
+      integer :: entries, i, k, place
+
+      entries = a%row_start(a%row_count + 1) - 1
+      b%row_count = a%column_count
+      b%column_count = a%row_count
+      allocate (b%row_start(b%row_count + 1), source=0)
+      allocate (b%column(entries), b%value(entries))
+      do k = 1, entries
+         b%row_start(a%column(k)) = b%row_start(a%column(k)) + 1
+      end do
+      place = 1
+      do i = 1, b%row_count + 1
+         place = place + b%row_start(i)
+         b%row_start(i) = place
+      end do
+      do i = a%row_count, 1, -1
          do k = a%row_start(i), a%row_start(i + 1) - 1
-            call list%add(a%column(k), i, a%value(k))
+            place = b%row_start(a%column(k)) - 1
+            b%row_start(a%column(k)) = place
+            b%column(place) = i
+            b%value(place) = a%value(k)
          end do
       end do
-      b = list%compress(a%column_count, a%row_count)
    end function transposed
 
 end module sparse_products
