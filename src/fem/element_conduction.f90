@@ -30,7 +30,9 @@ contains
       k = 0.0_dp
       do g = 1, size(weights)
          call element_gradients(kind, coordinates, points(:, g), b, jacobian)
-         radius = dot_product(element_shape(kind, points(:, g)), coordinates(1, :))
+         radius = 0.0_dp
+         if (plane == axisymmetric) radius = dot_product(element_shape(kind, points(:, g)), &
+            coordinates(1, :))
          factor = weights(g)*jacobian*area_factor(radius, thickness, plane == axisymmetric)
          flux = factor*matmul(conductivity(:, :, min(g, size(conductivity, 3))), b)
          do q = 1, size(k, 2)

@@ -24,6 +24,10 @@ contains
       real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
       integer :: g
 
+      if (orientation == 0) then
+         axes(:, :, 1) = material_axes(orientations, orientation, [0.0_dp, 0.0_dp])
+         return
+      end if
       call integration_rule(kind, points, weights)
       do g = 1, size(axes, 3)
          axes(:, :, g) = material_axes(orientations, orientation, &
