@@ -179,9 +179,10 @@ contains
    pure function hats_of(segments, points) result(hats)
       type(edge_segment_type), intent(in) :: segments(:)
       integer, intent(in) :: points           !! number of contact points
-      type(hat_type) :: hats(points)
+      type(hat_type), allocatable :: hats(:)  !! (points)
       integer :: counts(points), hat, i, j, k
 
+      allocate (hats(points))
       counts = 0
       do i = 1, size(segments)
          do j = 1, 2
