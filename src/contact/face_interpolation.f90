@@ -4,7 +4,7 @@
 module face_interpolation
    use chain_geometry, only: side_positions
    use kinds, only: dp
-   use mortar_sides, only: beside_normal, face_line_type, hats, opposite_coordinate, &
+   use mortar_sides, only: beside_line, face_line_type, hats, opposite_coordinate, &
       side_opposite, side_type
    use sum_lists, only: sum_list_type
    implicit none
@@ -109,7 +109,8 @@ contains
       nearest = huge(nearest)
       do i = 1, size(side)
          associate (x => master%x(:, node), n => size(side(i)%nodes))
-            ends = [beside_normal(side(i), -1.0_dp, x), beside_normal(side(i), 1.0_dp, x)]
+            ends = [beside_line(side(i)%normal(:, 1), side(i)%x(:, 1), master%x(:, node:node)), &
+               beside_line(side(i)%normal(:, n), side(i)%x(:, n), master%x(:, node:node))]
             where (abs(ends) <= on_normal*norm2(side(i)%x(:, n) - side(i)%x(:, 1))) ends = 0.0_dp
             if (abs(ends(1)) <= 0.0_dp) then
                at = -1.0_dp

@@ -6,7 +6,7 @@ module mortar_sides
    implicit none
    private
    public :: face_line_type, opposed_shapes_type, side_type
-   public :: beside_normal, hats, opposed_shapes, opposite_coordinate, outward_normals, project, &
+   public :: beside_line, hats, opposed_shapes, opposite_coordinate, outward_normals, project, &
       side_opposite, sides_of
 
    real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
@@ -205,9 +205,10 @@ contains
 
    !> How far points lie beside a line through a point.
    pure function beside_line(direction, point, x) result(beside)
-      real(dp), intent(in) :: direction(2), point(2)
-      real(dp), intent(in) :: x(:, :)         ! (2, n) the points [length]
-      real(dp) :: beside(size(x, 2))          ! times the length of the direction
+      real(dp), intent(in) :: direction(2)    !! of the line
+      real(dp), intent(in) :: point(2)        !! on it [length]
+      real(dp), intent(in) :: x(:, :)         !! (2, n) the points [length]
+      real(dp) :: beside(size(x, 2))          !! times the length of the direction
 
       beside = direction(1)*(x(2, :) - point(2)) - direction(2)*(x(1, :) - point(1))
    end function beside_line
