@@ -1,11 +1,9 @@
 !> The rounds of a requested accuracy: what each found at the ends of its steps.
 !>
-!> The bounds are those of the error estimator. Only the change from one round to the next is
-!> added: a round that divides elements leaves less than a part of the error (`left_by_round`), so
-!> that this part of the change bounds what is left. Where nothing else is known of the mesh, every
-!> round divides both faces (`round_indicators`), and the larger one of the last two changes is the
-!> bound: one change can be small by chance. A pressure that has no limit has no bound whatever the
-!> changes are, and where it is at a corner, no round is spent on it.
+!> The bounds are those of the error estimator. Where it knows nothing of the mesh, every round
+!> divides both faces (`round_indicators`), and the larger one of the last two changes from round to
+!> round is the bound: one change can be small by chance. A pressure that has no limit has no bound
+!> whatever the changes are, and where it is at a corner, no round is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type
@@ -23,9 +21,6 @@ module accuracy_rounds
 
    !> Least scale of a value: parts of the largest one so far, and of those of other interfaces.
    real(dp), parameter :: early = 0.25_dp, beside_others = 0.01_dp
-   !> Part of the change from round to round that is left where the mesh has an estimate.
-   real(dp), parameter :: left_by_round = 0.5_dp
-
    !> Two rounds that leave more than this part of the excess are the last, from this round on.
    real(dp), parameter :: nearer = 0.7_dp
    integer, parameter :: least_rounds = 4
@@ -238,7 +233,7 @@ contains
       if (words == '') words = 'up to an end of the face'
    end function instead_of
 
-   !> Lets the changes from the rounds before count.
+   !> Lets the changes from the rounds before count where nothing else does.
    subroutine add_change(rounds, d, step)
       type(accuracy_round_type), intent(inout) :: rounds(:)
       integer, intent(in) :: d, step
@@ -251,9 +246,7 @@ contains
          now%change = abs(now%value - before%value)
          if (.not. now%has_limit) then
             now%mesh = ieee_value(1.0_dp, ieee_quiet_nan)
-         else if (.not. ieee_is_nan(now%mesh)) then
-            now%mesh = max(now%mesh, left_by_round*now%change)
-         else if (n > 2) then
+         else if (ieee_is_nan(now%mesh) .and. n > 2) then
             now%mesh = max(now%change, before%change)
          end if
          now%bound = now%mesh + now%increment

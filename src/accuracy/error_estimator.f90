@@ -32,6 +32,9 @@ module error_estimator
    !> once does where round faces meet, and with it the friction that is locked in there.
    real(dp), parameter :: of_doubled_increments = 1.0_dp, of_doubled_in_peak = 1 + sqrt(2.0_dp)
 
+   !> Part of the change from the round before that is left: one that divides elements leaves less.
+   real(dp), parameter :: left_by_round = 0.5_dp
+
    !> What the bounds are made with.
    type :: error_estimator_type
       private
@@ -222,9 +225,12 @@ contains
       if (.not. self%relaxes) energy = [energy_error(record%stress_error), &
          energy_error(record%heat_flux_error)]
       do i = 1, size(record%errors)
-         record%errors(i)%mesh = bounds_of_mesh(simulation%bodies%interfaces(i), &
-            record%contacts(i), change(:, i), self%courses%scatter(i, before), self%friction(i), &
-            energy)
+         associate (bounds => record%errors(i)%mesh)
+            bounds = bounds_of_mesh(simulation%bodies%interfaces(i), record%contacts(i), &
+               change(:, i), self%courses%scatter(i, before), self%friction(i), energy)
+            where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
+               left_by_round*abs(self%courses%change_since(i, before)))
+         end associate
       end do
    end subroutine bound_mesh
 

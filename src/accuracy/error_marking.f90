@@ -10,6 +10,8 @@ module error_marking
    public :: largest_part, squared_errors
 
    integer, parameter :: halvings = 50   !! of the interval that holds the least value
+   !> Relative error of a body below which its fields are smooth but for rounding.
+   real(dp), parameter :: rounding = 1.0e-8_dp
 
 contains
 
@@ -41,7 +43,9 @@ contains
       end do
       do e = 1, size(error)
          associate (b => mesh%element_body(e))
-            if (sums(b) > 0.0_dp) error(e) = error(e) + estimate%body(b)**2*square(e)/sums(b)
+            if (sums(b) <= 0.0_dp) cycle
+            if (estimate%body(b) > rounding) error(e) = error(e) + estimate%body(b)**2*square(e)/ &
+               sums(b)
          end associate
       end do
    end subroutine add_errors

@@ -26,6 +26,9 @@ module mesh_bounds
    !> large, and need some room; and where too few increments tell no scatter, or only elements at
    !> the faces are halved.
    real(dp), parameter :: of_change = 2.1_dp, of_change_alone = 3.0_dp
+   !> The same where contact ends at a corner: stresses there vary nearly as the inverse root of the
+   !> distance, and errors fall with the root of h: 1/(1 - 2^(-1/2)).
+   real(dp), parameter :: of_change_at_corner = 3.4_dp
    !> Error of shear force, that with hats, and that of peak pressure in what friction locked in.
    real(dp), parameter :: of_locked = 0.4_dp, of_locked_with_hats = 0.6_dp
    real(dp), parameter :: of_locked_in_peak = 0.15_dp
@@ -58,8 +61,10 @@ contains
       ! Without contact no edge passes a node; its end is a corner of the course, and no scatter.
       known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter) .or. &
          all(contact%contact_state == contact_open))
-      bounds = merge(of_change_alone, of_change, size(energy) > 0 .or. ieee_is_nan(scatter))* &
-         abs(change) + known_scatter
+      bounds = merge(of_change_alone, of_change, size(energy) > 0 .or. ieee_is_nan(scatter))
+      if (any(points%at_corner .and. contact%contact_state([1, size(points%arc_length)]) /= &
+         contact_open)) bounds = max(bounds, of_change_at_corner)
+      bounds = bounds*abs(change) + known_scatter
       if (size(energy) > 0) call add_energy(contact, energy, bounds)
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp

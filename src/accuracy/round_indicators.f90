@@ -12,6 +12,7 @@ module round_indicators
    use accuracy_rounds, only: accuracy_rounds_type, finding_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
+   use contact_states, only: contact_open
    use element_kinds, only: element_corner_count
    use error_marking, only: largest_part, squared_errors
    use interface_quantities, only: closed_length
@@ -75,7 +76,7 @@ contains
          if (levels == 0) cycle
          associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity)
             if (ieee_is_nan(record%errors(i)%mesh(q))) call mark_faces(self, model, i)
-            call mark_edges(self, interfaces(i), edges_for(q, record%contacts(i)), &
+            call mark_edges(self, interfaces(i), edges_for(q, interfaces(i), record%contacts(i)), &
                max(levels, levels_of_edges(interfaces(i), record, i, q, finding%allowed)))
             weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
             call mark_elements(self, model%mesh, record, weight, levels)
@@ -127,13 +128,17 @@ contains
       end associate
    end function levels_of_edges
 
-   !> The edges near which a quantity errs: those of stick only for what friction decides.
-   pure function edges_for(q, contact) result(edges)
+   !> The edges near which a quantity errs: those of stick only for what friction decides, and where
+   !> the whole face is closed its ends.
+   pure function edges_for(q, points, contact) result(edges)
       integer, intent(in) :: q
+      type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
       real(dp), allocatable :: edges(:)
 
       edges = contact%edges_contact
+      if (all(contact%contact_state /= contact_open)) edges = points%arc_length([1, &
+         size(points%arc_length)])
       if (any([character(24) :: 'edge_stick', 'shear_force'] == estimated(q)%name)) edges = &
          [edges, contact%edges_stick]
    end function edges_for

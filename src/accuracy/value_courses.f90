@@ -21,6 +21,7 @@ module value_courses
       procedure :: begin_step
       procedure :: follow
       procedure :: scatter
+      procedure :: change_since
    end type value_courses_type
 
 contains
@@ -66,6 +67,20 @@ contains
          if (.not. ieee_is_nan(of_both)) scatter(q) = min(scatter(q), of_both)
       end do
    end function scatter
+
+   !> What the quantities of an interface differ by at the end from those on another mesh; 0 where
+   !> one of them has no value.
+   pure function change_since(self, interface, other) result(change)
+      class(value_courses_type), intent(in) :: self
+      integer, intent(in) :: interface
+      type(value_courses_type), intent(in) :: other   !! on the other mesh; empty without one
+      real(dp) :: change(size(self%values, 2))
+
+      change = 0.0_dp
+      if (.not. allocated(other%values)) return
+      change = self%values(kept, :, interface) - other%values(kept, :, interface)
+      where (ieee_is_nan(change)) change = 0.0_dp
+   end function change_since
 
    !> What two courses differ by at the last instants that both have.
    pure subroutine compare(self, other, interface, time, difference)
