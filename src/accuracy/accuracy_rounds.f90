@@ -342,7 +342,8 @@ contains
       self%reason = ''
       if (self%is_reached()) return
       if (only_corners_are_missed(self%rounds(size(self%rounds))%findings)) then
-         self%reason = 'a pressure without a limit meets no target'
+         self%reason = 'a pressure without a limit meets no target, and *ACCURACY can '// &
+            'leave it out'
       else if (self%stands_still()) then
          self%reason = 'the last two came no nearer to the targets'
       else if (nothing_is_left) then

@@ -24,8 +24,9 @@ requests for an accuracy all use it. It is the sum of three parts.
 
 | part | how it is found |
 |---|---|
-| mesh: node pairs | The last increment of the step is corrected to what it would be if every element were divided into four; the finer mesh is never factored. The bound is 2.1 times that change, since an error that falls with h is twice as large, plus how much the quantity scatters about a smooth course over the last nine increments, because errors change sign as the edge of contact passes a node. In steps of fewer increments it is three times the change. No scatter is taken across a corner of an amplitude, and in a later round of a [request](#accuracy-on-request) no more than what the courses of both rounds differ by. A peak on the axis may also be off by what it rises over the parabola of the pressures beside it. |
+| mesh: node pairs | The last increment of the step is corrected to what it would be if every element were divided into four; the finer mesh is never factored. The bound is 2.1 times that change, since an error that falls with h is twice as large, plus how much the quantity scatters about a smooth course over the last nine increments, because errors change sign as the edge of contact passes a node. In steps of fewer increments it is three times the change. No scatter is taken across a corner of an amplitude, and in a later round of a [request](#accuracy-on-request) no more than what the courses of both rounds differ by; half of what both rounds differ by at the end is the least bound there. A peak on the axis may also be off by what it rises over the parabola of the pressures beside it. |
 | mesh: mortar points, ties | The elements at the faces are divided and the last increment is solved with them. The bound is three times the change. For the other elements a quarter of the squared error of the recovered energy norm is added to force and heat rate. An edge of contact counts as four times as far off as with node pairs, and one of stick that lies on it likewise. |
+| mesh: corners | Where contact ends at a corner, as in a press fit with sharp ends, stresses vary nearly as the inverse root of the distance: the change counts 3.4 times. |
 | mesh: friction | The slip at which a node sticks is that of the mesh over which contact grew. The sum of stuck shear forces times the spacing at the edge is largest at some increment; 0.4 of that (0.6 with mortar points), over the closed length, is added to the shear force, and 0.15 of it in proportion to the peak pressure. A contact point that supports hold along the face has no friction: where its neighbour slips, what it lacks is added to the shear force. |
 | mesh: edges | 0.08 of the spacing of the contact points for the edge of contact and 0.9 for that of stick, with its scatter; 0.15 where both are one, 0.25 for an edge at a node. Added are 2.1 times what halved elements move it by beyond that, and as large a part of the closed length as the bound is of the force. |
 | increments | Where friction or the scheme of (3.4) makes the path matter, a companion run with increments of twice the size is solved in parallel on the contact points alone. The bound is the difference, for the peak pressure between mortar points with friction 2.4 times that, because its error falls with the square root of the increments. |
@@ -36,6 +37,10 @@ because the finer mesh has nodes that they do not name (a requested accuracy the
 in a step of a single increment with friction; for an edge that the finer mesh or the companion run does
 not have; and for a peak pressure at a corner, where one face ends and the other goes on. The pressure of
 such a punch grows without limit as the mesh is refined. Summary and listing say which of these it is.
+
+No bound sees slip zones smaller than the elements. In a press fit with sharp ends and friction, solved
+with mortar points, the shear force was off by 1.1 to 1.3 times its bound on meshes refined uniformly, and
+by 2.4 times where linear elements were refined near the faces alone.
 
 **How bounds are judged.** Each deck is solved on the mesh as it is and refined once and twice, with the
 increments as written and half as long. A true error is that to the converged value, on a mesh refined
