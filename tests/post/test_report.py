@@ -391,7 +391,7 @@ def test_an_edge_at_the_end_of_the_face_has_no_bound(tmp_path):
 def test_the_page_takes_step_and_reason_from_the_listing(tmp_path):
     text = page_of_example(tmp_path, "brake_pad", "--accuracy", "5%", status=4)
     assert '<span class="fail">not met</span>, step 1 with ' in text
-    assert "MPa (no limit: it grows from mesh to mesh)</td>" in text
+    assert "MPa (no limit: it is at a corner, where one face ends)</td>" in text
 
 
 def test_what_is_no_result_is_refused(tmp_path, capsys):
