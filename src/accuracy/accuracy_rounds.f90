@@ -228,6 +228,7 @@ contains
       character(:), allocatable :: words
 
       words = '0 at the end of each step'
+      if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) words = 'no heat'
       if (quantity%resolution <= 0.0_dp) return
       words = zone_words(quantity%name, contact)
       if (words == '') words = 'up to an end of the face'
