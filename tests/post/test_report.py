@@ -21,7 +21,7 @@ from thercon_post import stresses  # noqa: E402
 from thercon_post.report.cli import main  # noqa: E402
 from thercon_post.report.data import kept_steps  # noqa: E402
 from thercon_post.report.listing import read_listing  # noqa: E402
-from thercon_post.report.tables import missed  # noqa: E402
+from thercon_post.report.tables import remark  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -367,8 +367,8 @@ def test_step_and_reason_stand_beside_a_target_that_is_missed(said, shown):
     lines = ["requested accuracy not reached after 4 rounds", "A heat rate                    met: bound 2 %",
              "AA peak pressure               not met: bound 9 %, target 5 % (another)",
              f"A peak pressure                not met: {said}"]
-    assert missed(lines, "A peak pressure") == shown
-    assert missed(lines, "A heat rate") == missed([], "A peak pressure") == ""
+    assert remark(lines, "A peak pressure") == shown
+    assert remark(lines, "A heat rate") == remark([], "A peak pressure") == ""
 
 
 def page_of_example(folder, name, *options, status=0):
@@ -392,6 +392,17 @@ def test_the_page_takes_step_and_reason_from_the_listing(tmp_path):
     text = page_of_example(tmp_path, "brake_pad", "--accuracy", "5%", status=4)
     assert '<span class="fail">not met</span>, step 1 with ' in text
     assert "MPa (no limit: it is at a corner, where one face ends)</td>" in text
+
+
+def test_the_page_says_what_there_is_where_nothing_is_judged(tmp_path):
+    """In the words of the listing, if there is one."""
+    text = page_of_example(tmp_path, "press_fit", "--accuracy", "3%")
+    assert re.findall(r">(nothing to judge.*?)</td>", text) == [
+        "nothing to judge: whole face", "nothing to judge: no heat"]
+    (tmp_path / "press_fit.lst").unlink()
+    assert main([str(tmp_path / "press_fit.vtkhdf"), "--out", str(tmp_path)]) == 0
+    text = (tmp_path / "press_fit.html").read_text()
+    assert re.findall(r">(nothing to judge.*?)</td>", text) == ["nothing to judge"] * 2
 
 
 def test_what_is_no_result_is_refused(tmp_path, capsys):

@@ -135,28 +135,30 @@ def rounds(result, listing):
     head = ["interface", "quantity", *(f"round {k + 1}" for k in range(len(found))), "target",
             "unit", "verdict"]
     said = listing.accuracy if listing else []
-    rows = [[escape(name), words, *target_cells(each, unit, missed(said, f"{name} {words}"))]
+    rows = [[escape(name), words, *target_cells(each, unit, remark(said, f"{name} {words}"))]
             for name, words, unit, each in named]
     return told + table("Error bounds of each round against their targets", head, rows,
                         range(2, len(found) + 3))
 
 
-def missed(said, target):
-    """Return step and reason of a target that is not met, as the listing says them."""
-    words = re.compile(re.escape(target) + r" +not met: .*, target .*?(, step .*| \(.*|: .*|)$")
+def remark(said, target):
+    """Return what the listing says of a target: step and reason of one that is not met, or what there
+    is where it has nothing to judge."""
+    words = re.compile(re.escape(target) + r" +(?:not met: .*, target .*?(?=, step | \(|: |$)"
+                       r"|nothing to judge)(.*)$")
     return next((found[1] for found in map(words.match, said) if found), "")
 
 
-def target_cells(rows, unit, reason):
+def target_cells(rows, unit, remark):
     """Return the bounds of all rounds, target, unit and verdict of the last one."""
     step, _, bound, allowed = rows[-1]
     cells = ["–" if each[0] == 0 else "uncertain" if np.isnan(each[2]) else number(each[2], 2)
              for each in rows]
     if step == 0:
-        return [*cells, "–", unit, "nothing to judge at the ends of the steps"]
+        return [*cells, "–", unit, f"nothing to judge{escape(remark)}"]
     verdict = "met" if bound <= allowed else "not met"
     look = "pass" if bound <= allowed else "fail"
-    return [*cells, number(allowed, 2), unit, f'<span class="{look}">{verdict}</span>{escape(reason)}']
+    return [*cells, number(allowed, 2), unit, f'<span class="{look}">{verdict}</span>{escape(remark)}']
 
 
 def number(value, digits=6):
