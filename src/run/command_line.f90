@@ -189,8 +189,8 @@ contains
          if (valid) call read_real(value(:len(value) - 1), command%accuracy, valid)
          command%accuracy = command%accuracy/100.0_dp
          if (.not. valid .or. command%accuracy <= 0.0_dp .or. command%accuracy >= 1.0_dp) call &
-            set_error(error, status_deck, 'option --accuracy needs a percentage such as 1%, '// &
-            'not '//value)
+            set_error(error, status_deck, 'option --accuracy needs a percentage above 0% and '// &
+            'below 100%, such as 1%, not '//value)
       case ('--limit')
          call read_real(value, command%limit, valid)
          if (.not. valid .or. command%limit <= 0.0_dp) call set_error(error, status_deck, &

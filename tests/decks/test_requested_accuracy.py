@@ -228,14 +228,20 @@ def test_nothing_is_written_when_nothing_is_requested(tmp_path):
 
 
 @pytest.mark.parametrize("arguments", [
-    ("run", HERTZ, "--accuracy", "1"), ("run", HERTZ, "--accuracy", "0%"),
-    ("run", HERTZ, "--accuracy", "100%"), ("run", HERTZ, "--accuracy", "%"),
     ("run", HERTZ, "--accuracy"), ("check", HERTZ, "--accuracy", "1%"),
     ("trade", HERTZ, "--accuracy", "1%")])
 def test_options_that_say_nothing_are_refused(tmp_path, arguments):
     process = run(*arguments, folder=tmp_path)
     assert process.returncode == 1 and "--accuracy" in process.stderr
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("value", ["1", "0%", "100%", "%"])
+def test_a_percentage_out_of_range_is_refused_with_its_limits(tmp_path, value):
+    process = run("run", HERTZ, "--accuracy", value, folder=tmp_path)
+    assert process.returncode == 1 and not list(tmp_path.iterdir())
+    assert "--accuracy needs a percentage above 0% and below 100%, such as 1%, not " \
+        f"{value}\n" in process.stderr
 
 
 def test_a_deck_without_contact_has_nothing_to_request(tmp_path):
