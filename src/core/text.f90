@@ -5,13 +5,15 @@ module text
    implicit none
    private
    public :: string_type
-   public :: others, counted, to_text, few_digits, with_decimals, percent
+   public :: others, counted, to_text, few_digits, digits_above, with_decimals, percent
    public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
    public :: is_whole, integer_fault, real_fault, largest_magnitude
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
    real(dp), parameter :: smallest_magnitude = 1.0e-100_dp, largest_magnitude = 1.0e100_dp
+
+   integer, parameter :: most_digits = 15   !! of a real that are its own
 
    !> A string in a list.
    type :: string_type
@@ -69,7 +71,7 @@ contains
    !> A number >= 0 with two significant digits, or as many as given, plain where that is short.
    pure function few_digits(number, digits) result(string)
       real(dp), intent(in) :: number
-      integer, intent(in), optional :: digits   !! up to 9
+      integer, intent(in), optional :: digits   !! up to most_digits
       character(:), allocatable :: string       !! such as 0.044 or 3.5E-10
       real(dp), parameter :: plain(2) = [9.5e-5_dp, 9.95e5_dp]
       character(24) :: buffer
@@ -85,6 +87,18 @@ contains
       write (buffer, '(1p,g0.'//to_text(behind_first)//')') number
       string = without_end_zeros(adjustl(buffer))
    end function few_digits
+
+   !> Significant digits that show a number above a limit as such: two, where these do, or where it
+   !> is not above it.
+   pure integer function digits_above(number, limit) result(digits)
+      real(dp), intent(in) :: number, limit     !! >= 0
+
+      digits = 2
+      if (number <= limit) return
+      do digits = 2, most_digits - 1
+         if (few_digits(number, digits) /= few_digits(limit, digits)) exit
+      end do
+   end function digits_above
 
    !> A part of 1 in percent with two significant digits, or as many as given.
    pure function percent(part, digits) result(string)

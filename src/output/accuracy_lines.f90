@@ -7,7 +7,7 @@ module accuracy_lines
    use kinds, only: dp
    use model, only: unit_labels_type
    use summary, only: words_of
-   use text, only: append, counted, few_digits, percent, string_type, to_text
+   use text, only: append, counted, digits_above, few_digits, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
    private
@@ -171,19 +171,30 @@ contains
          end if
       end associate
    contains
-      !> A bound, with its part of the value's scale where the target is one.
-      function amount(bound)
-         real(dp), intent(in) :: bound
+      !> The bound or what is allowed, as a part of the value's scale where the target is one; more
+      !> digits where only these show that the target is missed.
+      function amount(number)
+         real(dp), intent(in) :: number
          character(:), allocatable :: amount
+         real(dp) :: part
 
          associate (demand => accuracy%demands(d))
             if (demand%is_relative) then
-               amount = percent(demand%target*bound/finding%allowed)
+               part = demand%target/finding%allowed
+               amount = percent(part*number, digits(100.0_dp*part))
             else
-               amount = with_unit(few_digits(bound))
+               amount = with_unit(few_digits(number, digits(1.0_dp)))
             end if
          end associate
       end function amount
+
+      integer function digits(factor)
+         real(dp), intent(in) :: factor
+
+         digits = 2
+         if (.not. ieee_is_nan(finding%bound)) digits = digits_above(factor*finding%bound, &
+            factor*finding%allowed)
+      end function digits
 
       function with_unit(number)
          character(*), intent(in) :: number
@@ -216,7 +227,7 @@ contains
       type(accuracy_round_type), intent(in) :: round
       character(:), allocatable :: words
       character(80) :: line
-      real(dp) :: excess(size(round%findings, 1))
+      real(dp) :: excess(size(round%findings, 1)), largest
       integer :: d, uncertain
 
       write (line, '(i8, f14.2, 3i12)') number, round%cpu_seconds, round%unknowns, &
@@ -224,8 +235,10 @@ contains
       words = trim(line)//'  '
       excess = [(round%excess(d), d=1, size(excess))]
       uncertain = count(excess >= huge(1.0_dp))
-      if (uncertain < size(excess)) words = words//few_digits(maxval(excess, &
-         mask=excess < huge(1.0_dp)))
+      if (uncertain < size(excess)) then
+         largest = maxval(excess, mask=excess < huge(1.0_dp))
+         words = words//few_digits(largest, digits_above(largest, 1.0_dp))
+      end if
       if (uncertain > 0 .and. uncertain < size(excess)) words = words//', '
       if (uncertain > 0) words = words//to_text(uncertain)//' uncertain'
    end function round_words
