@@ -8,7 +8,7 @@ from .result import words_of
 from .style import plt
 from .tables import stack_tables
 
-SMALLEST = 1e-3  # of a target: bounds below it are marked at the foot
+SMALLEST = 1e-3  # of a target: bounds below it are marked at the foot, uncertain ones at the top
 
 
 def draw(result, options):
@@ -24,19 +24,21 @@ def draw(result, options):
     figure, axes = plt.subplots(
         figsize=(style.DOUBLE_COLUMN * 0.62, 3.2), layout="constrained"
     )
-    tables, any_below = [], False
+    tables, marks = [], {}
     for number, (name, rows, unit) in enumerate(series):
         value, bound, allowed = rows[:, 1], rows[:, 2], rows[:, 3]
-        ratio = bound / allowed
-        label = f"{name}, target {target_words(allowed[-1], unit)}{uncertain_words(ratio)}"
-        any_below = any_below or np.any(ratio < SMALLEST)
-        draw_target(axes, cost, ratio, number, label)
+        is_there = rows[:, 0] > 0
+        ratio = np.divide(bound, allowed, out=np.full(len(cost), np.nan), where=is_there)
+        is_uncertain = is_there & np.isnan(bound)
+        label = f"{name}, target {target_words(allowed[is_there][-1], unit)}"
+        label += uncertain_words(is_uncertain)
+        marks |= draw_target(axes, cost, ratio, is_uncertain, number, label)
         table = {"target": np.full(len(cost), name, dtype=object), "cpu_seconds": cost}
         table |= {"unknowns": rounds["unknowns"][:], "value": value, "bound": bound}
         tables.append(table | {"allowed": allowed})
     axes.axhline(1.0, color=style.GREY, lw=0.8, ls="--", label="target")
-    if any_below:
-        axes.plot([], [], "v", color=style.GREY, ms=4, mfc="none", label="below the scale")
+    for words, mark in marks.items():
+        axes.plot([], [], mark, color=style.GREY, ms=4, mfc="none", label=words)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(style.decade(cost))
@@ -49,31 +51,33 @@ def draw(result, options):
     return style.write(figure, stack_tables(tables), options.out, name)
 
 
-def draw_target(axes, cost, ratio, number, label):
-    """Draw the rounds of one target; its entry in the legend shows a curve, lone points, marks at
-    the foot or nothing, as the picture does."""
+def draw_target(axes, cost, ratio, is_uncertain, number, label):
+    """Draw the rounds of one target; its entry in the legend shows a curve, lone points or the marks
+    of a border, as the picture does. Return what these marks mean."""
     colour = style.SERIES[number % len(style.SERIES)]
     is_below = ratio < SMALLEST
     shown = np.where(is_below, np.nan, ratio)
     count = np.isfinite(shown).sum()
     axes.plot(cost, shown, color=colour, marker=style.marker(number), ms=3.5, lw=0.9,
               ls="solid" if count > 1 else "none", label=label if count else None)
-    if is_below.any():
-        foot = np.full(is_below.sum(), SMALLEST)
-        axes.plot(cost[is_below], foot, "v", color=colour, ms=4 + 2 * number, mfc="none",
-                  label=None if count else label)
-    elif count == 0:
-        axes.plot([], [], alpha=0.0, label=label)
+    label, marks = None if count else label, {}
+    for words, mark, rounds, height, transform in (
+            ("below the scale", "v", is_below, SMALLEST, axes.transData),
+            ("uncertain", "^", is_uncertain, 1.0, axes.get_xaxis_transform())):
+        if rounds.any():
+            axes.plot(cost[rounds], np.full(rounds.sum(), height), mark, color=colour, clip_on=False,
+                      ms=4 + 2 * number, mfc="none", transform=transform, label=label)
+            label, marks[words] = None, mark
+    return marks
 
 
-def uncertain_words(ratio):
+def uncertain_words(is_uncertain):
     """Return in which rounds there is no bound, in words."""
-    rounds = np.flatnonzero(np.isnan(ratio)) + 1
-    if len(rounds) == 0:
+    if not is_uncertain.any():
         return ""
-    if len(rounds) == len(ratio):
+    if is_uncertain.all():
         return " (uncertain)"
-    return f" (uncertain in round {', '.join(map(str, rounds))})"
+    return f" (uncertain in round {', '.join(map(str, np.flatnonzero(is_uncertain) + 1))})"
 
 
 def target_words(allowed, unit):

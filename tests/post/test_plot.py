@@ -1053,15 +1053,26 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
     with h5py.File(asked, "a") as file:
         file["accuracy/bounds/CYLINDER/normal_force"][...] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 1e-9, 0.1]]
     (figure,) = kept("accuracy", asked)
-    (_, foot, *_) = figure.axes[0].get_lines()
+    (_, foot, top, *_) = figure.axes[0].get_lines()
     assert (foot.get_marker(), list(foot.get_xdata())) == ("v", [0.4])
+    assert (top.get_marker(), list(top.get_xdata())) == ("^", [0.1])
+    # At the frame, wherever the bounds of others lie.
+    height = figure.axes[0].transAxes.inverted().transform(
+        top.get_transform().transform([[0.1, top.get_ydata()[0]]]))[0, 1]
+    assert height == pytest.approx(1.0)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        "CYLINDER normal force, target 0.1 (uncertain in round 1)", "target", "below the scale"]
+        "CYLINDER normal force, target 0.1 (uncertain in round 1)", "target", "below the scale",
+        "uncertain"]
+    with h5py.File(asked, "a") as file:
+        file["accuracy/bounds/CYLINDER/normal_force"][...] = [[1, 5.0, 0.4, 0.1], [0, 0.0, 0.0, 0.0]]
+    (figure,) = kept("accuracy", asked)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        "CYLINDER normal force, target 0.1", "target"]
 
 
 @pytest.mark.parametrize(("bounds", "line", "marker"), [
     ((4.0, 0.5), "-", "o"), ((np.nan, 0.5), "None", "o"), ((1e-9, 1e-9), "None", "v"),
-    ((np.nan, np.nan), "None", "None"),
+    ((np.nan, np.nan), "None", "^"), ((np.nan, 1e-9), "None", "v"),
 ])
 def test_the_legend_of_an_accuracy_shows_what_is_drawn(kept, result, bounds, line, marker):
     with h5py.File(result, "a") as file:
@@ -1071,9 +1082,7 @@ def test_the_legend_of_an_accuracy_shows_what_is_drawn(kept, result, bounds, lin
         group["bounds/CYLINDER/normal_force"] = rows
     (figure,) = kept("accuracy", result)
     handle = figure.legends[0].legend_handles[0]
-    seen = handle.get_alpha() != 0.0
-    assert (handle.get_linestyle() if seen else "None") == line
-    assert (handle.get_marker() if seen else "None") == marker
+    assert (handle.get_linestyle(), handle.get_marker()) == (line, marker)
     assert "target 340" in figure.legends[0].get_texts()[0].get_text()
 
 
