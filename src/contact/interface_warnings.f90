@@ -11,6 +11,10 @@ module interface_warnings
    public :: clearance_warning, gap_range, mismatch_of_pairs, offset_warning, overlap_warning
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
+   !> Part of a face by which a clearance may differ from the gap of the mesh: overlaps of press fits
+   !> are far smaller, lengths of another unit far larger. A part of an element's side would depend
+   !> on how fine the mesh is.
+   real(dp), parameter :: far_off = 0.25_dp
 
 contains
 
@@ -108,26 +112,27 @@ contains
    end function overlap_warning
 
    !> Names the contact point whose faces are nearest to each other, where *CLEARANCE hides that
-   !> none lie as it says: the gap of the mesh differs from it by more than the slave's element
-   !> edge.
+   !> none lie as it says: the gap of the mesh differs from it by more than a part of the face.
    pure function clearance_warning(mesh, points) result(warning)
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points    !! contact points of one *CLEARANCE
       character(:), allocatable :: warning               !! empty where some do
-      real(dp) :: gap(size(points%edge)), part(size(points%edge))
+      real(dp) :: gap(size(points%edge)), length, off(size(points%edge))
       integer :: k
 
       warning = ''
       gap = [(normal_distance(mesh, points, k), k=1, size(gap))]
-      part = abs(gap - points%initial_gap)/points%edge
-      if (any(part <= 1.0_dp)) return
-      k = minloc(part, dim=1)
+      off = abs(gap - points%initial_gap)
+      ! A face may have a single contact point.
+      length = max(maxval(points%arc_length), maxval(points%edge))
+      if (any(off <= far_off*length)) return
+      k = minloc(off, dim=1)
       warning = 'overlap by '//to_text(-gap(k))
       if (gap(k) > 0.0_dp) warning = 'are '//to_text(gap(k))//' apart'
       warning = 'contact pair '//points%name//': the faces '//warning//' at '// &
-         nodes_of(mesh, points, k)//', where the element edge is '//to_text(points%edge(k))// &
-         ', but *CLEARANCE makes it '//to_text(points%initial_gap(k))//': check the positions '// &
-         'of the bodies, and that all lengths of the deck have one unit'
+         nodes_of(mesh, points, k)//', but *CLEARANCE makes it '// &
+         to_text(points%initial_gap(k))//'; the face is '//to_text(length)//' long: check the '// &
+         'positions of the bodies, and that all lengths of the deck have one unit'
    end function clearance_warning
 
    !> Distance from slave node to master node along the normal, negative where they overlap.

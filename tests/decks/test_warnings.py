@@ -102,19 +102,22 @@ def test_bodies_inside_each_other(tmp_path, gap, clearance, told):
 
 @pytest.mark.parametrize(("gap", "clearance", "told"), [
     (1e3, 0.0, "are 1000 apart "), (-2.5, -1e-3, "overlap by 2.5 "), (1e3, 1e3, None),
-    (1.1, 0.05, "are 1.1 apart "), (0.9, 0.0, None), (-0.9, 0.0, None)])
+    (1.1, 0.05, "are 1.1 apart "), (0.9, 0.0, None), (-0.9, 0.0, None), (0.0, -0.9, None),
+    (0.0, -1.1, "overlap by 0 ")])
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
-def test_a_clearance_in_place_of_a_long_way(tmp_path, gap, clearance, told, pairing):
-    """As where one mesh is in mm and the other in m: the gap of the mesh is off by more than the
-    element edge, 1."""
+@pytest.mark.parametrize("refine", [[], ["*REFINE, LEVELS=3"]], ids=["coarse", "fine"])
+def test_a_clearance_in_place_of_a_long_way(tmp_path, gap, clearance, told, pairing, refine):
+    """As where one mesh is in mm and the other in m: the gap of the mesh is off by more than a quarter
+    of the face, 4, with sides of 1 or of 1/8."""
     cards = blocks(gap=gap, clearance=clearance)
-    found = warnings(tmp_path, [c.replace("PAIRING=NODES", f"PAIRING={pairing}") for c in cards], PRESSED)
+    found = warnings(tmp_path, [c.replace("PAIRING=NODES", f"PAIRING={pairing}") for c in cards], refine,
+                     PRESSED)
     if told is None:
         assert found == []
         return
     message = one(found, "*CONTACT PAIR")
     assert f"the faces {told}at slave node " in message and "*CLEARANCE" in message
-    assert "where the element edge is 1," in message
+    assert "; the face is 4 long" in message
 
 
 def test_swapped_faces(tmp_path):
