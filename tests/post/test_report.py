@@ -21,7 +21,7 @@ from thercon_post import stresses  # noqa: E402
 from thercon_post.report.cli import main  # noqa: E402
 from thercon_post.report.data import kept_steps  # noqa: E402
 from thercon_post.report.listing import read_listing  # noqa: E402
-from thercon_post.report.tables import remark  # noqa: E402
+from thercon_post.report.tables import remark, target_cells  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -353,6 +353,13 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
     assert rows[2][1:4] == ["1300", "0.1", "0.1"] and ">met<" in rows[2][-1]
     assert "<dd>12.50 s in round 2; all rounds took 0.42 CPU seconds</dd>" in text
     assert "Rounds of the" not in synthetic().read_text()
+
+
+def test_a_target_that_is_missed_by_little_shows_it():
+    cells = target_cells(np.array([[1, 5.0, 0.2, 0.1], [1, 5.1, 0.1003, 0.1]]), "W", "")
+    assert cells[:4] == ["0.2", "0.1003", "0.1", "W"] and ">not met<" in cells[4]
+    cells = target_cells(np.array([[1, 5.0, 0.2, 0.1], [1, 5.1, 0.0999, 0.1]]), "W", "")
+    assert cells[:4] == ["0.2", "0.1", "0.1", "W"] and ">met<" in cells[4]
 
 
 @pytest.mark.parametrize(("said", "shown"), [

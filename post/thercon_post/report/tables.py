@@ -152,13 +152,16 @@ def remark(said, target):
 def target_cells(rows, unit, remark):
     """Return the bounds of all rounds, target, unit and verdict of the last one."""
     step, _, bound, allowed = rows[-1]
-    cells = ["–" if each[0] == 0 else "uncertain" if np.isnan(each[2]) else number(each[2], 2)
+    digits = 2  # or as many as show that the bound is above the target
+    while bound > allowed and digits < 6 and number(bound, digits) == number(allowed, digits):
+        digits += 1
+    cells = ["–" if each[0] == 0 else "uncertain" if np.isnan(each[2]) else number(each[2], digits)
              for each in rows]
     if step == 0:
         return [*cells, "–", unit, f"nothing to judge{escape(remark)}"]
     verdict = "met" if bound <= allowed else "not met"
     look = "pass" if bound <= allowed else "fail"
-    return [*cells, number(allowed, 2), unit, f'<span class="{look}">{verdict}</span>{escape(remark)}']
+    return [*cells, number(allowed, digits), unit, f'<span class="{look}">{verdict}</span>{escape(remark)}']
 
 
 def number(value, digits=6):
