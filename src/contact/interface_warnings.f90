@@ -11,9 +11,9 @@ module interface_warnings
    public :: clearance_warning, gap_range, mismatch_of_pairs, offset_warning, overlap_warning
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
-   !> Part of a face by which a clearance may differ from the gap of the mesh: overlaps of press fits
-   !> are far smaller, lengths of another unit far larger. A part of an element's side would depend
-   !> on how fine the mesh is.
+   !> Part of a face by which a clearance may differ from the gap of the mesh: overlaps of press
+   !> fits are far smaller, lengths of another unit far larger. A part of an element's side would
+   !> depend on how fine the mesh is.
    real(dp), parameter :: far_off = 0.25_dp
 
 contains

@@ -181,20 +181,20 @@ contains
          associate (demand => accuracy%demands(d))
             if (demand%is_relative) then
                part = demand%target/finding%allowed
-               amount = percent(part*number, digits(100.0_dp*part))
+               amount = percent(part*number, shown_digits(100.0_dp*part))
             else
-               amount = with_unit(few_digits(number, digits(1.0_dp)))
+               amount = with_unit(few_digits(number, shown_digits(1.0_dp)))
             end if
          end associate
       end function amount
 
-      integer function digits(factor)
+      integer function shown_digits(factor)
          real(dp), intent(in) :: factor
 
-         digits = 2
-         if (.not. ieee_is_nan(finding%bound)) digits = digits_above(factor*finding%bound, &
-            factor*finding%allowed)
-      end function digits
+         shown_digits = 2
+         if (.not. ieee_is_nan(finding%bound)) shown_digits = digits_above( &
+            factor*finding%bound, factor*finding%allowed)
+      end function shown_digits
 
       function with_unit(number)
          character(*), intent(in) :: number
