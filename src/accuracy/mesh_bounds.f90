@@ -29,6 +29,9 @@ module mesh_bounds
    !> The same where contact ends at a corner: stresses there vary nearly as the inverse root of the
    !> distance, and errors fall with the root of h: 1/(1 - 2^(-1/2)).
    real(dp), parameter :: of_change_at_corner = 3.4_dp
+   !> Error of the heat rate in its scatter where all elements are halved; else, and of others, it
+   !> is the scatter itself.
+   real(dp), parameter :: of_scatter_in_heat = 0.7_dp
    !> Error of shear force, that with hats, and that of peak pressure in what friction locked in.
    real(dp), parameter :: of_locked = 0.4_dp, of_locked_with_hats = 0.6_dp
    real(dp), parameter :: of_locked_in_peak = 0.15_dp
@@ -61,6 +64,8 @@ contains
       ! Without contact no edge passes a node; its end is a corner of the course, and no scatter.
       known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter) .or. &
          all(contact%contact_state == contact_open))
+      q = find_quantity(estimated, 'heat_rate')
+      if (size(energy) == 0) known_scatter(q) = of_scatter_in_heat*known_scatter(q)
       bounds = merge(of_change_alone, of_change, size(energy) > 0 .or. ieee_is_nan(scatter))
       if (any(points%at_corner .and. contact%contact_state([1, size(points%arc_length)]) /= &
          contact_open)) bounds = max(bounds, of_change_at_corner)

@@ -363,6 +363,22 @@ def test_an_amplitude_that_ends_long_before_its_step(tmp_path):
                        "factor, 1, is kept")
 
 
+@pytest.mark.parametrize(("total", "times", "idle"), [
+    ("", "1., 0., 2., 1.", True), ("", "5., 0., 6., 1.", True), ("", "0.9, 0., 2., 1.", False),
+    (", TIME=TOTAL TIME", "1., 0., 2., 1.", False), (", TIME=TOTAL TIME", "2., 0., 3., 1.", True),
+    ("", "0., 0., 0.5, 1., 1., 0.", False)])
+def test_an_amplitude_that_begins_after_its_step(tmp_path, total, times, idle):
+    """In the second of two steps, each 1 long."""
+    cards = [f"*AMPLITUDE, NAME=LATE{total}", times]
+    second = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.",
+              "*DLOAD, AMPLITUDE=LATE", "A, BX, 1.", "*END STEP"]
+    found = warnings(tmp_path, cards, conducting([*HEATED, *second]))
+    said = "amplitude LATE is 0 throughout step 2, which begins to use it"
+    if not total:
+        said += "; without TIME=TOTAL TIME its times count from the start of the step"
+    assert (one(found, "*AMPLITUDE") == said) if idle else (found == [])
+
+
 @pytest.mark.parametrize(("gap", "closes"), [(1e-3, True), (0.2, False)])
 def test_contact_that_never_closes(tmp_path, gap, closes):
     """The upper block is pushed down by 0.1."""
@@ -444,8 +460,9 @@ def test_bodies_that_expand_from_0_degrees(tmp_path, bottom, top, start, expansi
             "A.BOTTOM, 1, 2", f"A.BOTTOM, 11, 11, {bottom}", f"A.TOP, 11, 11, {top}", "*END STEP"]
     given = ["*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "A.BOTTOM, 1, 2", "*TEMPERATURE",
              f"A.BOTTOM, {bottom}", f"A.TOP, {top}", "*END STEP"]
+    films = [*step[:5], "*FILM", f"1, F1, {bottom}, 5.", f"1, F4, {top}, 5.", "*END STEP"]
     card = "*INITIAL CONDITIONS, TYPE=TEMPERATURE"
-    for loads, first in ((step, "A.BOTTOM, 11"), (given, "A.BOTTOM, ")):
+    for loads, first in ((step, "A.BOTTOM, 11"), (given, "A.BOTTOM, "), (films, "1, F1")):
         found = warnings(tmp_path, [card, *start] if start else [], conducting(loads, expansion=expansion))
         found = [each for each in found if "bodies expand from 0" in each[0]]
         assert len(found) == warned

@@ -95,7 +95,8 @@ contains
          if (boundaries%count > 0) given = pack(boundaries%items(:boundaries%count), &
             boundaries%items(:boundaries%count)%component == dof_temperature)
          if (loads%count > 0) given = [given, pack(loads%items(:loads%count), &
-            loads%items(:loads%count)%kind == load_temperature)]
+            loads%items(:loads%count)%kind == load_temperature .or. &
+            loads%items(:loads%count)%kind == load_film_sink)]
       end associate
       if (size(given) == 0) return
       if (minval(given%value) <= 0.0_dp .and. maxval(given%value) >= 0.0_dp) return

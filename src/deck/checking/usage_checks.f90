@@ -1,6 +1,6 @@
 !> What a deck defines and does not use, or uses for a part of a step only: it may be a slip.
 module usage_checks
-   use amplitudes, only: amplitude_type
+   use amplitudes, only: amplitude_type, amplitude_value
    use card_parameters, only: parameter_text
    use cards, only: cards_type, field_text, keyword_card_type
    use deck_context, only: deck_context_type
@@ -20,7 +20,8 @@ module usage_checks
 
 contains
 
-   !> Warns of definitions without use and of amplitudes that end long before their step. The deck
+   !> Warns of definitions without use, and of amplitudes that end long before their step or begin
+   !> after it. The deck
    !> has no errors, of which these may only be the consequence.
    subroutine check_usage(cards, context, model, report)
       type(cards_type), intent(in) :: cards
@@ -126,13 +127,15 @@ contains
       has_field_value = .false.
    end function has_field_value
 
-   !> Warns of amplitudes that end long before the step in which a request begins to follow them.
+   !> Warns of amplitudes that end long before the step in which a request begins to follow them, or
+   !> begin after it.
    subroutine check_ends(cards, requests, model, told, report)
       type(cards_type), intent(in) :: cards
       type(request_list_type), intent(in) :: requests
       type(model_type), intent(in) :: model
       logical, intent(inout) :: told(:)
       type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: message
       real(dp) :: start, last
       integer :: a, i, s
 
@@ -144,6 +147,16 @@ contains
          start = 0.0_dp
          if (model%amplitudes(a)%total_time) start = sum(model%steps(:s - 1)%period)
          associate (curve => model%amplitudes(a), period => model%steps(s)%period)
+            if (is_idle(curve, start, merge(sum(model%steps(s:)%period), period, &
+               curve%total_time))) then
+               told(a) = .true.
+               message = 'amplitude '//curve%name//' is 0 throughout step '//to_text(s)// &
+                  ', which begins to use it'
+               if (.not. curve%total_time) message = message//'; without TIME=TOTAL TIME its '// &
+                  'times count from the start of the step'
+               call report%warning(cards%keywords(card_of(cards, a))%place, message)
+               cycle
+            end if
             last = curve%times(size(curve%times))
             if (last - start >= long_before*period .or. is_level(curve)) cycle
             told(a) = .true.
@@ -154,6 +167,16 @@ contains
          end associate
       end do
    end subroutine check_ends
+
+   !> Whether an amplitude that is not always 0 is so over an interval.
+   pure logical function is_idle(curve, start, length)
+      type(amplitude_type), intent(in) :: curve
+      real(dp), intent(in) :: start, length
+
+      is_idle = .not. is_level(curve) .and. abs(amplitude_value(curve, start)) + &
+         abs(amplitude_value(curve, start + length)) + sum(abs(curve%values), &
+         mask=curve%times > start .and. curve%times < start + length) <= 0.0_dp
+   end function is_idle
 
    !> Whether an amplitude is the same everywhere, so that it does not matter where it ends.
    pure logical function is_level(curve)
