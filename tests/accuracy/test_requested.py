@@ -93,7 +93,7 @@ def uniform(folder):
 @dataclass(frozen=True)
 class Request:
     """What a request found: exit status, CPU seconds of all rounds, elements and increments of the last,
-    and the largest bound and true error over the target."""
+    the largest bound and true error over the target, and of each bound whether it holds."""
 
     status: int
     seconds: list
@@ -101,13 +101,14 @@ class Request:
     increments: int
     bound: float
     error: float
+    held: list
 
 
 def request(text, face, exact, percent, path):
     """Ask for an accuracy; the converged values are those of all steps, and none of some decks."""
     path.write_text(text)
     process = run("run", "--quiet", path, "--out", path.parent, "--accuracy", f"{percent}%", seconds=900)
-    bounds, errors = [], []
+    bounds, errors, held = [], [], []
     with h5py.File(path.with_suffix(".vtkhdf")) as file:
         group = file["accuracy"]
         for quantity, found in group[f"bounds/{face}"].items():
@@ -115,10 +116,12 @@ def request(text, face, exact, percent, path):
             if step == 0:
                 continue
             bounds.append(bound / allowed)
-            if quantity in exact:
-                errors.append(abs(value - exact[quantity][int(step) - 1]) / allowed)
+            if quantity in exact and np.isfinite(exact[quantity][int(step) - 1]):
+                error = abs(value - exact[quantity][int(step) - 1])
+                errors.append(error / allowed)
+                held.append(error <= max(bound, held_bounds.LEAST * abs(value)))
         return Request(process.returncode, list(group["cpu_seconds"][:]), group["elements"][-1],
-                       group["increments"][-1], max(bounds), np.nanmax(errors) if errors else np.nan)
+                       group["increments"][-1], max(bounds), max(errors) if errors else np.nan, held)
 
 
 def measured(name, percent, folder):
@@ -135,9 +138,11 @@ def judged_decks(folder):
     """Return the table of requests on the decks that judge the bounds."""
     table = Table("Requests on the decks that judge the bounds",
                   ["decks", "target", "number", "reached", "of these true errors inside the target",
-                   "largest true error/target of these", "CPU s of all"], text="""Known and drawn decks of
-[bounds that hold](#bounds-that-hold), and those with faces that do not match. The largest error is that of
-the edge of a ball, whose converged value itself differs by 1 % from mesh to mesh.""")
+                   "largest true error/target of these", "bounds that hold", "CPU s of all"],
+                  text="""Known and drawn decks of [bounds that hold](#bounds-that-hold), and those with
+faces that do not match. Bounds are those of the last round at the step that decides; they hold less often
+than on meshes refined evenly, but most of those that do not are far below the target. The largest error is
+that of the edge of a ball, whose converged value itself differs by 1 % from mesh to mesh.""")
     matching = [replace(deck, text=re.sub(r"^\*REFINE.*\n", "", deck.text.split("*VERIFY")[0], flags=re.M))
                 for deck in all_decks()]
     others = [deck for deck in mismatched_decks() if "mortar" in deck.name]
@@ -148,8 +153,10 @@ the edge of a ball, whose converged value itself differs by 1 % from mesh to mes
         found = [request(deck.text, deck.face, held_bounds.told_values(deck), percent, folder / "deck.inp")
                  for deck in decks]
         errors = [one.error for one in found if one.status == 0]
+        held = [is_held for one in found for is_held in one.held]
         table.rows.append([name, f"{percent} %", len(found), len(errors),
                            sum(error <= 1.0 for error in errors), f"{max(errors):.2f}",
+                           f"{sum(held)}/{len(held)}, {100 * sum(held) / len(held):.0f} %",
                            f"{sum(sum(one.seconds) for one in found):.0f}"])
     return table
 
