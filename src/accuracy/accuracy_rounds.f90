@@ -8,7 +8,7 @@ module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type, accuracy_target_type
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, estimated, zone_words
+   use contact_quantities, only: contact_values, end_words, estimated
    use interface_quantities, only: closed_length, is_end_of_face, peak_is_at_end, peaks_at_corner
    use kinds, only: dp
    use quantity_types, only: find_quantity, quantity_type
@@ -230,8 +230,7 @@ contains
       words = '0 at the end of each step'
       if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) words = 'no heat'
       if (quantity%resolution <= 0.0_dp) return
-      words = zone_words(quantity%name, contact)
-      if (words == '') words = 'up to an end of the face'
+      words = end_words(quantity%name, contact)
    end function instead_of
 
    !> Lets the changes from the rounds before count where nothing else does.

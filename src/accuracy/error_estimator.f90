@@ -45,7 +45,7 @@ module error_estimator
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
       type(value_courses_type) :: courses          !! quantities at the increments before
-      real(dp), allocatable :: friction(:)         !! (interfaces) largest of locked_in so far
+      real(dp), allocatable :: most_locked(:)      !! (interfaces) largest of locked_in so far
       integer :: step = 0                          !! step of the present increment
       logical :: is_on = .false.                   !! whether there is anything to estimate
       character(:), allocatable :: why_not         !! why there is no finer mesh; else ''
@@ -77,7 +77,7 @@ contains
          call self%divided%start(model, error)
       end if
       if (allocated(error)) self%why_not = error%message
-      allocate (self%friction(size(model%contacts)), source=0.0_dp)
+      allocate (self%most_locked(size(model%contacts)), source=0.0_dp)
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 
@@ -113,7 +113,7 @@ contains
       do i = 1, size(record%contacts)
          associate (points => simulation%bodies%interfaces(i), contact => record%contacts(i))
             values(:, i) = quantities_of(points, contact)
-            self%friction(i) = max(self%friction(i), locked_in(points, contact))
+            self%most_locked(i) = max(self%most_locked(i), locked_in(points, contact))
          end associate
       end do
       call self%courses%follow(record%time, values)
@@ -227,7 +227,7 @@ contains
       do i = 1, size(record%errors)
          associate (bounds => record%errors(i)%mesh)
             bounds = bounds_of_mesh(simulation%bodies%interfaces(i), record%contacts(i), &
-               change(:, i), self%courses%scatter(i, before), self%friction(i), energy)
+               change(:, i), self%courses%scatter(i, before), self%most_locked(i), energy)
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
                left_by_round*abs(self%courses%change_since(i, before)))
          end associate

@@ -48,12 +48,13 @@ module mesh_bounds
 contains
 
    !> The bounds, for the quantities with an estimate; NaN where none can be given.
-   pure function bounds_of_mesh(points, contact, change, scatter, friction, energy) result(bounds)
+   pure function bounds_of_mesh(points, contact, change, scatter, most_locked, energy) &
+      result(bounds)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       type(contact_record_type), intent(in) :: contact   !! its state
       real(dp), intent(in) :: change(:)                  !! of the quantities by halved elements
       real(dp), intent(in) :: scatter(:)                 !! over increments; NaN: unknown
-      real(dp), intent(in) :: friction                   !! largest of locked_in so far
+      real(dp), intent(in) :: most_locked                !! largest of locked_in so far
       !> Squared relative errors of the energy norms of stress and heat flux [-], where only faces
       !> were halved; else none
       real(dp), intent(in) :: energy(:)
@@ -73,7 +74,7 @@ contains
       if (size(energy) > 0) call add_energy(contact, energy, bounds)
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
-      if (length > 0.0_dp) locked = friction/length
+      if (length > 0.0_dp) locked = most_locked/length
       shift = 0.0_dp
       if (contact%normal_force > 0.0_dp) shift = length/contact%normal_force* &
          bounds(find_quantity(estimated, 'normal_force'))

@@ -54,7 +54,7 @@ contains
       type(model_type), intent(in) :: model
 
       allocate (self%division%levels(size(model%mesh%element_kind)), source=0)
-      allocate (self%division%points(2, 0), self%division%times(0))
+      allocate (self%division%points(2, 0), self%division%point_levels(0))
    end subroutine start
 
    !> Takes the end of a step, whose findings the last round has.
@@ -122,7 +122,7 @@ contains
       associate (s => points%arc_length, edge => record%errors(i)%value(q))
          m = size(s)
          if (.not. quantity%resolution > 0.0_dp .or. m < 2) return
-         k = min(max(count(s <= edge), 1), m - 1)
+         k = point_before(s, edge)
          levels = min(most_levels, max(0, ceiling(log(quantity%resolution*(s(k + 1) - s(k))/ &
             (part*allowed))/log(2.0_dp))))
       end associate
@@ -192,16 +192,23 @@ contains
          n => points%normal)
          do i = 1, size(edges)
             if (ieee_is_nan(edges(i)) .or. size(s) < 2) cycle
-            k = min(max(count(s <= edges(i)), 1), size(s) - 1)
+            k = point_before(s, edges(i))
             part_of_side = min(max((edges(i) - s(k))/(s(k + 1) - s(k)), 0.0_dp), 1.0_dp)
             slave = between(x(:, k), x(:, k + 1), part_of_side)
             master = slave + between(h(k)*n(:, k), h(k + 1)*n(:, k + 1), part_of_side)
             self%division%points = reshape([self%division%points, slave, master], &
-               [2, size(self%division%times) + 2])
-            self%division%times = [self%division%times, levels, levels]
+               [2, size(self%division%point_levels) + 2])
+            self%division%point_levels = [self%division%point_levels, levels, levels]
          end do
       end associate
    end subroutine mark_edges
+
+   !> The contact point before an edge, of those that have a next one.
+   pure integer function point_before(s, edge)
+      real(dp), intent(in) :: s(:), edge
+
+      point_before = min(max(count(s <= edge), 1), size(s) - 1)
+   end function point_before
 
    !> The vector that lies between two.
    pure function between(first, second, part_of_way) result(vector)
@@ -229,7 +236,7 @@ contains
    pure logical function asks_for_nothing(self)
       class(round_indicators_type), intent(in) :: self
 
-      asks_for_nothing = self%halvings == 0 .and. size(self%division%times) == 0 .and. &
+      asks_for_nothing = self%halvings == 0 .and. size(self%division%point_levels) == 0 .and. &
          .not. any(self%division%levels > 0)
    end function asks_for_nothing
 

@@ -172,18 +172,18 @@ contains
       real(dp) :: jacobian, radius
 
       call element_gradients(kind, coordinates, point, gradients, jacobian)
+      b = 0.0_dp
       radius = 0.0_dp
       if (plane == axisymmetric) then
          psi = element_shape(kind, point)
          radius = dot_product(psi, coordinates(1, :))
+         b(3, 1::2) = psi/radius
       end if
       volume = jacobian*area_factor(radius, thickness, plane == axisymmetric)
-      b = 0.0_dp
       b(1, 1::2) = gradients(1, :)
       b(2, 2::2) = gradients(2, :)
       b(4, 1::2) = gradients(2, :)
       b(4, 2::2) = gradients(1, :)
-      if (plane == axisymmetric) b(3, 1::2) = psi/radius
    end subroutine strain_matrix
 
    !> Mean of eps_xx + eps_yy + eps_zz over the volume, per degree of freedom.

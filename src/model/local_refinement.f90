@@ -77,12 +77,16 @@ contains
       real(dp) :: square
       integer :: e, i, n
 
+      at_point = .false.
       do e = 1, size(at_point)
          n = element_corner_count(mesh%element_kind(e))
          associate (x => mesh%coordinates(:, mesh%element_nodes(:n, e)))
             square = near**2*maxval(sum((x - cshift(x, 1, dim=2))**2, dim=1))
-            at_point(e) = any([(sum((x - spread(points(:, i), 2, n))**2, dim=1) <= square, &
-               i=1, size(points, 2))])
+            do i = 1, size(points, 2)
+               if (at_point(e)) exit
+               at_point(e) = any((x(1, :) - points(1, i))**2 + (x(2, :) - points(2, i))**2 <= &
+                  square)
+            end do
          end associate
       end do
    end function elements_at_points

@@ -17,9 +17,9 @@ module refined_regions
 
    !> How often each element is divided, and then those that are left at some points.
    type :: division_type
-      integer, allocatable :: levels(:)      !! (elements) >= 0
-      real(dp), allocatable :: points(:, :)  !! (2, n) [length]
-      integer, allocatable :: times(:)       !! (n) divisions at them
+      integer, allocatable :: levels(:)         !! (elements) >= 0
+      real(dp), allocatable :: points(:, :)     !! (2, n) [length]
+      integer, allocatable :: point_levels(:)   !! (n) divisions at them
    end type division_type
 
 end module refined_regions

@@ -3,7 +3,7 @@
 module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, estimated, zone_words
+   use contact_quantities, only: contact_values, end_words, estimated, zone_words
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use model, only: model_type
@@ -164,7 +164,7 @@ contains
             words = words//bound_words(self%errors(i)%bound(q), values(1))
          else if (allocated(self%errors)) then
             words = words//repeat(' ', bound_width)
-            if (zone == '') zone = 'up to an end of the face'
+            zone = end_words(estimated(q)%name, self%contacts(i))
          end if
          words = trim(words//' '//unit_label(estimated(q)%unit, model%units))
          if (zone /= '') words = words//', '//zone

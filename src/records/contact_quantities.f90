@@ -9,7 +9,7 @@ module contact_quantities
    use zone_edges, only: edges_kept
    implicit none
    private
-   public :: contact_table, estimated, contact_values, geometry_values, zone_words
+   public :: contact_table, estimated, contact_values, end_words, geometry_values, zone_words
 
    ! Contact points are in the order of the columns of *CONTACT PRINT.
    type(quantity_type), parameter :: contact_table(*) = [ &
@@ -176,5 +176,15 @@ contains
          end if
       end associate
    end function zone_words
+
+   !> What is said of an edge at the end of the face.
+   pure function end_words(name, contact) result(words)
+      character(*), intent(in) :: name                   !! of an edge
+      type(contact_record_type), intent(in) :: contact   !! state of its interface
+      character(:), allocatable :: words
+
+      words = zone_words(name, contact)
+      if (words == '') words = 'up to an end of the face'
+   end function end_words
 
 end module contact_quantities

@@ -112,18 +112,19 @@ def test_targets_that_are_missed_are_told_with_status_4(tmp_path):
 
 
 def test_sides_at_an_edge_fall_with_the_distance_from_it(tmp_path):
-    """Two divisions where it lies leave most sides away from it as they are."""
+    """Divided often where it lies, they are as long as before away from it."""
     cards = "*ACCURACY, ROUNDS=2", "edge_contact, 0.025, ABS, FACE"
     result = solve(copy_deck(CYLINDER, tmp_path / "graded.inp", cards))
     with h5py.File(result) as file:
         s, edge = file["contact/FACE/s"][:], file["contact/FACE/edge_contact"][-1]
-    sides, middle = np.diff(s[::2]), 0.5 * (s[:-1:2] + s[2::2])
     with h5py.File(solve(copy_deck(CYLINDER, tmp_path / "plain.inp"))) as file:
-        plain = np.diff(file["contact/FACE/s"][::2])
-    assert sides[np.argmin(abs(middle - edge))] < 0.3 * plain.max()
-    assert len(sides) < 2 * len(plain)
-    # Sides beside each other differ by one division at most, but for those of the deck's own mesh.
-    assert np.abs(np.log2(sides[1:] / sides[:-1])).max() < 1.0 + np.log2(plain[1:] / plain[:-1]).max()
+        plain = file["contact/FACE/s"][::2]
+    # How often each side of the deck's own mesh was divided; its halves are alike to the curvature.
+    middle = 0.5 * (s[:-1:2] + s[2::2])
+    whole = np.searchsorted(plain, middle) - 1
+    divided = np.rint(np.log2(np.diff(plain)[whole] / np.diff(s[::2]))).astype(int)
+    assert divided[np.argmin(abs(middle - edge))] == divided.max() > 1
+    assert np.abs(np.diff(divided)).max() == 1 and len(middle) < 2 * (len(plain) - 1)
 
 
 @pytest.mark.parametrize("percent", [1, 0.5, 0.3, 0.1])

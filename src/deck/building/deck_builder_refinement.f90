@@ -113,10 +113,10 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: levels(:), chosen(:)
-      integer :: i, time
+      integer :: i, level
 
-      do time = 1, maxval([0, division%times])
-         chosen = pack([(i, i=1, size(division%times))], division%times >= time)
+      do level = 1, maxval(division%point_levels)
+         chosen = pack([(i, i=1, size(division%point_levels))], division%point_levels >= level)
          levels = merge(1, 0, elements_at_points(model%mesh, division%points(:, chosen)))
          call divide_once(context, place_type(), model, levels, report, error)
          if (allocated(error) .or. report%has_errors()) return

@@ -21,8 +21,7 @@ module usage_checks
 contains
 
    !> Warns of definitions without use, and of amplitudes that end long before their step or begin
-   !> after it. The deck
-   !> has no errors, of which these may only be the consequence.
+   !> after it. The deck has no errors, of which these may only be the consequence.
    subroutine check_usage(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(in) :: context      !! requests
@@ -35,8 +34,8 @@ contains
       call check_names(cards, 'SURFACE', 'surface', report)
       call check_names(cards, 'AMPLITUDE', 'amplitude', report)
       told = .false.
-      call check_ends(cards, context%boundaries, model, told, report)
-      call check_ends(cards, context%loads, model, told, report)
+      call check_amplitudes(cards, context%boundaries, model, told, report)
+      call check_amplitudes(cards, context%loads, model, told, report)
    end subroutine check_usage
 
    !> Warns once of the cards of a keyword whose names no card refers to. Meshes and materials that
@@ -129,7 +128,7 @@ contains
 
    !> Warns of amplitudes that end long before the step in which a request begins to follow them, or
    !> begin after it.
-   subroutine check_ends(cards, requests, model, told, report)
+   subroutine check_amplitudes(cards, requests, model, told, report)
       type(cards_type), intent(in) :: cards
       type(request_list_type), intent(in) :: requests
       type(model_type), intent(in) :: model
@@ -166,7 +165,7 @@ contains
                to_text(curve%values(size(curve%values)))//', is kept')
          end associate
       end do
-   end subroutine check_ends
+   end subroutine check_amplitudes
 
    !> Whether an amplitude that is not always 0 is so over an interval.
    pure logical function is_idle(curve, start, length)
