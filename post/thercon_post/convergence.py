@@ -126,7 +126,7 @@ def residual_handles(run):
     if len(run.of_kind("accepted")) > 1:
         handles.append(Line2D([], [], label="accepted increments", **KINDS["accepted"]))
     if run.slowest:
-        label = f"increment {run.slowest.increment} (most iterations)"
+        label = f"increment {run.slowest.increment} (none has more iterations)"
         handles.append(Line2D([], [], label=label, **KINDS["slowest"]))
     if run.of_kind("cut back"):
         handles.append(Line2D([], [], label="ended by cut-back", **KINDS["cut back"]))
