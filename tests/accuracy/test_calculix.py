@@ -17,10 +17,10 @@ import runs  # noqa: E402
 TITLE = "Against CalculiX at equal error"
 TEXT = """
 CalculiX 2.20 of Debian against thercon on the published cylinder: at equal error CalculiX takes 30 to
-100 times as much CPU time. The aims of 50 times at 3 % and of 200 times at 0.3 % are not reached.
+110 times as much CPU time. The aims of 50 times at 3 % and of 200 times at 0.3 % are not reached.
 
 At 10 and 3 % both use elements of the first order; CalculiX reduced ones with hourglass control, which
-thercon does not have. Of its 15 milliseconds thercon spends more on starting, reading, writing and
+thercon does not have. Of its few milliseconds thercon spends more on starting, reading, writing and
 recovered stresses than on solving. Below 1 % the heat rate limits thercon: heat crosses mainly near the
 edge of contact, and its error depends on where the edge falls between two nodes.
 
