@@ -8,12 +8,13 @@ module divided_faces
    use bodies, only: find_bodies
    use companion_steps, only: implicit_state, implicit_step
    use contact_states, only: contact_open
+   use error_marking, only: at_faces
    use errors, only: error_type
    use increments, only: simulation_type
    use initial_state, only: make_initial_state
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
-   use load_histories, only: step_clock_type
+   use load_histories, only: end_of_step
    use local_refinement, only: choose_neighbours
    use mesh_division, only: divide, division_type
    use model, only: model_type
@@ -47,15 +48,9 @@ contains
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
       logical :: chosen(size(model%mesh%element_number))
-      integer :: i
 
-      chosen = .false.
-      associate (surfaces => [model%contacts%slave, model%contacts%master, &
+      chosen = at_faces(model%mesh, [model%contacts%slave, model%contacts%master, &
          model%ties%faces%slave, model%ties%faces%master])
-         do i = 1, size(surfaces)
-            chosen(model%mesh%surfaces(surfaces(i))%faces(1, :)) = .true.
-         end do
-      end associate
       call choose_neighbours(model, chosen)
       self%division = divide(model%mesh, chosen)
       self%model = model
@@ -81,15 +76,14 @@ contains
       if (step > self%run%control%step) call self%run%enter_step(self%model, error)
    end subroutine begin_step
 
-   !> What the quantities of the interfaces change by, at the end of an increment, in the
-   !> equilibrium of heat on both meshes.
+   !> What the quantities of the interfaces change by, at the end of a step, in the equilibrium of
+   !> heat on both meshes.
    !> Errors: as simulation_type's reduce, or the increment has no solution.
-   subroutine find_change(self, simulation, model, clock, previous, change, error)
+   subroutine find_change(self, simulation, model, previous, change, error)
       class(divided_faces_type), intent(inout) :: self
       type(simulation_type), intent(inout) :: simulation  !! the run at the end; films change
       type(model_type), intent(in) :: model
-      type(step_clock_type), intent(in) :: clock          !! the end of the increment
-      type(solution_state_type), intent(in) :: previous   !! state at its start
+      type(solution_state_type), intent(in) :: previous   !! state before the last increment
       real(dp), intent(out) :: change(:, :)               !! (quantities, interfaces)
       type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: before, next
@@ -98,7 +92,7 @@ contains
 
       call self%run%reduce(self%model, error)
       if (allocated(error)) return
-      call self%run%loads%move_to(clock, self%model)
+      call self%run%loads%move_to(end_of_step(model%steps, self%run%control%step), self%model)
       before = prolonged(self, simulation%bodies%points, previous)
       next = before
       next%increment_size = simulation%state%increment_size

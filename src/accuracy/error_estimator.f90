@@ -7,13 +7,14 @@ module error_estimator
    use contact_quantities, only: estimated
    use divided_faces, only: divided_faces_type
    use doubled_increments, only: doubled_increments_type
+   use error_marking, only: at_faces, largest_part, squared_errors
    use errors, only: error_type
    use increment_quantities, only: history_value
    use increments, only: simulation_type
    use interface_quantities, only: quantities_of, quantities_of_state
    use kinds, only: dp
    use mesh_bounds, only: bounds_of_mesh, locked_in
-   use load_histories, only: step_clock_type
+   use local_refinement, only: choose_neighbours
    use model, only: model_type
    use quantity_types, only: find_quantity
    use records, only: increment_record_type, interface_errors_type
@@ -32,6 +33,10 @@ module error_estimator
    !> once does where round faces meet, and with it the friction that is locked in there.
    real(dp), parameter :: of_doubled_increments = 1.0_dp, of_doubled_in_peak = 1 + sqrt(2.0_dp)
 
+   !> Part of the squared error of stress and heat flux in the elements that the finer mesh divides,
+   !> and what it must be at the end of later steps so that it serves there, too.
+   real(dp), parameter :: in_divided = 0.9_dp, still_in_divided = 0.8_dp
+
    !> Part of the change from the round before that is left: one that divides elements leaves less.
    real(dp), parameter :: left_by_round = 0.5_dp
 
@@ -40,7 +45,7 @@ module error_estimator
       private
       !> Whether the finer mesh is relaxed; else its increments are solved, with divided faces
       logical :: relaxes = .true.
-      type(refined_model_type) :: refined          !! the model with divided elements
+      type(refined_model_type) :: refined          !! the model with elements divided where it errs
       type(divided_faces_type) :: divided          !! the one with divided faces
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
@@ -71,9 +76,7 @@ contains
          size(model%ties) > 0)
       if (size(model%equations) > 0) then
          self%why_not = 'no finer mesh with equations, couplings or transformed axes'
-      else if (self%relaxes) then
-         call self%refined%prepare(model, simulation%bodies%points, error)
-      else
+      else if (.not. self%relaxes) then
          call self%divided%start(model, error)
       end if
       if (allocated(error)) self%why_not = error%message
@@ -98,6 +101,7 @@ contains
       !> (steps) at their ends in the round before, empty in the first; receives the present ones
       type(value_courses_type), intent(inout) :: courses(:)
       real(dp) :: values(size(estimated), size(record%contacts))
+      type(error_type), allocatable :: error
       character(:), allocatable :: no_mesh
       integer :: i, q
 
@@ -106,7 +110,10 @@ contains
          self%step = record%step
          call self%courses%begin_step(size(estimated), size(record%contacts), &
             simulation%loads%corners(model%amplitudes, simulation%control%step_start))
-         if (self%why_not == '') call begin_step(self, record%step)
+         if (self%why_not == '' .and. .not. self%relaxes) then
+            call self%divided%begin_step(record%step, self%before, error)
+            if (allocated(error)) self%why_not = error%message
+         end if
       end if
       call self%doubled%follow(model, simulation%bodies, simulation%loads, simulation%state, &
          record)
@@ -162,24 +169,6 @@ contains
       end if
    end function reason
 
-   !> Enters a step on the finer mesh.
-   subroutine begin_step(self, step)
-      type(error_estimator_type), intent(inout) :: self
-      integer, intent(in) :: step
-      type(error_type), allocatable :: error
-
-      associate (refined => self%refined, before => self%before)
-         if (self%relaxes) then
-            call refined%loads%begin_step(refined%model%steps(step), &
-               refined%division%prolong(before%displacement, 2), &
-               refined%division%prolong(before%temperature, 1))
-         else
-            call self%divided%begin_step(step, before, error)
-            if (allocated(error)) self%why_not = error%message
-         end if
-      end associate
-   end subroutine begin_step
-
    subroutine store(values, errors)
       real(dp), intent(in) :: values(:, :)
       type(interface_errors_type), intent(inout) :: errors(:)
@@ -202,37 +191,58 @@ contains
       type(value_courses_type), intent(in) :: before         ! courses in the round before
       character(:), allocatable, intent(inout) :: why_not    ! why there are none; else it stays
       type(error_type), allocatable :: error
-      type(step_clock_type) :: clock
       real(dp) :: change(size(estimated), size(record%errors))
-      real(dp), allocatable :: energy(:)
+      real(dp) :: energy(2)
       integer :: i
 
-      clock%total_time = record%time
-      clock%period = model%steps(self%step)%period
-      clock%step_time = clock%period
-      clock%ramped = model%steps(self%step)%ramped
       if (self%relaxes) then
-         call find_change_by_refinement(self%refined, simulation, model, clock, self%before, &
-            change, error)
+         call divide_where_it_errs(self%refined, model, simulation, record, energy, error)
+         if (.not. allocated(error)) call find_change_by_refinement(self%refined, simulation, &
+            model, self%before, change, error)
       else
-         call self%divided%find_change(simulation, model, clock, self%before, change, error)
+         call self%divided%find_change(simulation, model, self%before, change, error)
+         energy = [energy_error(record%stress_error), energy_error(record%heat_flux_error)]
       end if
       if (allocated(error)) then
          why_not = error%message
          return
       end if
-      allocate (energy(0))
-      if (.not. self%relaxes) energy = [energy_error(record%stress_error), &
-         energy_error(record%heat_flux_error)]
       do i = 1, size(record%errors)
          associate (bounds => record%errors(i)%mesh)
             bounds = bounds_of_mesh(simulation%bodies%interfaces(i), record%contacts(i), &
-               change(:, i), self%courses%scatter(i, before), self%most_locked(i), energy)
+               change(:, i), self%courses%scatter(i, before), self%most_locked(i), &
+               .not. self%relaxes, energy)
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
                left_by_round*abs(self%courses%change_since(i, before)))
          end associate
       end do
    end subroutine bound_mesh
+
+   !> Prepares the finer mesh, unless the one of the step before divides nearly all that errs.
+   !> Error: as refined_model's prepare.
+   subroutine divide_where_it_errs(refined, model, simulation, record, left, error)
+      type(refined_model_type), intent(inout) :: refined
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(increment_record_type), intent(in) :: record
+      real(dp), intent(out) :: left(2)   ! squared errors in the other elements, of both fields
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: squares(size(model%mesh%element_kind))
+      logical :: is_divided(size(squares)), serves
+
+      squares = squared_errors(model%mesh, record)
+      serves = .false.
+      if (allocated(refined%is_divided)) serves = sum(squares, mask=refined%is_divided) >= &
+         still_in_divided*sum(squares)
+      if (.not. serves) then
+         is_divided = largest_part(squares, in_divided) .or. at_faces(model%mesh, &
+            [model%contacts%slave, model%contacts%master])
+         call choose_neighbours(model, is_divided)
+         call refined%prepare(model, simulation%bodies%points, is_divided, error)
+         if (allocated(error)) return
+      end if
+      left = sum(squares, mask=.not. refined%is_divided)
+   end subroutine divide_where_it_errs
 
    !> Largest squared relative error of the energy norm of a body; 0 of what is not solved.
    pure real(dp) function energy_error(estimate)

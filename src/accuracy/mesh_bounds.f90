@@ -41,23 +41,24 @@ module mesh_bounds
    !> Error of an edge of contact that means with hats tell, in that which gaps of nodes tell.
    real(dp), parameter :: of_hats = 4.0_dp
    real(dp), parameter :: same_place = 1.0e-6_dp    !! of the spacing
-   !> Error of normal force and heat rate in the squared relative error of the energy norm, where
-   !> only elements at the faces are halved.
+   !> Error of normal force and heat rate in the squared relative error of the energy norm that
+   !> elements have that are not halved.
    real(dp), parameter :: of_energy = 0.25_dp
 
 contains
 
    !> The bounds, for the quantities with an estimate; NaN where none can be given.
-   pure function bounds_of_mesh(points, contact, change, scatter, most_locked, energy) &
-      result(bounds)
+   pure function bounds_of_mesh(points, contact, change, scatter, most_locked, faces_alone, &
+      energy) result(bounds)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       type(contact_record_type), intent(in) :: contact   !! its state
       real(dp), intent(in) :: change(:)                  !! of the quantities by halved elements
       real(dp), intent(in) :: scatter(:)                 !! over increments; NaN: unknown
       real(dp), intent(in) :: most_locked                !! largest of locked_in so far
-      !> Squared relative errors of the energy norms of stress and heat flux [-], where only faces
-      !> were halved; else none
-      real(dp), intent(in) :: energy(:)
+      logical, intent(in) :: faces_alone                 !! whether only elements there were halved
+      !> Squared relative errors of the energy norm [-] left in elements that were not halved: what
+      !> counts for normal force and for heat rate
+      real(dp), intent(in) :: energy(2)
       real(dp) :: bounds(size(estimated))
       real(dp) :: known_scatter(size(estimated)), length, locked, of_contact, shift
       integer :: q
@@ -66,12 +67,12 @@ contains
       known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter) .or. &
          all(contact%contact_state == contact_open))
       q = find_quantity(estimated, 'heat_rate')
-      if (size(energy) == 0) known_scatter(q) = of_scatter_in_heat*known_scatter(q)
-      bounds = merge(of_change_alone, of_change, size(energy) > 0 .or. ieee_is_nan(scatter))
+      if (.not. faces_alone) known_scatter(q) = of_scatter_in_heat*known_scatter(q)
+      bounds = merge(of_change_alone, of_change, faces_alone .or. ieee_is_nan(scatter))
       if (any(points%at_corner .and. contact%contact_state([1, size(points%arc_length)]) /= &
          contact_open)) bounds = max(bounds, of_change_at_corner)
       bounds = bounds*abs(change) + known_scatter
-      if (size(energy) > 0) call add_energy(contact, energy, bounds)
+      call add_energy(contact, energy, bounds)
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
       if (length > 0.0_dp) locked = most_locked/length
@@ -106,11 +107,11 @@ contains
       end do
    end function bounds_of_mesh
 
-   !> What elements away from the faces add: where displacements and temperatures are prescribed,
+   !> What elements that are not halved add: where displacements and temperatures are prescribed,
    !> force and heat rate err as the energy, by the square of its norm's error.
    pure subroutine add_energy(contact, energy, bounds)
       type(contact_record_type), intent(in) :: contact
-      real(dp), intent(in) :: energy(:)
+      real(dp), intent(in) :: energy(2)
       real(dp), intent(inout) :: bounds(:)
 
       associate (force => bounds(find_quantity(estimated, 'normal_force')), &

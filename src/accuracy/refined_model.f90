@@ -1,16 +1,18 @@
-!> The model with every element divided into four: matrices of its bodies, its contact points and
-!> loads, and the maps between both meshes. The old mesh's fields are fields of the new one.
+!> The model with some elements divided into four, among them all at the faces of interfaces:
+!> matrices of its bodies, its contact points and loads, and the maps between both meshes. The old
+!> mesh's fields are fields of the new one.
 module refined_model
    use bodies, only: find_bodies
    use contact_points, only: contact_points_type
    use errors, only: error_type
    use hanging_nodes, only: at_level_changes
    use kinds, only: dp
+   use load_histories, only: end_of_step
    use loads, only: loads_type
    use mesh_division, only: divide, division_type, refined_members
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type, match_surfaces, joined_points
-   use refinement, only: refine
+   use refinement, only: refine_chosen
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
@@ -20,21 +22,25 @@ module refined_model
 
    !> The refined model. Its old nodes keep their indexes, its new ones follow.
    type :: refined_model_type
-      type(model_type) :: model                 !! the model, refined once
+      logical, allocatable :: is_divided(:)     !! (old elements) those that are divided
+      type(model_type) :: model                 !! the model, refined
       type(division_type) :: division           !! how its elements were divided
       type(contact_points_type), allocatable :: interfaces(:) !! interfaces in the deck's order
       type(all_contact_points_type) :: points   !! all their contact points
       integer, allocatable :: old_point(:)     !! (m) contact point of the old mesh, 0 for a new one
       !> (2, m) old contact points on both sides of a new one; of an old one itself
       integer, allocatable :: neighbours(:, :)
-      logical, allocatable :: at_old_points(:)  !! (2 nodes) displacements of the old contact points
+      !> (m) whether it is an old contact point with a node of another one
+      logical, allocatable :: is_shared(:)
       type(loads_type) :: loads                 !! its loads
+      integer, private :: step = 0              !! the step at whose end they are
       type(sparse_matrix_type) :: stiffness     !! (2 nodes, 2 nodes) [force/length]
       type(sparse_matrix_type) :: thermal_load  !! (2 nodes, nodes) [force/temperature]
       real(dp), allocatable :: initial_force(:) !! (2 nodes) of initial stresses, or none [force]
       type(sparse_matrix_type) :: conduction    !! (nodes, nodes) [power/temperature]
    contains
       procedure :: prepare
+      procedure :: load_to_end
       procedure :: assemble
       procedure :: prolong_points
       procedure :: restrict
@@ -47,17 +53,19 @@ contains
 
    !> Refines a model and matches its surfaces.
    !> Error: as make_contact_points.
-   subroutine prepare(self, model, points, error)
-      class(refined_model_type), intent(inout) :: self    !! empty
+   subroutine prepare(self, model, points, is_divided, error)
+      class(refined_model_type), intent(out) :: self
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points
+      logical, intent(in) :: is_divided(:)                !! (elements) as choose_neighbours asks
       type(error_type), allocatable, intent(out) :: error
       type(contact_points_type), allocatable :: no_ties(:)
       integer :: i
 
-      self%division = divide(model%mesh, [(.true., i=1, size(model%mesh%element_number))])
+      self%is_divided = is_divided
+      self%division = divide(model%mesh, is_divided)
       self%model = model
-      call refine(self%model, 1)
+      call refine_chosen(self%model, is_divided)
       call find_bodies(self%model%mesh)
       allocate (self%interfaces(size(model%contacts)))
       do i = 1, size(self%interfaces)
@@ -71,6 +79,22 @@ contains
       call self%loads%prepare(self%model)
    end subroutine prepare
 
+   !> Moves the loads to the end of a step, through the ends of those before it. What a step gives
+   !> for the first time ramps from where the node is, which its end does not show.
+   pure subroutine load_to_end(self, step)
+      class(refined_model_type), intent(inout) :: self    !! prepared
+      integer, intent(in) :: step                         !! not before the last one
+
+      associate (steps => self%model%steps, loads => self%loads)
+         do while (self%step < step)
+            self%step = self%step + 1
+            call loads%begin_step(steps(self%step), loads%displacement%value, &
+               loads%temperature%value)
+            call loads%move_to(end_of_step(steps, self%step), self%model)
+         end do
+      end associate
+   end subroutine load_to_end
+
    !> Finds the old contact points among all, and those about each new one.
    pure subroutine match_points(self, points)
       class(refined_model_type), intent(inout) :: self
@@ -79,9 +103,7 @@ contains
 
       allocate (self%old_point(size(self%points%slave)), source=0)
       allocate (self%neighbours(2, size(self%points%slave)))
-      allocate (self%at_old_points(2*self%division%nodes_after), source=.false.)
-      self%at_old_points([2*points%slave - 1, 2*points%slave, 2*points%master - 1, &
-         2*points%master]) = .true.
+      self%is_shared = shared_points(self%points, self%division%nodes)
       do i = 1, size(self%interfaces)
          first = self%points%interface_start(i)
          last = self%points%interface_start(i + 1) - 1
@@ -100,6 +122,25 @@ contains
          end do
       end do
    end subroutine match_points
+
+   !> Which contact points at old nodes have a node that another one has as well.
+   pure function shared_points(points, nodes) result(is_shared)
+      type(all_contact_points_type), intent(in) :: points
+      integer, intent(in) :: nodes          !! of the old mesh
+      logical :: is_shared(size(points%slave))
+      integer :: uses(nodes), k
+
+      uses = 0
+      do k = 1, size(is_shared)
+         associate (nodes_of => [points%slave(k), points%master(k)])
+            if (points%slave(k) <= nodes) uses(nodes_of) = uses(nodes_of) + 1
+         end associate
+      end do
+      do k = 1, size(is_shared)
+         is_shared(k) = points%slave(k) <= nodes
+         if (is_shared(k)) is_shared(k) = any(uses([points%slave(k), points%master(k)]) > 1)
+      end do
+   end function shared_points
 
    !> Old contact points on both sides of a new one, which are at nodes of the old side that it lies
    !> on. At the tip of a crack, a node that both faces share, there is only the other one.

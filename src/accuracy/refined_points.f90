@@ -120,30 +120,34 @@ contains
    end function slip_forces
 
    !> Joints that keep the closed new contact points closed, and the stuck ones where the old mesh
-   !> has them.
+   !> has them. Both nodes of a closed old one move together: the old mesh says what is between them.
    subroutine mechanical_joints(self, refined, displacement, joints)
       class(refined_points_type), intent(in) :: self
       type(refined_model_type), intent(in) :: refined
       real(dp), intent(in) :: displacement(:) !! (2 nodes) field of the old mesh [length]
       type(joint_type), allocatable, intent(out) :: joints(:)
       real(dp) :: relative(2), gap(size(self%contact_state))
+      logical, dimension(size(self%contact_state)) :: is_joined, is_old
       integer :: k, n
 
       gap = refined%loads%present_gaps(refined%points)
-      allocate (joints(count(self%contact_state /= contact_open .and. refined%old_point == 0)))
+      is_old = refined%old_point > 0
+      is_joined = self%contact_state /= contact_open .and. .not. refined%is_shared
+      allocate (joints(count(is_joined)))
       n = 0
       do k = 1, size(self%contact_state)
-         if (self%contact_state(k) == contact_open .or. refined%old_point(k) > 0) cycle
+         if (.not. is_joined(k)) cycle
          n = n + 1
          associate (points => refined%points, slave_dof => 2*refined%points%slave(k), &
             master_dof => 2*refined%points%master(k), joint => joints(n))
             joint%dof = [slave_dof - 1, slave_dof, master_dof - 1, master_dof]
             joint%is_rigid = .true.
             joint%direction = reshape([points%normal(:, k), -points%normal(:, k)], [4, 1])
-            joint%rest = [gap(k)]
-            if (self%contact_state(k) == contact_slip .or. points%is_held(k)) cycle
             relative = displacement(slave_dof - 1:slave_dof) - &
                displacement(master_dof - 1:master_dof)
+            joint%rest = [merge(dot_product(points%normal(:, k), relative), gap(k), is_old(k))]
+            if (points%is_held(k)) cycle
+            if (self%contact_state(k) == contact_slip .and. .not. is_old(k)) cycle
             joint%direction = reshape([joint%direction, points%tangent(:, k), &
                -points%tangent(:, k)], [4, 2])
             joint%rest = [joint%rest, dot_product(points%tangent(:, k), relative)]

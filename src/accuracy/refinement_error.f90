@@ -1,4 +1,4 @@
-!> What the quantities of an increment would be if every element were divided into four, by a full
+!> What the quantities of an increment would be on a mesh with divided elements, by a full
 !> approximation scheme on two meshes: the fields of the new mesh are smoothed by a few steps of
 !> conjugate gradients, and what then is out of balance there acts on the old mesh as a load, for
 !> which the increment is solved again,
@@ -12,6 +12,7 @@ module refinement_error
    use balances, only: heat_residual
    use companion_steps, only: implicit_state, implicit_step
    use contact_operator, only: kept_contact, unstrained_forces
+   use contact_quantities, only: estimated
    use contact_states, only: contact_open
    use controls, only: implicit_scheme
    use cut_hats, only: joined_conductance
@@ -24,7 +25,6 @@ module refinement_error
    use interruption, only: check_overdue
    use kinds, only: dp
    use linked_relaxation, only: joint_type, relax
-   use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
    use held_points, only: find_held_directions
@@ -40,8 +40,12 @@ module refinement_error
    private
    public :: find_change_by_refinement
 
-   integer, parameter :: corrections = 3            !! solutions of the increment
-   integer, parameter :: smoothing_steps = 8        !! steps of conjugate gradients before each
+   !> Solutions of the increment: more than the least while they move a force, a heat rate or a
+   !> pressure by so large a part of what they changed it by, and so large a part of it. The next
+   !> one is expected to move it by no less than the first of these parts of what the last did.
+   integer, parameter :: least_corrections = 3, most_corrections = 8
+   real(dp), parameter :: moving = 0.25_dp, moving_value = 1.0e-4_dp
+   integer, parameter :: smoothing_steps = 8        !! steps of conjugate gradients beside each
 
    !> The fields of both meshes as they are corrected.
    type :: corrected_type
@@ -59,51 +63,73 @@ module refinement_error
 
 contains
 
-   !> What the quantities of the interfaces change by on the refined mesh, at the end of an
-   !> increment, in the equilibrium of heat there.
+   !> What the quantities of the interfaces change by on the refined mesh, at the end of a step, in
+   !> the equilibrium of heat there.
    !> Error: the increment has no solution under one of the corrections, or a signal left no time.
-   subroutine find_change_by_refinement(refined, simulation, model, clock, previous, change, error)
+   subroutine find_change_by_refinement(refined, simulation, model, previous, change, error)
       type(refined_model_type), intent(inout) :: refined
       type(simulation_type), intent(inout) :: simulation         !! the run at the end; films change
       type(model_type), intent(in) :: model
-      type(step_clock_type), intent(in) :: clock                 !! the end of the increment
-      type(solution_state_type), intent(in) :: previous          !! state at its start
+      type(solution_state_type), intent(in) :: previous          !! state before the last increment
       real(dp), intent(out) :: change(:, :)                      !! (quantities, interfaces)
       type(error_type), allocatable, intent(out) :: error
       type(corrected_type) :: fields
-      real(dp) :: values(size(change, 1), size(change, 2))
+      real(dp), dimension(size(change, 1), size(change, 2)) :: found, last, moved, values
       type(solution_state_type) :: before
       type(step_type) :: step
+      logical :: moves
       integer :: k
 
-      call begin(refined, simulation, model, clock, previous, fields, error)
+      call begin(refined, simulation, model, previous, fields, error)
       if (allocated(error)) return
       call quantities_of_state(simulation%bodies, fields%coarse, implicit_scheme, values)
       step = implicit_step(model%steps(simulation%control%step))
       before = previous
-      do k = 1, corrections
+      found = values
+      moved = 0.0_dp
+      call smooth(refined, step, fields)
+      do k = 1, most_corrections
          call check_overdue(error)
          if (allocated(error)) return
-         call smooth(refined, step, fields)
          ! The fixed point starts from the last solution; the implicit scheme takes nothing else
          ! of the conductances before.
          before%omega = fields%coarse%omega
          before%omega_before = fields%coarse%omega
          call correct(refined, simulation%bodies, simulation%loads, step, before, fields, error)
          if (allocated(error)) return
+         call smooth(refined, step, fields)
+         last = found
+         call measure(refined, fields, found)
+         call follow(values, last, found, moved, moves)
+         if (k >= least_corrections .and. .not. moves) exit
       end do
-      call smooth(refined, step, fields)
-      call measure(refined, fields, change)
-      change = change - values
+      change = found - values
    end subroutine find_change_by_refinement
+
+   !> Whether corrections still move anything but edges, which go from node to node.
+   pure subroutine follow(values, last, found, moved, moves)
+      real(dp), intent(in) :: values(:, :)    ! (quantities, interfaces) on the old mesh
+      real(dp), intent(in) :: last(:, :)      ! before the last correction
+      real(dp), intent(in) :: found(:, :)     ! after it
+      real(dp), intent(inout) :: moved(:, :)  ! by what the next one may move them, at least
+      logical, intent(out) :: moves
+      integer :: q
+
+      moves = .false.
+      do q = 1, size(values, 1)
+         if (estimated(q)%resolution > 0.0_dp) cycle
+         moved(q, :) = max(abs(found(q, :) - last(q, :)), moving*moved(q, :))
+         moves = moves .or. any(moved(q, :) > max(moving*abs(found(q, :) - values(q, :)), &
+            moving_value*abs(values(q, :))))
+      end do
+   end subroutine follow
 
    !> Prolongs the solution on the old mesh, brought to the equilibrium of heat.
    !> Error: it has no solution there.
-   subroutine begin(refined, simulation, model, clock, previous, fields, error)
+   subroutine begin(refined, simulation, model, previous, fields, error)
       type(refined_model_type), intent(inout) :: refined
       type(simulation_type), intent(inout) :: simulation
       type(model_type), intent(in) :: model
-      type(step_clock_type), intent(in) :: clock
       type(solution_state_type), intent(in) :: previous
       type(corrected_type), intent(out) :: fields
       type(error_type), allocatable, intent(out) :: error
@@ -112,16 +138,19 @@ contains
          bodies => simulation%bodies)
          call refined%assemble(solves_mechanics(step%analysis), solves_heat(step%analysis), &
             allocated(bodies%thermal_load%value))
-         call refined%loads%move_to(clock, refined%model)
+         call refined%load_to_end(simulation%control%step)
          call refined%points%enter_step(refined%model, simulation%control%step)
          fields%coarse = simulation%state
          call find_held_directions(refined%points, &
             refined%prolong_set(loads%displacement%active, 2))
-         ! Old contact points move by the solutions on the old mesh alone, which keep their
-         ! conditions.
-         ! So do sides where elements of two sizes meet, whose fields then stay continuous.
+         ! Sides where elements of two sizes meet move by the solutions on the old mesh alone, so
+         ! that the fields stay continuous; so do old contact points that no joint can keep.
          fields%moves = .not. (refined%prolong_set(loads%displacement%active, 2) .or. &
-            refined%at_old_points .or. refined%hangs(2))
+            refined%hangs(2))
+         associate (nodes => [pack(refined%points%slave, refined%is_shared), &
+            pack(refined%points%master, refined%is_shared)])
+            fields%moves([2*nodes - 1, 2*nodes]) = .false.
+         end associate
          if (solves_heat(step%analysis)) then
             fields%warms = .not. (refined%prolong_set(loads%temperature%active, 1) .or. &
                refined%hangs(1))

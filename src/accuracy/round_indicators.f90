@@ -14,7 +14,7 @@ module round_indicators
    use contact_quantities, only: estimated
    use contact_states, only: contact_open
    use element_kinds, only: element_corner_count
-   use error_marking, only: largest_part, squared_errors
+   use error_marking, only: at_faces, largest_part, squared_errors
    use interface_quantities, only: closed_length
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -171,11 +171,8 @@ contains
       type(model_type), intent(in) :: model
       integer, intent(in) :: i
 
-      associate (contact => model%contacts(i), surfaces => model%mesh%surfaces)
-         associate (elements => [surfaces(contact%slave)%faces(1, :), &
-            surfaces(contact%master)%faces(1, :)])
-            self%division%levels(elements) = max(self%division%levels(elements), 1)
-         end associate
+      associate (contact => model%contacts(i), levels => self%division%levels)
+         where (at_faces(model%mesh, [contact%slave, contact%master])) levels = max(levels, 1)
       end associate
    end subroutine mark_faces
 

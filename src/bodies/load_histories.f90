@@ -2,9 +2,10 @@
 module load_histories
    use amplitudes, only: amplitude_type, amplitude_value
    use kinds, only: dp
+   use steps, only: step_type
    implicit none
    private
-   public :: load_history_type, step_clock_type
+   public :: end_of_step, load_history_type, step_clock_type
 
    !> Where in the steps an instant lies.
    type :: step_clock_type
@@ -38,6 +39,16 @@ module load_histories
    end type load_history_type
 
 contains
+
+   !> The end of a step.
+   pure function end_of_step(steps, step) result(clock)
+      type(step_type), intent(in) :: steps(:)
+      integer, intent(in) :: step                !! its number
+      type(step_clock_type) :: clock
+
+      clock = step_clock_type(steps(step)%period, steps(step)%period, sum(steps(:step)%period), &
+         steps(step)%ramped)
+   end function end_of_step
 
    !> Starts with no load given.
    pure subroutine prepare(self, initial, amplitudes)

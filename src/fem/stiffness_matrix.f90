@@ -25,7 +25,7 @@ contains
       type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
       type(sparse_matrix_type) :: stiffness                  !! (2 nodes, 2 nodes) [stress length]
       type(element_assembly_type) :: assembly
-      real(dp), allocatable :: axes(:, :, :), k(:, :)
+      real(dp), allocatable :: axes(:, :, :)
       real(dp) :: e(4, 4, most_points)
       integer :: element, g
 
@@ -39,9 +39,8 @@ contains
             do g = 1, size(axes, 3)
                e(:, :, g) = elasticity_in(plane, materials(section%material), axes(:, :, g))
             end do
-            k = element_stiffness(kind, plane, mesh%coordinates(:, nodes), &
-               e(:, :, :size(axes, 3)), section%thickness)
-            call assembly%add(nodes, k)
+            call assembly%add(nodes, element_stiffness(kind, plane, mesh%coordinates(:, nodes), &
+               e(:, :, :size(axes, 3)), section%thickness))
          end associate
       end do
       stiffness = assembly%matrix
@@ -55,7 +54,7 @@ contains
       type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
       type(sparse_matrix_type) :: load                       !! (2 nodes, nodes)
       type(element_assembly_type) :: assembly
-      real(dp), allocatable :: axes(:, :, :), f(:, :)
+      real(dp), allocatable :: axes(:, :, :)
       real(dp) :: beta(4, most_points)
       integer :: element, g
 
@@ -69,9 +68,8 @@ contains
             do g = 1, size(axes, 3)
                beta(:, g) = thermal_modulus_in(plane, materials(section%material), axes(:, :, g))
             end do
-            f = element_thermal_load(kind, plane, mesh%coordinates(:, nodes), &
-               beta(:, :size(axes, 3)), section%thickness)
-            call assembly%add(nodes, f)
+            call assembly%add(nodes, element_thermal_load(kind, plane, &
+               mesh%coordinates(:, nodes), beta(:, :size(axes, 3)), section%thickness))
          end associate
       end do
       load = assembly%matrix

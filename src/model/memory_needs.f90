@@ -5,6 +5,7 @@
 !> nested dissection have 31/4 n log2 n entries (A. George, Nested dissection of a regular finite
 !> element mesh, 1973). How often entries are held at a time was measured, docs/theory.md.
 module memory_needs
+   use contact_definitions, only: pairing_nodes
    use controls, only: default_solver, solver_by_size, solver_mumps
    use element_kinds, only: element_node_count, linear_kind
    use kinds, only: dp
@@ -20,7 +21,7 @@ module memory_needs
    real(dp), parameter :: real_bytes = 8.0_dp          !! of a number
    real(dp), parameter :: base = 30.0e6_dp             !! of the program and its libraries [byte]
    real(dp), parameter :: per_entry = 33.0_dp          !! of an entry of element matrices [byte]
-   real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one on the mesh of the estimates [byte]
+   real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one, for the mesh of the bounds [byte]
    real(dp), parameter :: mumps_factor = 1.25_dp       !! MUMPS's memory in that of its factors
    real(dp), parameter :: waiting = 70.0e6_dp          !! most of results that wait [byte]
    real(dp), parameter :: field_values = 25.0_dp       !! of a node and written increment that wait
@@ -34,10 +35,10 @@ contains
       integer, intent(in) :: levels           !! refinements that are to come
       integer, intent(in) :: order            !! 1 where midside nodes are to be dropped, else 2
       real(dp) :: bytes                       !! [byte]
-      real(dp) :: entries, nodes, points, written
+      real(dp) :: entries, factors, nodes, points, written
       integer, allocatable :: kinds(:)
       integer :: solver
-      logical :: heat, mechanics
+      logical :: bounds_errors, heat, mechanics
 
       heat = any(solves_heat(model%steps%analysis))
       mechanics = any(solves_mechanics(model%steps%analysis))
@@ -52,18 +53,22 @@ contains
          model%steps%field_frequency > 0))
       bytes = base + per_entry*entries + min(waiting, real_bytes*field_values*nodes*written) + &
          dense_matrices*real_bytes*(3*points)**2
-      ! The estimates have room for both fields.
-      if (model%estimates_errors .and. size(model%contacts) > 0) bytes = bytes + &
-         4*per_fine_entry*entries_of(kinds, .true., .true.)*4.0_dp**levels
+      ! The bounds have room for both fields.
+      bounds_errors = model%estimates_errors .and. size(model%contacts) > 0
+      if (bounds_errors) bytes = bytes + per_fine_entry*entries_of(kinds, .true., .true.)* &
+         4.0_dp**levels
       solver = model%solver
       if (solver == solver_by_size) solver = default_solver(merge(2, 1, mechanics)*nodes)
       if (solver == solver_mumps) then
-         bytes = bytes + mumps_factor*real_bytes*(dissected(2*nodes, mechanics) + &
-            dissected(nodes, heat))
+         factors = mumps_factor*(dissected(2*nodes, mechanics) + dissected(nodes, heat))
       else
-         bytes = bytes + real_bytes*(merge(4, 0, mechanics) + merge(1, 0, heat))* &
-            profile(model, kinds, points, levels)
+         factors = (merge(4, 0, mechanics) + merge(1, 0, heat))*profile(model, kinds, points, &
+            levels)
       end if
+      bytes = bytes + real_bytes*factors
+      ! Beside mortar points and ties they factor a mesh with divided faces.
+      if (bounds_errors .and. (any(model%contacts%pairing /= pairing_nodes) .or. &
+         size(model%ties) > 0)) bytes = bytes + real_bytes*factors
    end function memory_needed
 
    !> Entries of the matrices of all elements.

@@ -10,7 +10,7 @@ module step_reduction
    use errors, only: error_type
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
-   use load_histories, only: step_clock_type
+   use load_histories, only: end_of_step
    use loads, only: loads_type
    use model, only: model_type
    use reduced_bodies, only: reduced_bodies_type
@@ -110,8 +110,7 @@ contains
          call trial%points%enter_step(model, step)
          call reduction%number(model, model%steps(step), given, trial, error)
          if (.not. allocated(error)) then
-            call given%move_to(step_clock_type(model%steps(step)%period, model%steps(step)%period, &
-               sum(model%steps(:step)%period), model%steps(step)%ramped), model)
+            call given%move_to(end_of_step(model%steps, step), model)
             call check_equations(model, trial, given, step, error)
             if (.not. allocated(error)) call check_prescribed_ties(model, trial, given, step, &
                error)

@@ -34,12 +34,12 @@ def bare(source, folder, name, cards=(), changes=()):
 def test_error_of_the_mesh_where_it_is_smooth(tmp_path):
     """The force of a press fit converges with h^4: a mesh with three refinements is exact beside
     it. The error is 16/15 of the change to half the elements; three times the change is its bound, where
-    a single increment tells no scatter."""
+    a single increment tells no scatter. The finer mesh divides what makes most of it."""
     coarse = errors(solve(bare(PRESS_FIT, tmp_path, "coarse.inp")), "SEAT")
     fine = errors(solve(bare(PRESS_FIT, tmp_path, "fine.inp", [f"*REFINE, LEVELS={FINE}"])), "SEAT")
     value, bound, mesh, increment, iteration = coarse["normal_force"]
     true = abs(fine["normal_force"][0] - value)
-    assert 3 * 15 / 16 * true == pytest.approx(mesh, rel=0.03)
+    assert 0.75 <= mesh / (3 * 15 / 16 * true) <= 1.03 and bound >= true
     assert increment == iteration == 0.0 and bound == mesh   # no friction, no heat
 
 
@@ -58,18 +58,54 @@ def test_error_of_hertz_peak_pressure(tmp_path):
     assert abs(edge - value) <= bound
 
 
-@pytest.mark.parametrize("friction", ["*FRICTION\n0.155, 1.E5\n", ""])
+def bent_on_a_block(path, friction, cards=()):
+    """Write a deck with two blocks of one row each, the upper one bent by heat until it touches in part:
+    all elements are at the faces."""
+    lines = np.linspace(0.0, 4.0, 9)
+    return write(path, without_unused_surfaces([
+        *block("A", lines, [1.0, 2.0]), *block("B", lines, [0.0, 1.0], first=1001),
+        *solid("A", 1000.0, 0.3, 1e-4, 5.0), *solid("B", 1000.0, 0.3, 0.0, 5.0),
+        "*SURFACE INTERACTION, NAME=I", *friction, "*GAP CONDUCTANCE", "1., 0.", "50., 5.",
+        "*CONTACT PAIR, INTERACTION=I, NAME=P", "A.BOTTOM, B.TOP",
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "A, 0.", "B, 0.", *cards,
+        "*BOUNDARY", "A.LEFT, 1", "B.LEFT, 1", "B.BOTTOM, 2", "A.TOP, 2", "B.BOTTOM, 11", "*STEP",
+        "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.",
+        "*BOUNDARY", "A.LEFT, 11, 11, 200.", "A.RIGHT, 11, 11, -100.", "*END STEP"]))
+
+
+@pytest.mark.parametrize("friction", [["*FRICTION", "0.3"], []])
 def test_mesh_of_a_coupled_run(tmp_path, friction):
-    """The bound of the mesh is three times what the next one changes, without factoring it: to the
-    tenth that three corrections leave, for which the bound has room. In one increment, before which
-    nothing has slipped: what friction left on the finer mesh is not known."""
-    changes = {"20., 900.": "900., 900.", "*FRICTION\n0.155, 1.E5\n": friction}
-    coarse = errors(solve(bare(CYLINDER, tmp_path, "coarse.inp", changes=changes)), "FACE")
-    fine = errors(solve(bare(CYLINDER, tmp_path, "fine.inp", ["*REFINE, LEVELS=1"], changes)),
-                  "FACE")
-    for name in ("normal_force", "heat_rate", "peak_pressure")[: 2 if friction else 3]:
+    """The bound of the mesh is three times what the next one changes, without factoring it. In one
+    increment, before which nothing has slipped: what friction left on the finer mesh is not known."""
+    coarse = errors(solve(bent_on_a_block(tmp_path / "coarse.inp", friction)), "P")
+    fine = errors(solve(bent_on_a_block(tmp_path / "fine.inp", friction, ["*REFINE, LEVELS=1"])), "P")
+    assert 1.0 < coarse["edge_contact"][0] < 3.0
+    for name in ("normal_force", "heat_rate", "peak_pressure"):
         value, _, mesh, *_ = coarse[name]
-        assert 3 * abs(fine[name][0] - value) == pytest.approx(mesh, rel=0.1), name
+        assert 3 * abs(fine[name][0] - value) == pytest.approx(mesh, rel=0.01), name
+
+
+def test_a_later_step_divides_the_elements_that_err_at_its_end(tmp_path):
+    """A block is pressed at its left end, then at its right one; without friction it does not remember
+    the first step: the bounds are those of a deck with the second alone."""
+    def deck(name, *steps):
+        lines = np.linspace(0.0, 4.0, 9)
+        cards = [*block("A", lines, [1.0, 1.5, 2.0, 2.5]), *block("B", lines, [0.0, 0.5, 1.0], first=1001),
+                 *solid("A", 1000.0, 0.3), *solid("B", 1000.0, 0.3), "*SURFACE INTERACTION, NAME=I",
+                 "*CONTACT PAIR, INTERACTION=I, NAME=P", "A.BOTTOM, B.TOP",
+                 "*BOUNDARY", "A.LEFT, 1", "B.BOTTOM, 1, 2"]
+        for element in steps:
+            cards += ["*STEP", "*STATIC, DIRECT", "1., 1.", "*DLOAD, OP=NEW", f"{element}, P3, 10.",
+                      "*END STEP"]
+        return write(tmp_path / f"{name}.inp", without_unused_surfaces(cards))
+
+    left, right = 17, 24
+    both = errors(solve(deck("both", left, right)), "P")
+    one = errors(solve(deck("one", right)), "P")
+    for name, (value, bound, *_) in one.items():
+        if not np.isnan(value):
+            assert both[name][0] == pytest.approx(value, rel=1e-9), name
+            assert both[name][1] == pytest.approx(bound, rel=1e-6), name
 
 
 def test_error_of_increments(tmp_path):
@@ -128,10 +164,11 @@ def test_a_corner_of_an_amplitude_is_no_scatter(tmp_path, corner):
              for time, top in ((corner, 1080), (900 - corner, 900))]
     (tmp_path / "parts.inp").write_text("*STEP".join([model, *parts]))
     apart = errors(solve(tmp_path / "parts.inp"), "FACE")
-    for name, (value, bound, *_) in bent.items():
+    for name, (value, *_) in bent.items():
         assert value == pytest.approx(apart[name][0], rel=1e-6), name
-        if name in ("normal_force", "edge_contact"):   # whose bounds are mostly scatter
-            assert bound == pytest.approx(apart[name][1], rel=0.3), name
+    # Of these scatter is the larger part. The finer mesh of the second step is that of the first.
+    assert bent["edge_contact"][1] == pytest.approx(apart["edge_contact"][1], rel=0.3)
+    assert 0.5 < bent["normal_force"][1] / apart["normal_force"][1] < 2.0
 
 
 @pytest.mark.parametrize("tolerance", ["1.E-2", "1.E-3"])
