@@ -38,6 +38,8 @@ module mesh_bounds
    !> Errors of edges in the spacing: one at a node itself, and one of stick where contact ends too;
    !> of others the table of quantities tells.
    real(dp), parameter :: at_node = 0.25_dp, of_both = 0.15_dp
+   !> Error of an edge of contact close behind a corner of a three-node side, in that elsewhere.
+   real(dp), parameter :: behind_corner = 0.5_dp
    !> Error of an edge of contact that means with hats tell, in that which gaps of nodes tell.
    real(dp), parameter :: of_hats = 4.0_dp
    real(dp), parameter :: same_place = 1.0e-6_dp    !! of the spacing
@@ -81,6 +83,7 @@ contains
          bounds(find_quantity(estimated, 'normal_force'))
       of_contact = estimated(find_quantity(estimated, 'edge_contact'))%resolution* &
          merge(of_hats, 1.0_dp, points%pairing == pairing_surfaces)
+      if (is_behind_corner(points, contact%edge_contact)) of_contact = behind_corner*of_contact
       do q = 1, size(bounds)
          select case (estimated(q)%name)
          case ('shear_force')
@@ -99,7 +102,8 @@ contains
                   change(q)) + shift
             else
                bounds(q) = edge_bound(points, contact%edge_stick, estimated(q)%resolution, &
-                  change(q)) + known_scatter(q) + shift
+                  change(q)) + shift + merge(known_scatter(q), 0.0_dp, points%pairing == &
+                  pairing_surfaces)
             end if
          case default
             cycle
@@ -156,6 +160,23 @@ contains
          spacing
       bound = bound + of_change*max(0.0_dp, abs(change) - max(part, at_node)*spacing)
    end function edge_bound
+
+   !> Whether the last contact point before an edge is a corner of a three-node side, and the edge
+   !> nearer to it than to the midside node, which has the larger weight.
+   pure logical function is_behind_corner(points, edge)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: edge
+      integer :: k
+
+      is_behind_corner = .false.
+      if (points%pairing == pairing_surfaces .or. points%side_nodes < 3) return
+      if (ieee_is_nan(edge)) return
+      associate (s => points%arc_length, weight => points%weight)
+         k = count(s <= edge)
+         if (k < 1 .or. k >= size(s)) return
+         is_behind_corner = weight(k) < weight(k + 1) .and. edge < 0.5_dp*(s(k) + s(k + 1))
+      end associate
+   end function is_behind_corner
 
    !> Spacing of the slave's nodes at an edge.
    pure real(dp) function nodal_spacing(points, edge)

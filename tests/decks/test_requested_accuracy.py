@@ -84,7 +84,7 @@ def test_the_listing_has_a_bullet_for_each_sentence_and_none_in_the_table(tmp_pa
 @pytest.mark.changes("ACCURACY", "ACCURACY, ROUNDS")
 def test_targets_that_are_missed_are_told_with_status_4(tmp_path):
     """One round does not reach what two do; a target in the unit of the quantity is taken as such."""
-    cards = "*ACCURACY, ROUNDS=1", "edge_contact, 0.06, ABS, FACE", "normal_force, 0.01"
+    cards = "*ACCURACY, ROUNDS=1", "edge_contact, 0.03, ABS, FACE", "normal_force, 0.01"
     deck = copy_deck(CYLINDER, tmp_path / "one.inp", cards)
     process = run("run", deck, "--out", tmp_path)
     assert process.returncode == 4
@@ -93,19 +93,19 @@ def test_targets_that_are_missed_are_told_with_status_4(tmp_path):
     assert f"{deck}: accuracy not reached, " in process.stdout
     assert "check failed" not in process.stdout + process.stderr
     assert "   accuracy not reached, " in deck.with_suffix(".lst").read_text()
-    told = re.search(r"FACE edge of contact +not met: bound (\S+) cm, target 0.06 cm "
+    told = re.search(r"FACE edge of contact +not met: bound (\S+) cm, target 0.03 cm "
                      r"\(mostly of the mesh\)\n", process.stdout)
     costs, bounds, reached = rounds_of(tmp_path / "one.vtkhdf")
     assert reached == 0 and costs["elements"].tolist() == [92]
     assert set(bounds) == {"edge_contact", "normal_force"}
-    assert bounds["edge_contact"][0, 3] == 0.06 < bounds["edge_contact"][0, 2]
+    assert bounds["edge_contact"][0, 3] == 0.03 < bounds["edge_contact"][0, 2]
     assert float(told[1]) == pytest.approx(bounds["edge_contact"][0, 2], rel=0.05)
 
     others = "*ACCURACY, ROUNDS=2", *cards[1:2]
     note_changes(cards, others)
     deck = copy_deck(CYLINDER, tmp_path / "two.inp", others)
     _, bounds, reached = rounds_of(solve(deck))
-    assert reached == 1 and bounds["edge_contact"][1, 2] <= 0.06
+    assert reached == 1 and bounds["edge_contact"][1, 2] <= 0.03
     # Only the edge is missed: the elements away from it stay as they are.
     with h5py.File(tmp_path / "two.vtkhdf") as file:
         assert file["accuracy/elements"][1] < 3 * 92
