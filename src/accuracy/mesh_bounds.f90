@@ -162,7 +162,8 @@ contains
    end function edge_bound
 
    !> Whether the last contact point before an edge is a corner of a three-node side, and the edge
-   !> nearer to it than to the midside node, which has the larger weight.
+   !> nearer to it than to the midside node. Whatever the lengths of sides, no corner has a larger
+   !> weight than both of its neighbours.
    pure logical function is_behind_corner(points, edge)
       type(contact_points_type), intent(in) :: points
       real(dp), intent(in) :: edge
@@ -174,7 +175,8 @@ contains
       associate (s => points%arc_length, weight => points%weight)
          k = count(s <= edge)
          if (k < 1 .or. k >= size(s)) return
-         is_behind_corner = weight(k) < weight(k + 1) .and. edge < 0.5_dp*(s(k) + s(k + 1))
+         is_behind_corner = weight(k + 1) > maxval(weight([k, min(k + 2, size(s))])) .and. &
+            edge < 0.5_dp*(s(k) + s(k + 1))
       end associate
    end function is_behind_corner
 

@@ -40,7 +40,10 @@ such a punch grows without limit as the mesh is refined. Summary and listing say
 
 No bound sees slip zones smaller than the elements. In a press fit with sharp ends and friction, solved
 with mortar points, the shear force was off by 1.1 to 1.3 times its bound on meshes refined uniformly, and
-by 2.4 times where linear elements were refined near the faces alone.
+by 2.4 times where linear elements were refined near the faces alone. Where two flat blocks end together
+and a request of the peak pressure refined that end alone, it was off by 0.03 %, 8 times its bound. Where
+both faces end together the peak has a bound, though it may have no limit: it then grows with each mesh,
+and a request says so.
 
 **How bounds are judged.** Each deck is solved on the mesh as it is and refined once and twice, with the
 increments as written and half as long. A true error is that to the converged value, on a mesh refined
@@ -52,7 +55,7 @@ Errors below 1e-7 of the value and edges at the end of a face are not judged, an
 uncertain. The factor 2.1 was 2 until a deck kept aside, the cracked plate, was seen: its errors fall with
 h, so that bounds equalled them within 1 %, as they do for four such plates of other materials and laws.
 The goals are 95 % that hold, which all quantities reach, and a median of bound over error of at most 4,
-which shear forces and edges of contact just miss.
+which shear forces and edges of contact miss.
 
 With faces that do not match, the constants were chosen on decks of seeds below 20 and from 100 to
 143. The decks of seeds 20 to 51, the published cylinder with 30 sides on 22, and Hertz with 3 on 2
