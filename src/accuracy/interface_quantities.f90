@@ -15,7 +15,7 @@ module interface_quantities
    implicit none
    private
    public :: closed_length, contact_of, edge_spacing, is_end_of_face, peak_is_at_end, &
-      peaks_at_corner, quantities_of, quantities_of_state
+      peaks_at_corner, quantities_of, quantities_of_state, rises_to_end
 
 contains
 
@@ -131,5 +131,23 @@ contains
 
       peaks_at_corner = any(points%at_corner .and. peak_is_at_end(contact))
    end function peaks_at_corner
+
+   !> Whether the pressure is largest at an end of the face and rises to it by more than a few per
+   !> cent beyond the line through the two contact points before: as where it has no limit.
+   pure logical function rises_to_end(points, contact)
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
+      type(contact_record_type), intent(in) :: contact    !! its state
+      real(dp), parameter :: few = 0.03_dp
+      integer :: inner(3), m
+
+      m = size(points%arc_length)
+      rises_to_end = m > 2 .and. any(peak_is_at_end(contact))
+      if (.not. rises_to_end) return
+      inner = [1, 2, 3]
+      if (maxloc(contact%pressure, dim=1) == m) inner = [m, m - 1, m - 2]
+      associate (s => points%arc_length(inner), p => contact%pressure(inner))
+         rises_to_end = p(1) > (1.0_dp + few)*(p(2) + (p(2) - p(3))*(s(1) - s(2))/(s(2) - s(3)))
+      end associate
+   end function rises_to_end
 
 end module interface_quantities

@@ -120,7 +120,8 @@ contains
    end function slip_forces
 
    !> Joints that keep the closed new contact points closed, and the stuck ones where the old mesh
-   !> has them. Both nodes of a closed old one move together: the old mesh says what is between them.
+   !> has them. Both nodes of a closed old one move together; the old mesh says what is between
+   !> them.
    subroutine mechanical_joints(self, refined, displacement, joints)
       class(refined_points_type), intent(in) :: self
       type(refined_model_type), intent(in) :: refined

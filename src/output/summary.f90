@@ -4,7 +4,7 @@ module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated, zone_words
-   use interface_quantities, only: is_end_of_face
+   use interface_quantities, only: is_end_of_face, rises_to_end
    use kinds, only: dp
    use model, only: model_type
    use quantity_types, only: needs_heat, quantity_type
@@ -171,6 +171,10 @@ contains
          if (is_bounded) words = words//why_not(self%errors(i), q)
          words = words//other_edges(estimated(q)%name, points, self%contacts(i), &
             values(1))
+         if (estimated(q)%name == 'peak_pressure' .and. is_bounded) then
+            if (.not. ieee_is_nan(self%errors(i)%bound(q)) .and. rises_to_end(points, &
+               self%contacts(i))) words = words//', at an end, where it may have no limit'
+         end if
          call append(lines, words)
       end do
    end subroutine add_quantities

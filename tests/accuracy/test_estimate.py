@@ -42,8 +42,8 @@ No bound sees slip zones smaller than the elements. In a press fit with sharp en
 with mortar points, the shear force was off by 1.1 to 1.3 times its bound on meshes refined uniformly, and
 by 2.4 times where linear elements were refined near the faces alone. Where two flat blocks end together
 and a request of the peak pressure refined that end alone, it was off by 0.03 %, 8 times its bound. Where
-both faces end together the peak has a bound, though it may have no limit: it then grows with each mesh,
-and a request says so.
+both faces end together the peak has a bound, though it may have no limit and then grows with each mesh:
+summary and requests say so.
 
 **How bounds are judged.** Each deck is solved on the mesh as it is and refined once and twice, with the
 increments as written and half as long. A true error is that to the converged value, on a mesh refined

@@ -108,6 +108,27 @@ def test_a_later_step_divides_the_elements_that_err_at_its_end(tmp_path):
             assert both[name][1] == pytest.approx(bound, rel=1e-6), name
 
 
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_the_summary_says_that_a_peak_at_an_end_may_have_no_limit(tmp_path, pairing):
+    """Two blocks of different materials that end together, stuck under a rigid plate: not two of the same
+    material, whose pressure is uniform, nor Hertz's contact, whose peak is on the plane of symmetry."""
+    def summary(deck):
+        return run("run", deck, "--out", tmp_path).stdout
+
+    lines = np.linspace(0.0, 4.0, 9)
+    said = {}
+    for name, young in (("unlike", 300.0), ("alike", 1000.0)):
+        cards = [*block("A", lines, [1.0, 1.5, 2.0]), *block("B", lines, [0.0, 0.5, 1.0], first=1001),
+                 *solid("A", young, 0.3), *solid("B", 1000.0, 0.3), "*SURFACE INTERACTION, NAME=I",
+                 "*FRICTION", "10.", f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}",
+                 "A.BOTTOM, B.TOP", "*BOUNDARY", "A.LEFT, 1", "B.LEFT, 1", "B.BOTTOM, 2",
+                 "A.TOP, 2, 2, -0.01", "*STEP", "*STATIC", "0.5, 1.", "*END STEP"]
+        said[name] = summary(write(tmp_path / f"{name}.inp", without_unused_surfaces(cards)))
+    words = ", at an end, where it may have no limit\n"
+    assert re.search(rf"peak pressure +\S+ \+- .+{words}", said["unlike"])
+    assert "no limit" not in said["alike"] + summary(bare(HERTZ, tmp_path, "hertz.inp"))
+
+
 def test_error_of_increments(tmp_path):
     """The explicit scheme is of the first order: its conductance is that of the last increment."""
     cards = ["*THERMAL SCHEME, TYPE=EXPLICIT"]
