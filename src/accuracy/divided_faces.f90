@@ -8,14 +8,13 @@ module divided_faces
    use bodies, only: find_bodies
    use companion_steps, only: implicit_state, implicit_step
    use contact_states, only: contact_open
-   use error_marking, only: at_faces
    use errors, only: error_type
    use increments, only: simulation_type
    use initial_state, only: make_initial_state
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
    use load_histories, only: end_of_step
-   use local_refinement, only: choose_neighbours
+   use local_refinement, only: choose_neighbours, elements_at_surfaces
    use mesh_division, only: divide, division_type
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type
@@ -49,7 +48,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: chosen(size(model%mesh%element_number))
 
-      chosen = at_faces(model%mesh, [model%contacts%slave, model%contacts%master, &
+      chosen = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master, &
          model%ties%faces%slave, model%ties%faces%master])
       call choose_neighbours(model, chosen)
       self%division = divide(model%mesh, chosen)

@@ -7,14 +7,14 @@ module error_estimator
    use contact_quantities, only: estimated
    use divided_faces, only: divided_faces_type
    use doubled_increments, only: doubled_increments_type
-   use error_marking, only: at_faces, largest_part, squared_errors
+   use error_marking, only: largest_part, squared_errors
    use errors, only: error_type
    use increment_quantities, only: history_value
    use increments, only: simulation_type
    use interface_quantities, only: quantities_of, quantities_of_state
    use kinds, only: dp
    use mesh_bounds, only: bounds_of_mesh, locked_in
-   use local_refinement, only: choose_neighbours
+   use local_refinement, only: choose_neighbours, elements_at_surfaces
    use model, only: model_type
    use quantity_types, only: find_quantity
    use records, only: increment_record_type, interface_errors_type
@@ -45,7 +45,7 @@ module error_estimator
       private
       !> Whether the finer mesh is relaxed; else its increments are solved, with divided faces
       logical :: relaxes = .true.
-      type(refined_model_type) :: refined          !! the model with elements divided where it errs
+      type(refined_model_type) :: refined          !! the model, divided where it errs
       type(divided_faces_type) :: divided          !! the one with divided faces
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
@@ -192,11 +192,12 @@ contains
       character(:), allocatable, intent(inout) :: why_not    ! why there are none; else it stays
       type(error_type), allocatable :: error
       real(dp) :: change(size(estimated), size(record%errors))
-      real(dp) :: energy(2)
+      real(dp) :: energy(2), left
       integer :: i
 
       if (self%relaxes) then
-         call divide_where_it_errs(self%refined, model, simulation, record, energy, error)
+         call divide_where_it_errs(self%refined, model, simulation, record, left, error)
+         energy = left
          if (.not. allocated(error)) call find_change_by_refinement(self%refined, simulation, &
             model, self%before, change, error)
       else
@@ -225,17 +226,18 @@ contains
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(in) :: record
-      real(dp), intent(out) :: left(2)   ! squared errors in the other elements, of both fields
+      real(dp), intent(out) :: left      ! squared error of both fields in the other elements
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: squares(size(model%mesh%element_kind))
       logical :: is_divided(size(squares)), serves
 
+      left = 0.0_dp
       squares = squared_errors(model%mesh, record)
       serves = .false.
       if (allocated(refined%is_divided)) serves = sum(squares, mask=refined%is_divided) >= &
          still_in_divided*sum(squares)
       if (.not. serves) then
-         is_divided = largest_part(squares, in_divided) .or. at_faces(model%mesh, &
+         is_divided = largest_part(squares, in_divided) .or. elements_at_surfaces(model%mesh, &
             [model%contacts%slave, model%contacts%master])
          call choose_neighbours(model, is_divided)
          call refined%prepare(model, simulation%bodies%points, is_divided, error)

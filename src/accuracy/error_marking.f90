@@ -1,5 +1,4 @@
-!> Which elements have the largest part of the error that recovery finds in stress and heat flux,
-!> and which ones are at faces.
+!> Which elements have the largest part of the error that recovery finds in stress and heat flux.
 module error_marking
    use element_kinds, only: element_corner_count
    use kinds, only: dp
@@ -8,26 +7,13 @@ module error_marking
    use records, only: increment_record_type
    implicit none
    private
-   public :: at_faces, largest_part, squared_errors
+   public :: largest_part, squared_errors
 
    integer, parameter :: halvings = 50   !! of the interval that holds the least value
    !> Relative error of a body below which its fields are smooth but for rounding.
    real(dp), parameter :: rounding = 1.0e-8_dp
 
 contains
-
-   !> Elements at some surfaces.
-   pure function at_faces(mesh, surfaces) result(chosen)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: surfaces(:)    !! indexes into the mesh's surfaces
-      logical :: chosen(size(mesh%element_kind))
-      integer :: i
-
-      chosen = .false.
-      do i = 1, size(surfaces)
-         chosen(mesh%surfaces(surfaces(i))%faces(1, :)) = .true.
-      end do
-   end function at_faces
 
    !> Squared error of each element: stress and heat flux of each body count by their relative
    !> errors.

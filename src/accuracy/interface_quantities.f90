@@ -15,7 +15,7 @@ module interface_quantities
    implicit none
    private
    public :: closed_length, contact_of, edge_spacing, is_end_of_face, peak_is_at_end, &
-      peaks_at_corner, quantities_of, quantities_of_state, rises_to_end
+      peaks_at_corner, point_before, quantities_of, quantities_of_state, rises_to_end
 
 contains
 
@@ -95,13 +95,20 @@ contains
       integer :: k
 
       edge_spacing = 0.0_dp
-      if (ieee_is_nan(edge)) return
+      if (ieee_is_nan(edge) .or. size(points%arc_length) < 2) return
       associate (s => points%arc_length)
-         do k = 1, size(s) - 1
-            if (edge >= s(k) .and. edge < s(k + 1)) edge_spacing = s(k + 1) - s(k)
-         end do
+         k = point_before(s, edge)
+         if (edge >= s(k) .and. edge < s(k + 1)) edge_spacing = s(k + 1) - s(k)
       end associate
    end function edge_spacing
+
+   !> The contact point before an edge, of those that have a next one.
+   pure integer function point_before(s, edge)
+      real(dp), intent(in) :: s(:)       !! (m >= 2) arc lengths, ascending [length]
+      real(dp), intent(in) :: edge       !! as arc length [length]
+
+      point_before = min(max(count(s <= edge), 1), size(s) - 1)
+   end function point_before
 
    !> Whether a value is an edge at the end of the face: the mesh does not move it.
    pure logical function is_end_of_face(quantity, points, value)
@@ -132,12 +139,13 @@ contains
       peaks_at_corner = any(points%at_corner .and. peak_is_at_end(contact))
    end function peaks_at_corner
 
-   !> Whether the pressure is largest at an end of the face and rises to it by more than a few per
-   !> cent beyond the line through the two contact points before: as where it has no limit.
+   !> Whether the pressure is largest at an end of the face and rises to it beyond the line through
+   !> the two contact points before, as where it has no limit: by more than pressures of corners and
+   !> midside nodes differ by where it is even.
    pure logical function rises_to_end(points, contact)
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! its state
-      real(dp), parameter :: few = 0.03_dp
+      real(dp), parameter :: uneven = 0.03_dp
       integer :: inner(3), m
 
       m = size(points%arc_length)
@@ -146,7 +154,7 @@ contains
       inner = [1, 2, 3]
       if (maxloc(contact%pressure, dim=1) == m) inner = [m, m - 1, m - 2]
       associate (s => points%arc_length(inner), p => contact%pressure(inner))
-         rises_to_end = p(1) > (1.0_dp + few)*(p(2) + (p(2) - p(3))*(s(1) - s(2))/(s(2) - s(3)))
+         rises_to_end = p(1) > (1.0_dp + uneven)*(p(2) + (p(2) - p(3))*(s(1) - s(2))/(s(2) - s(3)))
       end associate
    end function rises_to_end
 

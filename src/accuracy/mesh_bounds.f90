@@ -14,7 +14,7 @@ module mesh_bounds
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use contact_states, only: contact_open, contact_slip, contact_stick
-   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner
+   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner, point_before
    use kinds, only: dp
    use quantity_types, only: find_quantity
    use records, only: contact_record_type
@@ -29,9 +29,9 @@ module mesh_bounds
    !> The same where contact ends at a corner: stresses there vary nearly as the inverse root of the
    !> distance, and errors fall with the root of h: 1/(1 - 2^(-1/2)).
    real(dp), parameter :: of_change_at_corner = 3.4_dp
-   !> Error of the heat rate in its scatter where all elements are halved; else, and of others, it
-   !> is the scatter itself.
-   real(dp), parameter :: of_scatter_in_heat = 0.7_dp
+   !> Error of the heat rate in its scatter, and of an edge of stick, unless faces alone are halved;
+   !> else, and of others, it is the scatter itself.
+   real(dp), parameter :: of_scatter_in_heat = 0.7_dp, of_scatter_in_stick = 0.0_dp
    !> Error of shear force, that with hats, and that of peak pressure in what friction locked in.
    real(dp), parameter :: of_locked = 0.4_dp, of_locked_with_hats = 0.6_dp
    real(dp), parameter :: of_locked_in_peak = 0.15_dp
@@ -68,8 +68,13 @@ contains
       ! Without contact no edge passes a node; its end is a corner of the course, and no scatter.
       known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter) .or. &
          all(contact%contact_state == contact_open))
-      q = find_quantity(estimated, 'heat_rate')
-      if (.not. faces_alone) known_scatter(q) = of_scatter_in_heat*known_scatter(q)
+      if (.not. faces_alone) then
+         associate (heat => known_scatter(find_quantity(estimated, 'heat_rate')), &
+            stick => known_scatter(find_quantity(estimated, 'edge_stick')))
+            heat = of_scatter_in_heat*heat
+            stick = of_scatter_in_stick*stick
+         end associate
+      end if
       bounds = merge(of_change_alone, of_change, faces_alone .or. ieee_is_nan(scatter))
       if (any(points%at_corner .and. contact%contact_state([1, size(points%arc_length)]) /= &
          contact_open)) bounds = max(bounds, of_change_at_corner)
@@ -102,8 +107,7 @@ contains
                   change(q)) + shift
             else
                bounds(q) = edge_bound(points, contact%edge_stick, estimated(q)%resolution, &
-                  change(q)) + shift + merge(known_scatter(q), 0.0_dp, points%pairing == &
-                  pairing_surfaces)
+                  change(q)) + known_scatter(q) + shift
             end if
          case default
             cycle
@@ -171,10 +175,9 @@ contains
 
       is_behind_corner = .false.
       if (points%pairing == pairing_surfaces .or. points%side_nodes < 3) return
-      if (ieee_is_nan(edge)) return
+      if (ieee_is_nan(edge) .or. size(points%arc_length) < 2) return
       associate (s => points%arc_length, weight => points%weight)
-         k = count(s <= edge)
-         if (k < 1 .or. k >= size(s)) return
+         k = point_before(s, edge)
          is_behind_corner = weight(k + 1) > maxval(weight([k, min(k + 2, size(s))])) .and. &
             edge < 0.5_dp*(s(k) + s(k + 1))
       end associate

@@ -30,7 +30,7 @@ module refined_model
       integer, allocatable :: old_point(:)     !! (m) contact point of the old mesh, 0 for a new one
       !> (2, m) old contact points on both sides of a new one; of an old one itself
       integer, allocatable :: neighbours(:, :)
-      !> (m) whether it is an old contact point with a node of another one
+      !> (m) whether a node of it is one of another contact point, too
       logical, allocatable :: is_shared(:)
       type(loads_type) :: loads                 !! its loads
       integer, private :: step = 0              !! the step at whose end they are
@@ -88,8 +88,9 @@ contains
       associate (steps => self%model%steps, loads => self%loads)
          do while (self%step < step)
             self%step = self%step + 1
-            call loads%begin_step(steps(self%step), loads%displacement%value, &
-               loads%temperature%value)
+            ! Parentheses copy: the step writes these values.
+            call loads%begin_step(steps(self%step), (loads%displacement%value), &
+               (loads%temperature%value))
             call loads%move_to(end_of_step(steps, self%step), self%model)
          end do
       end associate
@@ -103,7 +104,7 @@ contains
 
       allocate (self%old_point(size(self%points%slave)), source=0)
       allocate (self%neighbours(2, size(self%points%slave)))
-      self%is_shared = shared_points(self%points, self%division%nodes)
+      self%is_shared = shared_points(self%points, self%division%nodes_after)
       do i = 1, size(self%interfaces)
          first = self%points%interface_start(i)
          last = self%points%interface_start(i + 1) - 1
@@ -123,23 +124,20 @@ contains
       end do
    end subroutine match_points
 
-   !> Which contact points at old nodes have a node that another one has as well.
+   !> Which contact points have a node that another one has, too: joints have no unknowns in common.
    pure function shared_points(points, nodes) result(is_shared)
       type(all_contact_points_type), intent(in) :: points
-      integer, intent(in) :: nodes          !! of the old mesh
+      integer, intent(in) :: nodes          !! of the mesh
       logical :: is_shared(size(points%slave))
       integer :: uses(nodes), k
 
       uses = 0
       do k = 1, size(is_shared)
-         associate (nodes_of => [points%slave(k), points%master(k)])
-            if (points%slave(k) <= nodes) uses(nodes_of) = uses(nodes_of) + 1
+         associate (pair => [points%slave(k), points%master(k)])
+            uses(pair) = uses(pair) + 1
          end associate
       end do
-      do k = 1, size(is_shared)
-         is_shared(k) = points%slave(k) <= nodes
-         if (is_shared(k)) is_shared(k) = any(uses([points%slave(k), points%master(k)]) > 1)
-      end do
+      is_shared = uses(points%slave) > 1 .or. uses(points%master) > 1
    end function shared_points
 
    !> Old contact points on both sides of a new one, which are at nodes of the old side that it lies

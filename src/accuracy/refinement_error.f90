@@ -144,7 +144,7 @@ contains
          call find_held_directions(refined%points, &
             refined%prolong_set(loads%displacement%active, 2))
          ! Sides where elements of two sizes meet move by the solutions on the old mesh alone, so
-         ! that the fields stay continuous; so do old contact points that no joint can keep.
+         ! that the fields stay continuous; so do contact points that no joint can keep.
          fields%moves = .not. (refined%prolong_set(loads%displacement%active, 2) .or. &
             refined%hangs(2))
          associate (nodes => [pack(refined%points%slave, refined%is_shared), &

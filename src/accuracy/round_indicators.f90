@@ -14,9 +14,10 @@ module round_indicators
    use contact_quantities, only: estimated
    use contact_states, only: contact_open
    use element_kinds, only: element_corner_count
-   use error_marking, only: at_faces, largest_part, squared_errors
-   use interface_quantities, only: closed_length
+   use error_marking, only: largest_part, squared_errors
+   use interface_quantities, only: closed_length, point_before
    use kinds, only: dp
+   use local_refinement, only: elements_at_surfaces
    use mesh, only: mesh_type
    use model, only: model_type
    use quantity_types, only: quantity_type
@@ -172,7 +173,8 @@ contains
       integer, intent(in) :: i
 
       associate (contact => model%contacts(i), levels => self%division%levels)
-         where (at_faces(model%mesh, [contact%slave, contact%master])) levels = max(levels, 1)
+         where (elements_at_surfaces(model%mesh, [contact%slave, contact%master])) levels = &
+            max(levels, 1)
       end associate
    end subroutine mark_faces
 
@@ -199,13 +201,6 @@ contains
          end do
       end associate
    end subroutine mark_edges
-
-   !> The contact point before an edge, of those that have a next one.
-   pure integer function point_before(s, edge)
-      real(dp), intent(in) :: s(:), edge
-
-      point_before = min(max(count(s <= edge), 1), size(s) - 1)
-   end function point_before
 
    !> The vector that lies between two.
    pure function between(first, second, part_of_way) result(vector)

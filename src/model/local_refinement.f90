@@ -15,7 +15,7 @@ module local_refinement
    use surface_chains, only: aligned_chains, chain_faces, surface_chain_type
    implicit none
    private
-   public :: elements_at_points, elements_in_region, choose_neighbours
+   public :: elements_at_points, elements_at_surfaces, elements_in_region, choose_neighbours
 
    !> Part of DISTANCE= by which an element must come nearer: what only touches stays out.
    real(dp), parameter :: rounding = 1.0e-9_dp
@@ -48,14 +48,12 @@ contains
       type(refined_region_type), intent(in) :: region
       logical :: inside(size(mesh%element_number))         !! (elements)
       real(dp), allocatable :: lines(:, :, :)
-      integer :: e, f, i
+      integer :: e, f
 
-      inside = .false.
       if (allocated(region%surfaces)) then
-         do i = 1, size(region%surfaces)
-            inside(mesh%surfaces(region%surfaces(i))%faces(1, :)) = .true.
-         end do
+         inside = elements_at_surfaces(mesh, region%surfaces)
       else
+         inside = .false.
          inside(mesh%element_sets(region%set)%members) = .true.
       end if
       if (region%distance <= 0.0_dp) return
@@ -68,6 +66,19 @@ contains
          end do
       end do
    end function elements_in_region
+
+   !> Elements with a face on one of some surfaces.
+   pure function elements_at_surfaces(mesh, surfaces) result(at_surface)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: surfaces(:)                   !! indexes into the mesh's surfaces
+      logical :: at_surface(size(mesh%element_number))     !! (elements)
+      integer :: i
+
+      at_surface = .false.
+      do i = 1, size(surfaces)
+         at_surface(mesh%surfaces(surfaces(i))%faces(1, :)) = .true.
+      end do
+   end function elements_at_surfaces
 
    !> Elements with a corner near one of some points, measured by their own size.
    pure function elements_at_points(mesh, points) result(at_point)

@@ -168,13 +168,10 @@ contains
          end if
          words = trim(words//' '//unit_label(estimated(q)%unit, model%units))
          if (zone /= '') words = words//', '//zone
-         if (is_bounded) words = words//why_not(self%errors(i), q)
+         if (is_bounded) words = words//why_not(self%errors(i), q)// &
+            of_limit(self%errors(i), q, points, self%contacts(i))
          words = words//other_edges(estimated(q)%name, points, self%contacts(i), &
             values(1))
-         if (estimated(q)%name == 'peak_pressure' .and. is_bounded) then
-            if (.not. ieee_is_nan(self%errors(i)%bound(q)) .and. rises_to_end(points, &
-               self%contacts(i))) words = words//', at an end, where it may have no limit'
-         end if
          call append(lines, words)
       end do
    end subroutine add_quantities
@@ -221,6 +218,19 @@ contains
       words = errors%why_not(q)%value
       if (words /= '') words = ': '//words
    end function why_not
+
+   !> What is said of a pressure that has a bound, but perhaps no limit.
+   pure function of_limit(errors, q, points, contact) result(words)
+      type(interface_errors_type), intent(in) :: errors
+      integer, intent(in) :: q
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+      character(:), allocatable :: words
+
+      words = ''
+      if (estimated(q)%name /= 'peak_pressure' .or. ieee_is_nan(errors%bound(q))) return
+      if (rises_to_end(points, contact)) words = ', at an end, where it may have no limit'
+   end function of_limit
 
    !> A name as one speaks it.
    pure function words_of(name) result(words)
