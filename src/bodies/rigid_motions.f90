@@ -63,12 +63,13 @@ contains
       end do
    end subroutine find_free_motions
 
-   !> Displacements of the nodes in the motions that supports and ties leave free, each motion of
-   !> one body and of those that are tied to it.
+   !> Displacements of the nodes in the motions that supports, ties and equations leave free, each
+   !> motion of one body, of those that are tied to it, and of the nodes of no body that equations
+   !> relate to them: forces act on these, too.
    pure subroutine unsupported_motions(mesh, held, joints, fields)
       type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: held(:)                       !! (2 nodes) prescribed displacements
-      type(joint_type), intent(in) :: joints(:)            !! what ties hold
+      type(joint_type), intent(in) :: joints(:)            !! what ties and equations hold
       real(dp), allocatable, intent(out) :: fields(:, :)   !! (2 nodes, motions)
       type(rigid_bodies_type) :: bodies
       real(dp), allocatable :: basis(:, :)
@@ -86,6 +87,7 @@ contains
             end do
          end associate
       end do
+      fields(bodies%lone, :) = basis(3*mesh%body_count + 1:, :)
    end subroutine unsupported_motions
 
    !> Basis of the free motions in reduced echelon form: each has a leading component of its own, 1,

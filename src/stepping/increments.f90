@@ -294,7 +294,7 @@ contains
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_values(record, error)
          if (allocated(error)) return
-         if (solves_heat(step%analysis)) call check_balance(record, error)
+         call check_balance(record, error)
          if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call check_violation(record, error)
          if (allocated(error)) return
