@@ -25,6 +25,7 @@ module closing_instant
    use contact_workspace, only: contact_workspace_type, relief_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
+   use unconstrained_motions, only: free_motions
    implicit none
    private
    public :: solve_increment
@@ -162,7 +163,8 @@ contains
    !> Compliance of one contact point while all other closed contact points hold their positions. A
    !> contact point of a cycle may have none along a direction in which the others hold it, so it is
    !> opened there. Where only this contact point holds a body, relieved it would go without end: it
-   !> closes at once, for which a normal compliance of zero and the start of the increment are.
+   !> closes at once, for which a normal compliance of zero and the start of the increment are. The
+   !> rows that hold the body tell, since its determinant, zero then, may be any rounding.
    !> Error: a singular system.
    subroutine find_compliance(system, held, held_state, k, relief, error)
       type(contact_system_type), intent(in) :: system
@@ -192,8 +194,12 @@ contains
       else
          stiffness = held%stiffness(system, tail_rows)
          determinant = stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1)
-         relief%alone = determinant <= nothing*system%schur(tail_rows(1), tail_rows(1))* &
-            system%schur(tail_rows(2), tail_rows(2))
+         associate (unheld => free_motions(system%motion, [held%rows%free, tail_rows], &
+            held%rows%spring, system%schur))
+            relief%alone = size(unheld, 2) > size(held%unconstrained, 2) .or. determinant <= &
+               nothing*system%schur(tail_rows(1), tail_rows(1))* &
+               system%schur(tail_rows(2), tail_rows(2))
+         end associate
          if (.not. relief%alone) relief%compliance = reshape([stiffness(2, 2), -stiffness(2, 1), &
             -stiffness(1, 2), stiffness(1, 1)], [2, 2])/determinant
       end if

@@ -19,8 +19,6 @@ module increment_checks
 
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
    real(dp), parameter :: sound_imbalance = 1.0e-6_dp !! of heat and forces in discrete equations
-   character(*), parameter :: remedy = ': rounding outweighs them; look for properties, sizes or '// &
-      'values that are many orders of magnitude apart'
 
 contains
 
@@ -36,20 +34,17 @@ contains
          to_text(record%contact_violation)//' of the largest displacement or force')
    end subroutine check_violation
 
-   !> The heat rates and the forces of the discrete equations balance, whatever the method that
-   !> solved them. What a step does not solve has no balance: it is not a number.
+   !> The heat rates, or the forces, of the discrete equations balance.
    !> Error: they do not.
-   subroutine check_balance(record, error)
-      type(increment_record_type), intent(in) :: record
+   subroutine check_balance(imbalance, what, error)
+      real(dp), intent(in) :: imbalance    !! relative to the largest rate or force
+      character(*), intent(in) :: what     !! 'heat rates' or 'forces'
       type(error_type), allocatable, intent(out) :: error
 
-      if (record%heat_imbalance > sound_imbalance) then
-         call set_error(error, status_no_convergence, 'heat in and heat out differ by '// &
-            to_text(record%heat_imbalance)//' of the largest rate'//remedy)
-      else if (record%force_imbalance > sound_imbalance) then
-         call set_error(error, status_no_convergence, 'the forces are out of balance by '// &
-            to_text(record%force_imbalance)//' of the largest force'//remedy)
-      end if
+      if (imbalance <= sound_imbalance) return
+      call set_error(error, status_no_convergence, 'the '//what//' are out of balance by '// &
+         to_text(imbalance)//' of the largest: their rounding outweighs them; look for '// &
+         'properties, sizes or values that are many orders of magnitude apart')
    end subroutine check_balance
 
    !> The fields and the contact state of an increment are numbers.

@@ -294,7 +294,11 @@ contains
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_values(record, error)
          if (allocated(error)) return
-         call check_balance(record, error)
+         if (solves_heat(step%analysis)) call check_balance(record%heat_imbalance, 'heat rates', &
+            error)
+         if (allocated(error)) return
+         if (solves_mechanics(step%analysis)) call check_balance(record%force_imbalance, &
+            'forces', error)
          if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call check_violation(record, error)
          if (allocated(error)) return

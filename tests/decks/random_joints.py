@@ -68,8 +68,11 @@ class Stack:
                 self.tie(k) if tied else self.join(k)
         self.support()
         self.brackets(ties)
-        if self.random.random() < 0.5:
+        self.heat = str(self.random.choice(["none", "given", "conducted"]))
+        if self.heat == "given":
             self.warm()
+        elif self.heat == "conducted":
+            self.conduct()
         return self
 
     def block(self, k, columns):
@@ -79,7 +82,7 @@ class Stack:
         name, first = f"B{k}", 1000 * (k + 1)
         cards = mesh(name, xs, ys, self.kind, first)
         elastic = float(self.random.choice([1e3, 1e5, 2e5])), float(self.random.choice([0.0, 0.3]))
-        self.cards += [*cards, *material(name, elastic, EXPANSION)]
+        self.cards += [*cards, *material(name, elastic, EXPANSION, 10.0)]
         places = nodes_of(cards)
         self.places.update(places)
         inside = False
@@ -104,6 +107,7 @@ class Stack:
         slave, master = self.faces[k]["BOTTOM"], self.faces[k - 1]["TOP"]
         matched = len(slave) == len(master) and self.random.random() < 0.6
         self.model += [f"*SURFACE INTERACTION, NAME=I{k}"]
+        self.model += ["*GAP LAW, TYPE=POWER", "1., 0.01, 1.", "*GAP LAW, TYPE=GAS", "1., 1."]
         if self.friction:
             self.model += ["*FRICTION", repr(self.friction)]
         pairing = "NODES" if matched else "SURFACES"
@@ -157,7 +161,7 @@ class Stack:
             clusters[-1].append(k) if ties[k] else clusters.append([k])
         sideways = not self.axial and bool(self.friction)
         holds = not self.axial and self.random.random() < (0.2 if self.friction else 0.5)
-        force = float(self.random.uniform(100.0, 1000.0))
+        self.pressed = force = float(self.random.uniform(100.0, 1000.0))
         side = float(self.random.uniform(-0.1, 0.1)) * force * self.friction
         self.way = str(self.random.choice(["coupled", "followed", "turned", "mean", "lever"]))
         getattr(self, self.way)(self.faces[-1]["TOP"], force, 0.0 if holds else side, holds)
@@ -165,7 +169,7 @@ class Stack:
             if not (holds and count - 1 in cluster):
                 self.hold(self.faces[cluster[0]]["BOTTOM"][0], 0)
         if sideways and len(clusters) > 2 and self.random.random() < 0.3:
-            self.spread(clusters[1][0], clusters[2][0], 0.05 * force * self.friction)
+            self.spread(clusters[1][0], clusters[2][0], 0.05 * self.pressed * self.friction)
         if self.random.random() < 0.3:
             self.straighten(clusters[1][0])
 
@@ -177,7 +181,7 @@ class Stack:
         self.couple(800, 801, f"B{len(self.faces) - 1}.TOP", (1,) if self.axial else (0, 1), top)
         if self.random.random() < 0.2:
             self.hold(800, 1, -1e-3 * float(self.random.uniform(1.0, 5.0)))
-            force = side = 0.0   # what friction carries is not known before
+            self.pressed = force = side = 0.0   # what friction carries is not known before
         else:
             self.load(800, 1, -force)
         if self.axial:
@@ -257,41 +261,48 @@ class Stack:
 
     def warm(self):
         slope = self.random.uniform(-3.0, 3.0, 2)
-        self.rises = {n: float(20.0 + slope @ p) for n, p in self.places.items()
-                      if any(n in nodes for _, nodes, _ in self.elements)}
-        self.step += ["*TEMPERATURE"] + [f"{n}, {value!r}" for n, value in self.rises.items()]
+        meshed = {n for _, nodes, _ in self.elements for n in nodes}
+        self.step += ["*TEMPERATURE", *(f"{n}, {float(20.0 + slope @ self.places[n])!r}"
+                                        for n in sorted(meshed))]
 
-    rises = None
+    def conduct(self):
+        """Heat from the top to the bottom, through contacts that conduct by their pressure."""
+        hot = float(self.random.uniform(-50.0, 50.0))
+        self.step += ["*BOUNDARY", "B0.BOTTOM, 11, 11, 0.",
+                      f"B{len(self.faces) - 1}.TOP, 11, 11, {hot!r}"]
 
     def deck(self, path):
         steps = float(self.random.choice([0.25, 1.0]))
         everything = ", ".join(f"B{k}" for k in range(len(self.faces)))
         start = ["*NSET, NSET=EVERYTHING", everything,
                  "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "EVERYTHING, 0."]
-        cards = [*self.cards, *self.model, *start, "*STEP", "*STATIC", f"{steps}, 1.", *self.step,
+        analysis = ("*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE" if self.heat == "conducted"
+                    else "*STATIC")
+        cards = [*self.cards, *self.model, *start, "*STEP", analysis, f"{steps}, 1.", *self.step,
                  "*END STEP"]
         return write(path, ["*OPTIONS, WIDTH=300"], without_unused_surfaces(cards))
 
 
-def displacements(stack, file):
-    """Return the displacements at the end; those of nodes of no element follow by least squares."""
-    last = file["VTKHDF/Steps/PointDataOffsets/displacement"][-1]
-    names = file["VTKHDF/PointData/node_id"][()]
-    count = len(names)
-    found = file["VTKHDF/PointData/displacement"][last : last + count]
-    return {int(n): u[:2] for n, u in zip(names, found, strict=True)}
+def nodal(file, name):
+    """Return a quantity of the nodes at the end; nothing where the file has none."""
+    if f"VTKHDF/PointData/{name}" not in file:
+        return {}
+    last = file[f"VTKHDF/Steps/PointDataOffsets/{name}"][-1]
+    nodes = file["VTKHDF/PointData/node_id"][()]
+    found = file[f"VTKHDF/PointData/{name}"][last : last + len(nodes)]
+    return {int(n): value for n, value in zip(nodes, found, strict=True)}
 
 
 def judge(stack, result):
     """Return the largest faults of a result: constraints, equilibrium, contact, sums."""
     placed = stack.places
-    bodies = Bodies(placed, stack.elements, stack.rises or dict.fromkeys(placed, 0.0))
-    size = len(bodies.dof)
     with h5py.File(result) as file:
-        known = displacements(stack, file)
+        known, rises = nodal(file, "displacement"), nodal(file, "temperature")
         contacts = {name: {key: file[f"contact/{name}"][key][-1] for key in
                            ("status", "normal_force", "shear_force")}
                     for name, *_ in stack.contacts}
+    bodies = Bodies(placed, stack.elements, rises or dict.fromkeys(placed, 0.0))
+    size = len(bodies.dof)
     rows = np.array([bodies.row(terms) for terms, _ in stack.rows])
     values = np.array([value for _, value in stack.rows])
     u = np.zeros(size)
@@ -373,11 +384,10 @@ def contact_faults(stack, bodies, contacts, labels, multipliers, carriers, scale
 
 
 def trial(seed, folder):
-    """Solve and judge the deck of a seed: exit status, messages, faults."""
+    """Solve the deck of a seed; return it, the finished process, its faults, and whether the
+    forces of its contacts are unique."""
     stack = Stack(seed).build()
     deck = stack.deck(folder / f"random{seed}.inp")
     process = run("run", "--quiet", deck, "--out", folder, seconds=60)
-    if process.returncode:
-        return stack, process.returncode, process.stderr, {}, False
-    faults, unique = judge(stack, deck.with_suffix(".vtkhdf"))
-    return stack, 0, process.stderr, faults, unique
+    faults = judge(stack, deck.with_suffix(".vtkhdf")) if process.returncode == 0 else ({}, False)
+    return stack, process, *faults
