@@ -26,7 +26,7 @@ from synthetic import (  # noqa: E402
 )
 
 from thercon_post import element_fields, field_colours, fields, mesh  # noqa: E402
-from thercon_post import profiles, style, trade, zones  # noqa: E402
+from thercon_post import profiles, style, tables, trade, zones  # noqa: E402
 from thercon_post.cells import Cells  # noqa: E402
 from thercon_post.cli import main, parser, spread  # noqa: E402
 from thercon_post.errors import UserError  # noqa: E402
@@ -1090,3 +1090,14 @@ def test_numbers_are_written_as_people_write_them():
     words = [style.number_words(value) for value in (0.0, 0.05, 340.0, 1900.0, 3.4e7, 1e-6, 2e-6)]
     assert words == ["0", "0.05", "340", "1900", r"$3.4\times10^{7}$", "$10^{-6}$",
                      r"$2\times10^{-6}$"]  # fmt: skip
+
+
+def test_a_table_holds_no_formula_of_a_spreadsheet_and_plain_numbers(tmp_path):
+    texts = ["=1+1", "+1", "-1", "@A1", "\t=1", "A=1"]
+    tables.write_table(tmp_path / "table.csv", {"=label": texts, "x": np.linspace(-1.0, 0.5, 6)})
+    with (tmp_path / "table.csv").open(newline="") as file:
+        heading, *rows = csv.reader(file)
+    assert tables.cell("\r=1") == "'\r=1"
+    assert heading == ["'=label", "x"]
+    assert [row[0] for row in rows] == [*("'" + text for text in texts[:-1]), "A=1"]
+    assert [float(row[1]) for row in rows] == pytest.approx(np.linspace(-1.0, 0.5, 6))
