@@ -40,8 +40,8 @@ contains
             end if
             if (count(mesh%element_body == body) > 1) cycle
             e = findloc(mesh%element_body, body, dim=1)
-            if (mesh%element_kind(e) /= quad8_reduced .or. mesh%element_plane(e) == axisymmetric) &
-               cycle
+            if (mesh%element_kind(e) /= quad8_reduced) cycle
+            if (mesh%element_plane(e) == axisymmetric) cycle
             words = body_name(model, body)//' has a single element, '// &
                to_text(mesh%element_number(e))//', with reduced integration, which can deform '// &
                'without stress (hourglass mode): take CPE8 in place of CPE8R, or CPS8 in place '// &
