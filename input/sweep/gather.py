@@ -18,6 +18,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
 
 TOLD = "thercon-batch.csv"  # what `thercon run --jobs 1` leaves of a run in its folder
+WRITTEN = ("sweep.csv", "sweep.png")
 
 
 def outcome(folder):
@@ -65,20 +66,23 @@ def draw(rows, x, y, curves):
     axes.set_title(f"{len(solved)} runs" + (f", {missing} without a result" if missing else ""))
     if values:
         figure.legend(title=curves, loc="outside right upper")
-    figure.savefig("sweep.png", dpi=150)
+    figure.savefig(WRITTEN[1], dpi=150)
 
 
 def main():
     with open("sweep.toml", "rb") as file:
         settings = tomllib.load(file)
+    for written in WRITTEN:
+        if Path(written).exists() and Path(written).samefile(settings["values"]):
+            sys.exit(f"sweep.toml: {written} would be written over the values; rename their file")
     rows = gather(settings)
-    with open("sweep.csv", "w", newline="") as file:
+    with open(WRITTEN[0], "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
     draw(rows, **settings["plot"])
     counts = Counter(row["outcome"] for row in rows)
-    print("sweep.csv, sweep.png:", ", ".join(f"{name} {n}" for name, n in counts.items()))
+    print(", ".join(WRITTEN) + ":", ", ".join(f"{name} {n}" for name, n in counts.items()))
     for row in rows:
         if row["outcome"] != "solved":
             print(f"run {row['run']}: {row['outcome']}: {row['reason']}")

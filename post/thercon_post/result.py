@@ -147,7 +147,8 @@ class Result:
     def units(self):
         """Units that `*OPTIONS, UNITS=` gave; none where it did not."""
         run = self.file["run"].attrs
-        return Units({name: text(run.get(f"unit_{name}", "")) for name in UNIT_NAMES})
+        load = self.file["history/load"].attrs.get("unit", "time")
+        return Units({name: text(run.get(f"unit_{name}", "")) for name in UNIT_NAMES}, text(load))
 
     @cached_property
     def history(self):

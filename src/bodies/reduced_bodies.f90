@@ -24,6 +24,7 @@ module reduced_bodies
    use text, only: to_text
    use thermal_matrix, only: assemble_conduction
    use unconstrained_bodies, only: undetermined_beside
+   use weak_bodies, only: weakness_of_bodies
    implicit none
    private
    public :: reduced_bodies_type
@@ -165,6 +166,7 @@ contains
       logical, intent(in) :: mechanics, heat
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: of_jumps
+      character(:), allocatable :: words
       logical :: by_elimination, forms
 
       if (allocated(self%jump_load) .and. (mechanics .or. heat)) deallocate (self%jump_load)
@@ -181,7 +183,12 @@ contains
       end if
       if (mechanics) then
          call self%mechanical%reduce(model%solver, self%node_rank, error)
-         if (allocated(error)) return
+         if (allocated(error)) then
+            words = weakness_of_bodies(model)
+            if (error%status == status_deck .and. len(words) > 0) error%message = &
+               error%message//'; '//words
+            return
+         end if
          self%contact = contact_system_of(self%mechanical, self%points, self%rigid)
          self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
       end if

@@ -14,7 +14,7 @@ module unconstrained_bodies
    implicit none
    private
    public :: unconstrained_in_step, unconstrained_now
-   public :: undetermined_in_step, undetermined_now, undetermined_beside
+   public :: undetermined_in_step, undetermined_now, undetermined_beside, body_name
 
    real(dp), parameter :: negligible = 1.0e-6_dp    !! part of a body in a free temperature
 
@@ -337,9 +337,9 @@ contains
    end function mover
 
    !> How a body is named to the user, such as 'body 2 (of STEEL, first node 38)'.
-   function body_name(model, body) result(name)
+   pure function body_name(model, body) result(name)
       type(model_type), intent(in) :: model
-      integer, intent(in) :: body
+      integer, intent(in) :: body                  !! index of the body
       character(:), allocatable :: name
       character(:), allocatable :: materials
       integer :: m

@@ -158,6 +158,34 @@ void file_remove_working(const char *stem)
    free(folder);
 }
 
+/* Device and inode of a regular file; zeros where there is none. */
+void file_identity(const char *path, long identity[2])
+{
+   struct stat status;
+   int is_there = stat(path, &status) == 0 && S_ISREG(status.st_mode);
+
+   identity[0] = is_there ? (long)status.st_dev : 0;
+   identity[1] = is_there ? (long)status.st_ino : 0;
+}
+
+/* A path without links, cut to the buffer; empty where nothing is there. */
+void file_real_path(const char *path, char *real, int length)
+{
+   char *found = realpath(path, NULL);
+
+   snprintf(real, (size_t)length, "%s", found ? found : "");
+   free(found);
+}
+
+/* Whether an open file is still the one at its path. */
+int file_is_at(const char *path, int descriptor)
+{
+   struct stat open_file, file;
+
+   return fstat(descriptor, &open_file) == 0 && stat(path, &file) == 0
+      && open_file.st_dev == file.st_dev && open_file.st_ino == file.st_ino;
+}
+
 /* Makes a file anew, to write at its end. */
 int file_open_new(const char *path, int *descriptor)
 {

@@ -10,7 +10,7 @@ module file_calls
    private
    public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file
    public :: try_file, try_growth, create_working_file, remove_working_files, survive_file_limits
-   public :: cannot_write, reason_of, print_text, check_printed
+   public :: cannot_write, reason_of, without_end, print_text, check_printed
 
    integer(c_int), parameter :: too_long = -3_c_int   !! as in file_calls.c
    integer, parameter :: reason_length = 200

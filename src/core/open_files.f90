@@ -117,7 +117,8 @@ contains
       case (0, not_lockable)
          return
       case (locked_by_another)
-         call set_error(error, status_internal, cannot_write(path, 'another run writes here'))
+         call set_error(error, status_internal, cannot_write(path, &
+            'another run writes here; wait for its end or name another folder with --out'))
       case default
          call set_error(error, status_internal, cannot_write(path, reason_of(number)))
       end select

@@ -1,21 +1,25 @@
 !> Several decks, some of them at a time. Each has a process of its own, so that what becomes of one
 !> leaves the others alone.
 module batch
-   use, intrinsic :: iso_fortran_env, only: output_unit
-   use batch_table, only: print_batch, write_batch
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use batch_table, only: print_batch, table_name, write_batch
    use clock, only: wall_seconds
    use command_line, only: command_type
    use deck_outcomes, only: deck_outcome_type
-   use deck_run, only: base_name, results_of
+   use deck_reader, only: files_of_deck
+   use deck_run, only: base_name, outputs_of, results_of
    use deck_task, only: deck_task_type
    use errors, only: error_type, status_deck, status_internal, status_interrupted
-   use file_calls, only: make_folder
+   use file_calls, only: is_stream, make_folder
+   use file_identities, only: file_identity_type, identity_of
+   use input_files, only: input_files_type
    use interruption, only: catch_signals, caught_signal, caught_times
    use kinds, only: dp
-   use messages, only: pass_on, print_error
+   use messages, only: pass_on, print_error, print_line
+   use open_files, only: lock_file, unlock_file
    use processes, only: child_type, pause_briefly, report_type
    use progress, only: progress_type
-   use text, only: counted, to_text
+   use text, only: counted, string_type, to_text
    implicit none
    private
    public :: run_batch
@@ -55,6 +59,7 @@ contains
       integer, intent(out) :: status              !! the largest of all
       type(batch_type) :: self
       type(error_type), allocatable :: error
+      integer :: lock
       logical :: has_collected
       real(dp) :: since
 
@@ -63,9 +68,7 @@ contains
       if (status /= 0) return
       call catch_signals(outlives_pipes=.true.)
       call prepare(self, command)
-      call make_folder(command%folder, error)
-      ! The table of an earlier batch must not be taken for that of this one.
-      if (.not. allocated(error)) call write_batch(command%folder, self%outcomes, error)
+      call begin_table(self, lock, error)
       if (allocated(error)) then
          call print_error('thercon', error%message)
          status = error%status
@@ -84,6 +87,7 @@ contains
       call leave_out_the_rest(self)
       status = maxval(self%outcomes%status)
       call write_batch(command%folder, self%outcomes, error)
+      call unlock_file(lock_path(command), lock)
       if (allocated(error)) then
          call print_error('thercon', error%message)
          status = max(status, error%status)
@@ -109,6 +113,66 @@ contains
          end do
       end do
    end subroutine check_names
+
+   !> Makes the table, which no other batch writes, and in which nothing of an earlier one is left.
+   !> Errors: as check_inputs and make_folder; status_internal where another batch writes it.
+   subroutine begin_table(self, lock, error)
+      type(batch_type), intent(in) :: self
+      integer, intent(out) :: lock                          ! descriptor of the locked file
+      type(error_type), allocatable, intent(out) :: error
+      logical :: has_lock
+
+      lock = -1
+      call check_inputs(self%command, error)
+      if (.not. allocated(error)) call make_folder(self%command%folder, error)
+      if (.not. allocated(error)) call lock_file(lock_path(self%command), lock, has_lock, error)
+      if (allocated(error)) return
+      if (.not. has_lock) call print_line(error_unit, 'thercon: warning: the file system of "'// &
+         self%command%folder//'" has no locks: a second batch there at the same time would '// &
+         'not be noticed')
+      call write_batch(self%command%folder, self%outcomes, error)
+      if (allocated(error)) call unlock_file(lock_path(self%command), lock)
+   end subroutine begin_table
+
+   !> The file that a batch locks, because the table is a new file whenever it is written.
+   pure function lock_path(command) result(path)
+      type(command_type), intent(in) :: command
+      character(:), allocatable :: path
+
+      path = command%folder//'/'//table_name//'.lock'
+   end function lock_path
+
+   !> Compares the files that the decks are read from with those that the batch writes. Pipes are
+   !> read once only, by their deck.
+   !> Error: as input_files_type's check.
+   subroutine check_inputs(command, error)
+      type(command_type), intent(in) :: command
+      type(error_type), allocatable, intent(out) :: error
+      type(input_files_type) :: inputs
+      type(string_type), allocatable :: outputs(:)
+      type(file_identity_type) :: identity
+      integer :: i, kinds
+      logical :: any_is_there
+
+      kinds = size(outputs_of('', command))
+      allocate (outputs(kinds*size(command%decks)))
+      do i = 1, size(command%decks)
+         outputs((i - 1)*kinds + 1:i*kinds) = outputs_of(command%decks(i)%value, command)
+      end do
+      any_is_there = .false.
+      do i = 1, size(outputs)
+         identity = identity_of(outputs(i)%value)
+         any_is_there = any_is_there .or. identity%is_there()
+      end do
+      ! In a new folder the decks are read once only.
+      if (.not. any_is_there) return
+      do i = 1, size(command%decks)
+         associate (deck => command%decks(i)%value)
+            if (.not. is_stream(deck)) call inputs%add(deck, files_of_deck(deck, command%settings))
+         end associate
+      end do
+      call inputs%check(outputs, error)
+   end subroutine check_inputs
 
    subroutine prepare(self, command)
       type(batch_type), intent(inout) :: self

@@ -10,6 +10,7 @@ module listing
    use due_output, only: table_is_due
    use errors, only: error_type
    use file_calls, only: copy_file
+   use file_identities, only: check_in_place
    use listing_errors, only: print_body_errors, print_interface_errors
    use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
    use listing_model, only: print_model
@@ -275,6 +276,7 @@ contains
       call overwrite_in_file(self%descriptor, self%path, self%summary_start, block, error)
       if (allocated(error)) return
       if (allocated(self%draft)) call copy_file(self%draft, self%path, error)
+      if (.not. allocated(error)) call check_in_place(self%path, self%lock, error)
    end subroutine finish
 
    !> Frees the file; one in which nothing was written is removed. One that is not reserved stays.

@@ -11,10 +11,11 @@ module result_tables
    use hdf5_helpers, only: as_integer, as_real, create_group, write_array
    use increment_quantities, only: body_values, history_value, pass_value
    use kinds, only: dp
-   use model, only: unit_labels_type
+   use model, only: model_type, unit_labels_type
    use quantity_types, only: of_bodies, of_contact_points, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use reported_quantities, only: quantities
+   use run_summaries, only: or_blank
    use solution_report, only: iteration_record_type
    use unit_labels, only: load_unit, unit_in_words
    implicit none
@@ -115,16 +116,16 @@ contains
 
    !> Labels the load axis.
    !> Error: status_internal, when HDF5 refuses.
-   subroutine write_load_label(file, load_label, labels, error)
+   subroutine write_load_label(file, model, error)
       integer(hid_t), intent(in) :: file                  !! the open file
-      character(*), intent(in) :: load_label              !! label of the load axis
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
+      type(model_type), intent(in) :: model               !! load axis and units of the deck
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(*), parameter :: path = '/history/load'
 
-      call write_attribute(file, path, 'label', load_label, error)
+      call write_attribute(file, path, 'label', or_blank(model%load_label), error)
       if (allocated(error)) return
-      call write_attribute(file, path, 'unit', unit_in_words(load_unit(load_label), labels), error)
+      call write_attribute(file, path, 'unit', unit_in_words(load_unit(model%load_dof), &
+         model%units), error)
    end subroutine write_load_label
 
    !> Creates the group, with the geometry of the contact points.

@@ -25,7 +25,7 @@ module results
    use result_run, only: write_run
    use result_tables, only: error_results_type, result_table_type, write_contact_points, &
       write_load_label
-   use run_summaries, only: or_blank, run_summary_type
+   use run_summaries, only: run_summary_type
    use solution_report, only: iteration_record_type
    use status_files, only: status_file_type
    use steps, only: planned_increments, solves_heat, solves_mechanics
@@ -348,8 +348,7 @@ contains
       end do
       if (is_new) call self%fields%write_links(self%file%id, error)
       if (allocated(error)) return
-      if (is_new) call write_load_label(self%file%id, or_blank(model%load_label), model%units, &
-         error)
+      if (is_new) call write_load_label(self%file%id, model, error)
    end subroutine flush_all
 
    subroutine write_heads(self, model, interfaces, error)

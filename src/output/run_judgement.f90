@@ -3,7 +3,6 @@
 module run_judgement
    use contact_points, only: contact_points_type, past_end
    use contact_states, only: contact_open
-   use interface_warnings, only: gap_range
    use kinds, only: dp
    use mesh, only: extent_of
    use model, only: model_type
@@ -27,7 +26,7 @@ module run_judgement
       logical :: moves = .false.                   !! whether a node was displaced
       logical :: warms = .false.                   !! whether a temperature left its initial value
       logical, allocatable :: closes(:)           !! (interfaces) whether a contact point was closed
-      real(dp), allocatable :: smallest_gap(:)     !! (interfaces) [length]
+      real(dp), allocatable :: smallest_gap(:)     !! (interfaces) of all increments [length]
       !> (first or last contact point, interfaces) farthest past the master's end so far [length]
       real(dp), allocatable :: past(:, :)
       real(dp) :: largest(2) = 0.0_dp              !! strain and rotation so far [-], [radian]
@@ -55,7 +54,8 @@ contains
       if (.not. allocated(self%closes)) then
          allocate (self%closes(size(interfaces)), source=.false.)
          allocate (self%past(2, size(interfaces)), source=0.0_dp)
-         self%smallest_gap = [(minval(gap_range(model%mesh, interfaces(i))), i=1, size(interfaces))]
+         ! The initial gap is that of no increment: bodies that touch may part at once.
+         allocate (self%smallest_gap(size(interfaces)), source=huge(1.0_dp))
       end if
       if (allocated(record%warnings)) call self%repeated%take(record%increment, record%warnings)
       associate (analysis => model%steps(record%step)%analysis, fields => record%fields)
@@ -67,8 +67,7 @@ contains
          do i = 1, size(interfaces)
             self%closes(i) = self%closes(i) .or. any(record%contacts(i)%contact_state /= &
                contact_open)
-            self%smallest_gap(i) = min(self%smallest_gap(i), &
-               minval(record%contacts(i)%smallest_gap))
+            self%smallest_gap(i) = min(self%smallest_gap(i), minval(record%contacts(i)%gap))
             call follow_ends(record%contacts(i), interfaces(i), self%past(:, i))
          end do
          if (.not. allocated(fields%stress)) return

@@ -23,7 +23,7 @@ module run_output
    use verification, only: failure_words, verifier_type
    implicit none
    private
-   public :: run_output_type
+   public :: run_output_type, paths_written
 
    !> The output of one run.
    type :: run_output_type
@@ -57,6 +57,20 @@ module run_output
    end type run_output_type
 
 contains
+
+   !> Paths of all files that a run may write.
+   pure function paths_written(path) result(paths)
+      character(*), intent(in) :: path                    !! path of the results without extension
+      type(string_type), allocatable :: paths(:)
+      character(*), parameter :: extensions(5) = [character(16) :: '.lst', '.sta', '.cvg', &
+         '.vtkhdf', '.contact.vtkhdf']
+      integer :: i
+
+      allocate (paths(size(extensions)))
+      do i = 1, size(extensions)
+         paths(i)%value = path//trim(extensions(i))
+      end do
+   end function paths_written
 
    !> Tries whether all files of a run can be written, before anything is solved, and locks them
    !> against other runs of the same name. They are left as they are; close the output in any case.

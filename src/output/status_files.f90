@@ -3,6 +3,7 @@
 module status_files
    use errors, only: error_type
    use file_calls, only: try_file
+   use file_identities, only: check_in_place
    use increment_quantities, only: history_value, pass_value
    use listing_text, only: column, table_cell, table_head
    use open_files, only: append_to_file, close_descriptor, open_new_file
@@ -149,6 +150,7 @@ contains
          text(first:last) = self%lines(i)(:last - first)//new_line('a')
       end do
       call append_to_file(self%descriptor, self%path, text(:last), error)
+      if (.not. allocated(error)) call check_in_place(self%path, self%descriptor, error)
       self%waiting = 0
    end subroutine write_waiting
 

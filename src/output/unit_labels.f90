@@ -1,6 +1,7 @@
 !> Units of reported quantities in the labels of *OPTIONS, UNITS=.
 module unit_labels
    use model, only: unit_labels_type
+   use steps, only: dof_temperature
    implicit none
    private
    public :: unit_label, unit_in_words, load_unit
@@ -37,14 +38,19 @@ contains
       if (words == '') words = trim(unit)
    end function unit_in_words
 
-   !> What is measured on the load axis, by its label.
-   pure function load_unit(load_label) result(unit)
-      character(*), intent(in) :: load_label            !! such as `temperature of TOP`
+   !> What is measured on the load axis, by the degree of freedom that it follows.
+   pure function load_unit(dof) result(unit)
+      integer, intent(in) :: dof                        !! as in steps; 0 for the time
       character(:), allocatable :: unit
 
-      unit = 'time'
-      if (index(load_label, 'temperature') == 1) unit = 'temperature'
-      if (index(load_label, 'displacement') == 1) unit = 'length'
+      select case (dof)
+      case (0)
+         unit = 'time'
+      case (dof_temperature)
+         unit = 'temperature'
+      case default
+         unit = 'length'
+      end select
    end function load_unit
 
    !> A text with another word for one of its words.

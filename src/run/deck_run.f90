@@ -13,6 +13,7 @@ module deck_run
       status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
    use increments, only: simulation_type
+   use input_files, only: input_files_type
    use interruption, only: end_after_grace, end_at_once, end_by_increments
    use kinds, only: dp
    use messages, only: print_error
@@ -20,12 +21,12 @@ module deck_run
    use records, only: increment_record_type
    use run_description, only: describe_run
    use run_ending, only: check_signals, prepare_end, report_failure, run_type, say_when
-   use run_output, only: run_output_type
+   use run_output, only: paths_written, run_output_type
    use text, only: append, string_type
    use variations, only: variation_type
    implicit none
    private
-   public :: run_deck, base_name, results_of
+   public :: run_deck, base_name, results_of, outputs_of
 
    !> What goes from one round to the next.
    type :: rounds_type
@@ -49,12 +50,6 @@ contains
 
       since = wall_seconds()
       outcome%path = path
-      call check_name(path, error)
-      if (allocated(error)) then
-         call outcome%fail(error)
-         call print_error(path, error%message)
-         return
-      end if
       call reserve_blas_memory()
       allocate (outcome%failed_checks(0))
       do
@@ -120,6 +115,7 @@ contains
       type(run_type), intent(inout) :: self
       type(rounds_type), intent(inout) :: rounds
       type(deck_outcome_type), intent(inout) :: outcome
+      type(input_files_type) :: inputs
       type(error_type), allocatable :: error
       logical :: is_told
 
@@ -135,6 +131,10 @@ contains
             outcome%reason = not_a_deck
             return
          end if
+         if (.not. (allocated(error) .or. is_later)) then
+            call inputs%add(self%path, rounds%deck%cards%files)
+            call inputs%check(outputs_of(self%path, self%command), error)
+         end if
          if (.not. (allocated(error) .or. is_later)) call reserve_files(self, rounds%lock, error)
          if (.not. allocated(error)) call reduce_bodies(self, error)
          if (.not. allocated(error)) return
@@ -142,18 +142,6 @@ contains
       end associate
       call report_failure(self, error, outcome, is_told)
    end subroutine begin_round
-
-   !> Error: status_deck, where results would be written over the deck.
-   subroutine check_name(path, error)
-      character(*), intent(in) :: path
-      type(error_type), allocatable, intent(out) :: error
-
-      if (any(path(max(len(path) - 3, 1):) == ['.lst', '.sta', '.cvg']) .or. &
-         path(max(len(path) - 6, 1):) == '.vtkhdf' .or. &
-         path(index(path, '/', back=.true.) + 1:) == table_name) then
-         call set_error(error, status_deck, 'a deck cannot have the name of a result file')
-      end if
-   end subroutine check_name
 
    !> Sees to it that results can be written before anything is solved.
    !> Error: as run_output_type's reserve.
@@ -345,6 +333,17 @@ contains
 
       results = command%folder//'/'//base_name(path)
    end function results_of
+
+   !> Paths of all files that a deck writes, and of the table that a batch writes beside them: no
+   !> deck may be lost to a batch of others either.
+   pure function outputs_of(path, command) result(outputs)
+      character(*), intent(in) :: path           !! the deck as given
+      type(command_type), intent(in) :: command
+      type(string_type), allocatable :: outputs(:)
+
+      outputs = paths_written(results_of(path, command))
+      call append(outputs, command%folder//'/'//table_name)
+   end function outputs_of
 
    !> Name of a deck's results: its file name without folder and extension, or stdin where it is
    !> read from an open file, which has a number only.

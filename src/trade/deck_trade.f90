@@ -11,18 +11,19 @@ module deck_trade
    use errors, only: error_type, status_deck, status_interrupted
    use file_calls, only: is_stream, make_folder, print_text, try_file
    use increments, only: simulation_type
+   use input_files, only: input_files_type
    use kinds, only: dp
    use messages, only: print_error, print_line
    use model, only: model_type
    use printed_text, only: printed_text_type
    use recommendation, only: judge_rows
    use sorting, only: unique_sorted
-   use text, only: counted
+   use text, only: counted, string_type
    use trade_errors, only: state_errors
    use trade_file, only: write_trade
    use trade_instants, only: common_instants
    use trade_limits, only: check_affordable, note_left_out
-   use trade_measurement, only: measurement_type
+   use trade_measurement, only: measurement_type, working_paths
    use trade_plan, only: add_contact_level, add_level, add_singles, longest_factor, make_room, &
       most_levels
    use trade_reference, only: find_reference, reference_type
@@ -49,6 +50,7 @@ contains
       type(simulation_type) :: simulation
       type(trade_type) :: trade
       type(reference_type) :: reference
+      type(input_files_type) :: inputs
       type(error_type), allocatable :: error, ended_early
       character(:), allocatable :: results
       integer :: i
@@ -65,9 +67,11 @@ contains
          status = error%status
          return
       end if
-      call make_folder(command%folder, error)
       results = command%folder//'/'//base_name(path)//'.trade'
       trade%instants = common_instants(model, longest_factor)
+      call inputs%add(path, deck%cards%files)
+      call inputs%check([string_type(results//'.csv'), working_paths(results, command%jobs)], error)
+      if (.not. allocated(error)) call make_folder(command%folder, error)
       if (.not. allocated(error)) call try_file(results//'.csv', error)
       if (.not. allocated(error)) call measure(path, command, results, model, trade, error)
       call forgive_signal(trade, error, ended_early)

@@ -9,11 +9,11 @@ module trade_measurement
    use processes, only: child_type, pause_briefly, reason_of, report_type
    use progress, only: progress_type
    use row_task, only: row_task_type
-   use text, only: to_text
+   use text, only: string_type, to_text
    use trade_rows, only: trade_row_type, trade_type
    implicit none
    private
-   public :: measurement_type, median
+   public :: measurement_type, working_paths, median
 
    !> Runs of a row by the CPU seconds of its first: times of a moment scatter most.
    real(dp), parameter :: moments(3) = [0.1_dp, 1.0_dp, 5.0_dp]   !! [s]
@@ -53,25 +53,28 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(slot_type) :: slots(self%jobs)
       integer :: queue((last - first + 1)*maxval(runs_within))
+      type(string_type), allocatable :: paths(:)
       integer :: queued, next, s, i
 
+      paths = working_paths(self%scratch, self%jobs)
       queued = last - first + 1
       queue(:queued) = [(i, i=first, last)]
       next = 1
       do while (next <= queued .or. any(slots%row > 0))
          do s = 1, size(slots)
             if (slots(s)%row > 0 .or. next > queued) cycle
-            call begin(self, trade, queue(next), s, slots(s), error)
+            call begin(self, trade, queue(next), paths(s)%value, slots(s), error)
             if (allocated(error)) exit
             next = next + 1
          end do
-         if (.not. allocated(error)) call wait_for_one(self, trade, slots, queue, queued)
+         if (.not. allocated(error)) call wait_for_one(self, trade, paths, slots, queue, &
+            queued)
          if (caught_signal() /= '') call set_error_once(error)
          if (allocated(error)) exit
       end do
       do s = 1, size(slots)
          if (slots(s)%row > 0) call slots(s)%child%kill()
-         call remove_file(values_path(self, s))
+         call remove_file(paths(s)%value)
       end do
       call self%progress%clear()
       if (allocated(error)) call keep_measured(trade, first)
@@ -104,16 +107,17 @@ contains
    end subroutine set_error_once
 
    !> Begins a run of a row.
-   subroutine begin(self, trade, row, position, slot, error)
+   subroutine begin(self, trade, row, path, slot, error)
       class(measurement_type), intent(inout) :: self
       type(trade_type), intent(in) :: trade
-      integer, intent(in) :: row, position
+      integer, intent(in) :: row
+      character(*), intent(in) :: path   ! of its values
       type(slot_type), intent(out) :: slot
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: line
 
       self%task%variation = trade%rows(row)%variation
-      self%task%values_path = values_path(self, position)
+      self%task%values_path = path
       line = 'row '//to_text(row)//' of level '//to_text(trade%rows(row)%level)
       if (allocated(trade%rows(row)%cpu)) line = line//', run '// &
          to_text(size(trade%rows(row)%cpu) + 1)
@@ -125,9 +129,10 @@ contains
    end subroutine begin
 
    !> Waits until a run has ended, or a signal has come.
-   subroutine wait_for_one(self, trade, slots, queue, queued)
+   subroutine wait_for_one(self, trade, paths, slots, queue, queued)
       class(measurement_type), intent(in) :: self
       type(trade_type), intent(inout) :: trade
+      type(string_type), intent(in) :: paths(:)   ! of the values, one a slot
       type(slot_type), intent(inout) :: slots(:)
       integer, intent(inout) :: queue(:), queued
       logical :: has_ended
@@ -143,7 +148,7 @@ contains
             has_ended = slots(s)%is_late
             if (.not. has_ended) has_ended = slots(s)%child%has_ended()
             if (.not. has_ended) cycle
-            call take(self, trade%rows(slots(s)%row), slots(s), s, queue, queued)
+            call take(self, trade%rows(slots(s)%row), slots(s), paths(s)%value, queue, queued)
             slots(s)%row = 0
             return
          end do
@@ -152,11 +157,11 @@ contains
    end subroutine wait_for_one
 
    !> Takes what a run left; after the first one its repetitions are queued.
-   subroutine take(self, row, slot, position, queue, queued)
+   subroutine take(self, row, slot, path, queue, queued)
       class(measurement_type), intent(in) :: self
       type(trade_row_type), intent(inout) :: row
       type(slot_type), intent(inout) :: slot
-      integer, intent(in) :: position
+      character(*), intent(in) :: path   ! of its values
       integer, intent(inout) :: queue(:), queued
       integer :: again
 
@@ -169,7 +174,7 @@ contains
             return
          end if
          row%cpu = [ended%cpu_seconds]
-         call take_outcome(self, row, slot, position)
+         call take_outcome(self, row, slot, path)
          if (row%status /= 0) return
          again = runs_within(count(ended%cpu_seconds > moments) + 1) - 1
       end associate
@@ -177,11 +182,11 @@ contains
       queued = queued + again
    end subroutine take
 
-   subroutine take_outcome(self, row, slot, position)
+   subroutine take_outcome(self, row, slot, path)
       class(measurement_type), intent(in) :: self
       type(trade_row_type), intent(inout) :: row
       type(slot_type), intent(inout) :: slot
-      integer, intent(in) :: position
+      character(*), intent(in) :: path   ! of its values
       type(report_type) :: report
       type(error_type), allocatable :: error
 
@@ -196,20 +201,25 @@ contains
       if (slot%child%end%signal /= 0 .or. report%is_whole == 0) return
       row%status = int(report%status)
       row%reason = reason_of(report)
-      call row%values%load(values_path(self, position), error)
+      call row%values%load(path, error)
       if (row%status == 0 .and. allocated(error)) then
          row%status = error%status
          row%reason = error%message
       end if
    end subroutine take_outcome
 
-   pure function values_path(self, position) result(path)
-      class(measurement_type), intent(in) :: self
-      integer, intent(in) :: position
-      character(:), allocatable :: path
+   !> Paths of the temporary files.
+   pure function working_paths(scratch, jobs) result(paths)
+      character(*), intent(in) :: scratch          !! path that they begin with
+      integer, intent(in) :: jobs                  !! rows that run at a time
+      type(string_type), allocatable :: paths(:)   !! (jobs)
+      integer :: i
 
-      path = self%scratch//'.'//to_text(position)//'.values.tmp'
-   end function values_path
+      allocate (paths(jobs))
+      do i = 1, jobs
+         paths(i)%value = scratch//'.'//to_text(i)//'.values.tmp'
+      end do
+   end function working_paths
 
    !> The median of some numbers.
    pure real(dp) function median(numbers)

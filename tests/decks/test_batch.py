@@ -401,3 +401,27 @@ def test_a_terminal_shows_how_many_have_ended(tmp_path, long):
     assert "2 of 3 decks ended, 1 running, 1 failed" in shown
     lines = shown[shown.rindex("outcome"):].splitlines()
     assert [line.split()[0] for line in lines[1:4]] == [str(deck) for deck in decks]
+
+
+def test_a_second_batch_in_a_folder_is_refused_until_the_first_has_ended(tmp_path, long):
+    first = start([long], tmp_path, "--jobs", 1)
+    wait_until(lambda: (tmp_path / TABLE).exists() and len(lines_of(tmp_path / "long.sta")) > 5)
+    second = run("run", GOOD[0], "--jobs", 1, "--out", tmp_path)
+    assert second.returncode == 3, second.stderr
+    assert "another run writes here" in second.stderr and second.stdout == ""
+    assert list(table(tmp_path)) == ["long"]
+    first.send_signal(signal.SIGKILL)
+    first.communicate()
+    wait_until(lambda: run("run", "--quiet", GOOD[0], "--jobs", 1, "--out", tmp_path).returncode == 0)
+    assert list(table(tmp_path)) == ["r1"]
+    assert not (tmp_path / f"{TABLE}.lock").exists()
+
+
+def test_a_deck_named_like_a_formula_is_none_in_the_table(tmp_path):
+    deck = rods.write_rods(tmp_path / "=1+1.inp")
+    process = run("run", "--quiet", deck.name, "--jobs", 1, folder=tmp_path)
+    assert process.returncode == 0, process.stderr
+    with (tmp_path / TABLE).open(newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert row["deck"] == "'=1+1.inp"
+    assert row["outcome"] == "solved"

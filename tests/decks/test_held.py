@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from blocks import block, solid, write
+from blocks import block, solid, without_unused_surfaces, write
 from deck_runs import run, solve
 from physics import mesh, nodes_of
 
@@ -286,3 +286,46 @@ def test_heated_block_above_the_floor_only_expands(tmp_path):
     gap, force = read(solve(deck), "FACE", "gap", "normal_force")
     np.testing.assert_allclose(force, 0.0, atol=1e-12)
     assert (np.abs(gap - 0.02) < 2e-3).all()
+
+
+def node_at(cards, point):
+    """Return the number of the node at a point."""
+    rows = [card.split(",") for card in cards[1:cards.index("*ELEMENT, TYPE=CPE8, ELSET=BODY")]]
+    return next(int(n) for n, x, y in rows if (float(x), float(y)) == point)
+
+
+def one_body(xs, kind):
+    """Return the cards of a body that two corners hold, pulled upwards, with elements of a kind."""
+    cards = block("BODY", xs, [0.0, 3.0])
+    first, last = (node_at(cards, (x, 0.0)) for x in (xs[0], xs[-1]))
+    cards = [card.replace("CPE8", kind) for card in without_unused_surfaces(cards)]
+    load = ["*DLOAD", *(f"{k + 1}, P3, -4." for k in range(len(xs) - 1))]
+    return [*cards, *solid("BODY", 1000.0, 0.3),
+            *step(["*BOUNDARY", f"{first}, 1, 2", f"{last}, 2"], load)]
+
+
+@pytest.mark.parametrize("solver", ["SKYLINE", "MUMPS"])
+@pytest.mark.parametrize("kind", ["CPE8R", "CPS8R"])
+def test_a_single_element_that_deforms_without_stress_is_named(tmp_path, kind, solver):
+    """Four points give twelve strains for sixteen degrees of freedom, three of them rigid."""
+    deck = write(tmp_path / "one.inp", [f"*SOLVER, TYPE={solver}", *one_body([0.0, 2.0], kind)])
+    message = refuse(deck, 1)
+    assert "singular matrix" in message
+    assert "body 1 (of BODY, first node 1) has a single element, 1," in message
+    assert "take CPE8 in place of CPE8R, or CPS8 in place of CPS8R, or a finer mesh" in message
+
+
+@pytest.mark.parametrize(("xs", "kind"), [([0.0, 2.0], "CPE8"), ([0.0, 1.0, 2.0], "CPE8R"),
+                                          ([0.0, 2.0], "CAX8R")])
+def test_other_elements_do_not_deform_without_stress(tmp_path, xs, kind):
+    solve(write(tmp_path / "others.inp", one_body(xs, kind)))
+
+
+@pytest.mark.parametrize("solver", ["SKYLINE", "MUMPS"])
+def test_a_body_too_soft_beside_another_is_named(tmp_path, solver):
+    materials = [*solid("UPPER", 1e4, 0.3), *solid("LOWER", 1e-50, 0.3)]
+    deck = write(tmp_path / "soft.inp", [f"*SOLVER, TYPE={solver}"], MESH, materials,
+                 interaction(MU), [FACES[0] + ", PAIRING=SURFACES", FACES[1]], step(FLOOR, PRESS))
+    message = refuse(deck, 1)
+    assert "body 2 (of LOWER, first node 101) is 1E+54 times softer than body 1 (of UPPER" in message
+    assert "check the values and units of *ELASTIC" in message

@@ -24,7 +24,7 @@ def test_a_deck_is_never_overwritten_by_its_own_results(tmp_path):
         before = deck.read_bytes()
         process = run("run", deck, "--out", tmp_path)
         assert process.returncode == 1
-        assert "name of a result file" in process.stderr
+        assert f'{deck.name}" would be written over' in process.stderr
         assert deck.read_bytes() == before
 
 

@@ -247,3 +247,102 @@ def test_full_standard_output_is_said(small, tmp_path):
                                  text=True, check=False)
     assert process.returncode == 3
     assert "cannot write to standard output: No space left on device" in process.stderr
+
+
+def names_written(deck, folder):
+    """Return the names of all files that a run of a deck leaves."""
+    assert run("run", "--quiet", deck, "--out", folder).returncode == 0
+    return names(folder)
+
+
+def includes(folder, name, included):
+    """Write a deck that is read from another file; return the paths of both."""
+    file = heat(folder, included, 2)
+    return write(folder / name, [f"*INCLUDE, INPUT={included}"]), file
+
+
+def keeps(file, *arguments):
+    """Assert that a command is refused before it writes anything, with one message that names a
+    file."""
+    before, content = names(file.parent), file.read_bytes()
+    process = run(*arguments)
+    assert process.returncode == 1, process.stderr
+    assert process.stderr.count("error:") == 1 and process.stderr.count("\n") == 1, process.stderr
+    assert "would be written over" in process.stderr and str(file.name) in process.stderr
+    assert process.stdout == ""
+    assert (names(file.parent), file.read_bytes()) == (before, content)
+
+
+def test_no_result_is_written_over_a_file_that_the_deck_includes(tmp_path):
+    deck = heat(tmp_path, "joint.inp", 2)
+    written = names_written(deck, tmp_path / "first")
+    assert written == ["joint.contact.vtkhdf", "joint.cvg", "joint.lst", "joint.sta",
+                       "joint.vtkhdf"]
+    for number, name in enumerate([*written, "joint.vtkhdf.12.tmp", "joint.contact.vtkhdf.3.tmp"]):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        deck, file = includes(folder, "joint.inp", name)
+        keeps(file, "run", deck, "--out", folder)
+        keeps(file, "run", deck, "--out", folder, "--accuracy", "10%")
+        assert run("run", "--quiet", deck, "--out", folder / "out").returncode == 0
+
+
+@pytest.mark.parametrize("link", ["symlink_to", "hardlink_to"])
+def test_no_result_is_written_over_a_link_to_what_is_read(tmp_path, small, link):
+    getattr(tmp_path / "small.lst", link)(small)
+    keeps(small, "run", small, "--out", tmp_path)
+    (tmp_path / "small.lst").unlink()
+    (tmp_path / "folder").symlink_to(tmp_path)
+    (tmp_path / "folder" / "small.trade.csv").symlink_to(small)
+    keeps(small, "trade", small, "--out", tmp_path / "folder")
+
+
+def test_a_trade_writes_over_nothing_that_is_read(tmp_path):
+    for name in ("joint.trade.csv", "joint.trade.1.values.tmp"):
+        deck, file = includes(tmp_path, "joint.inp", name)
+        keeps(file, "trade", deck, "--out", tmp_path)
+
+
+def test_a_batch_writes_over_no_file_of_any_of_its_decks(tmp_path, small):
+    table, file = includes(tmp_path, "joint.inp", "thercon-batch.csv")
+    keeps(file, "run", small, table, "--out", tmp_path)
+    keeps(file, "run", table, "--jobs", "1", "--out", tmp_path)
+    keeps(file, "run", file, "--jobs", "1", "--out", tmp_path)
+    file.unlink()
+    deck, file = includes(tmp_path, "joint.inp", "small.lst")
+    keeps(file, "run", deck, small, "--out", tmp_path)
+    assert run("run", "--quiet", deck, small, "--out", tmp_path / "out").returncode == 0
+
+
+def test_a_file_with_the_name_of_a_result_is_read_from_another_folder(tmp_path):
+    deck, file = includes(tmp_path, "joint.lst", "joint.vtkhdf.12.tmp")
+    for _ in range(2):
+        assert run("run", "--quiet", deck, "--out", tmp_path / "out").returncode == 0
+        assert run("run", "--quiet", deck, "--jobs", "1", "--out", tmp_path / "out").returncode == 0
+    assert file.exists()
+
+
+def test_a_file_that_vanishes_during_a_run_is_said(tmp_path):
+    """A file that is there at the end, but is another one, is no result of the run either."""
+    for extension in ("lst", "sta", "cvg"):
+        for others in ((), ("another file",)):
+            out = tmp_path / f"{extension}{len(others)}"
+            deck = heat(tmp_path, "long.inp", INCREMENTS)
+            with running(deck, out) as process:
+                (out / f"long.{extension}").unlink()
+                for text in others:
+                    (out / f"long.{extension}").write_text(text)
+                process.send_signal(signal.SIGTERM)
+                _, messages = process.communicate(timeout=PATIENCE)
+            assert process.returncode == 3, messages
+            assert f'long.{extension}": it was removed or replaced during the run' in messages
+            assert messages.count("error:") == 1, messages
+
+
+def test_a_folder_that_vanishes_during_a_run_is_said(tmp_path):
+    deck = heat(tmp_path, "long.inp", INCREMENTS)
+    with running(deck, tmp_path / "out") as process:
+        (tmp_path / "out").rename(tmp_path / "elsewhere")
+        _, messages = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 3, messages
+    assert "No such file or directory" in messages

@@ -23,7 +23,7 @@ AREA = 0.05 * 20.0
 EVERY, RUNS = 5, 40  # every fifth row of the table
 WRONG = 115  # the run whose gap is no number
 
-pytestmark = pytest.mark.skipif(not SNAKEMAKE.exists(),
+with_snakemake = pytest.mark.skipif(not SNAKEMAKE.exists(),
                                 reason="build/sweep has no Snakemake; ./setup.sh test makes it")
 
 
@@ -83,6 +83,7 @@ def assert_closed_form(row):
     assert float(row["pressure"]) == pytest.approx(pressure, rel=1e-7, abs=1e-7 * YOUNG * gap)
 
 
+@with_snakemake
 def test_runs_one_of_them_failing_and_a_second_start(tmp_path):
     folder = tmp_path / "sweep"
     workflow(folder)
@@ -115,3 +116,20 @@ def test_runs_one_of_them_failing_and_a_second_start(tmp_path):
     for row in rows.values():
         assert row["outcome"] == "solved"
         assert_closed_form(row)
+
+
+@pytest.mark.parametrize("name", ["sweep.csv", "values.csv"])
+def test_the_values_are_not_written_over(tmp_path, name):
+    folder = tmp_path / "sweep"
+    workflow(folder)
+    (folder / "values.csv").rename(folder / name)
+    (folder / "link.csv").symlink_to(name)
+    settings = folder / "sweep.toml"
+    settings.write_text(settings.read_text().replace('"values.csv"', '"link.csv"'))
+    before = (folder / name).read_bytes()
+    process = subprocess.run([sys.executable, "gather.py"], cwd=folder, capture_output=True,
+                             text=True, check=False)
+    assert (folder / name).read_bytes() == before
+    assert process.returncode == (1 if name == "sweep.csv" else 0), process.stderr
+    assert ("would be written over the values" in process.stderr) == (name == "sweep.csv")
+    assert (folder / "sweep.png").exists() == (name == "values.csv")

@@ -387,6 +387,15 @@ def test_contact_that_never_closes(tmp_path, gap, closes):
     assert found == ([] if closes else ["contact pair F never closes: its smallest gap is 0.1"])
 
 
+def test_the_smallest_gap_is_one_of_an_increment(tmp_path):
+    """Of bodies that touch and part, by 0.05 in the first of two increments."""
+    lifted = ["*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY", "B.TOP, 2, 2, 0.1", "*END STEP"]
+    (found,) = warnings_of_run(tmp_path, blocks(gap=0.0), lifted)
+    words, _, value = found.rpartition(" ")
+    assert words == "contact pair F never closes: its smallest gap is"
+    assert float(value) == pytest.approx(0.05, rel=1e-6)
+
+
 def test_loads_that_never_act(tmp_path):
     """An amplitude that is 0, and temperatures that are prescribed as they are."""
     curve = ["*AMPLITUDE, NAME=NONE", "0., 0., 1., 0."]

@@ -99,6 +99,8 @@ def write_history(file, options):
     group["time"] = loads
     group["load"] = loads
     group["load"].attrs["label"] = options.label
+    unit = (options.units.split() or ["", "", "", "temperature"])[3]
+    group["load"].attrs["unit"] = unit if options.label.startswith("temperature") else "time"
     group["iterations"] = np.full(len(loads), 4)
     group["stress_error"] = np.linspace(0.01, 0.05, 2 * len(loads)).reshape(-1, 2)
 

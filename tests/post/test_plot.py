@@ -26,7 +26,7 @@ from synthetic import (  # noqa: E402
 )
 
 from thercon_post import element_fields, field_colours, fields, mesh  # noqa: E402
-from thercon_post import profiles, style, trade, zones  # noqa: E402
+from thercon_post import profiles, style, tables, trade, zones  # noqa: E402
 from thercon_post.cells import Cells  # noqa: E402
 from thercon_post.cli import main, parser, spread  # noqa: E402
 from thercon_post.errors import UserError  # noqa: E402
@@ -742,14 +742,28 @@ def test_axes_have_the_units_of_the_file_or_none(tmp_path, units):
         assert load == "Temperature of node set TOP"
 
 
-def test_load_labels_tell_temperatures_displacements_and_time():
-    units = Units({"length": "mm", "stress": "MPa", "power": "mW", "temperature": "K"})
-    assert units.load_label("temperature of HOT") == "Temperature of HOT (K)"
-    assert units.load_label("displacement 2 of TOP") == "Displacement 2 of TOP (mm)"
-    assert units.load_label("time") == "Time"
-    assert units.short_load("temperature of HOT", 540.0) == "540 K"
-    assert units.short_load("time", 2.0) == "time 2"
-    assert Units({}).short_load("temperature of HOT", 540.0) == "540"
+@pytest.mark.parametrize(("load", "unit", "label", "value"), [
+    ("K", "K", "U_y of TEMPERATURE_FACE (K)", "0.5 K"),
+    ("mm", "mm", "U_y of TEMPERATURE_FACE (mm)", "0.5 mm"),
+    ("time", "", "U_y of TEMPERATURE_FACE", "u_y of TEMPERATURE_FACE 0.5"),
+])
+def test_the_load_axis_has_the_unit_of_the_file_whatever_its_name(load, unit, label, value):
+    names = {"length": "mm", "stress": "MPa", "power": "mW", "temperature": "K"}
+    units = Units(names, load)
+    assert units.load_unit() == unit
+    assert units.load_label("u_y of TEMPERATURE_FACE") == label
+    assert units.short_load("u_y of TEMPERATURE_FACE", 0.5) == value
+
+
+@pytest.mark.parametrize("load", ["temperature", "length"])
+def test_a_load_axis_without_units_has_its_value(load):
+    units = Units({}, load)
+    assert units.short_load("u_y of TEMPERATURE_FACE", 0.5) == "0.5"
+    assert units.load_label("temperature of HOT") == "Temperature of HOT"
+
+
+def test_celsius_is_the_unit_of_a_load_axis():
+    assert Units({"temperature": "C", "length": "mm"}, "C").load_unit() == "\N{DEGREE SIGN}C"
 
 
 def test_a_digitised_figure_is_laid_over(draw, result, tmp_path):
@@ -1090,3 +1104,14 @@ def test_numbers_are_written_as_people_write_them():
     words = [style.number_words(value) for value in (0.0, 0.05, 340.0, 1900.0, 3.4e7, 1e-6, 2e-6)]
     assert words == ["0", "0.05", "340", "1900", r"$3.4\times10^{7}$", "$10^{-6}$",
                      r"$2\times10^{-6}$"]  # fmt: skip
+
+
+def test_a_table_holds_no_formula_of_a_spreadsheet_and_plain_numbers(tmp_path):
+    texts = ["=1+1", "+1", "-1", "@A1", "\t=1", "A=1"]
+    tables.write_table(tmp_path / "table.csv", {"=label": texts, "x": np.linspace(-1.0, 0.5, 6)})
+    with (tmp_path / "table.csv").open(newline="") as file:
+        heading, *rows = csv.reader(file)
+    assert tables.cell("\r=1") == "'\r=1"
+    assert heading == ["'=label", "x"]
+    assert [row[0] for row in rows] == [*("'" + text for text in texts[:-1]), "A=1"]
+    assert [float(row[1]) for row in rows] == pytest.approx(np.linspace(-1.0, 0.5, 6))

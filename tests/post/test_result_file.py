@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import sys
 from pathlib import Path
 
 import h5py
@@ -12,10 +13,14 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "post"))
+
+from thercon_post.result import Result  # noqa: E402
+
 INCREMENTS, NODES, ELEMENTS, PAIRS = 45, 326, 92, 21
 ENDS, AXIS = 5 + 5, 13 + 13   # nodes of the heated and the cold section, of the axis of symmetry
 QUADRATIC_QUAD, LINE = 23, 3
-ROOT = Path(__file__).resolve().parents[2]
 DOCS, EXAMPLES = ROOT / "docs", ROOT / "input" / "examples"
 
 
@@ -338,6 +343,54 @@ def test_units_are_those_of_the_deck(stored):
              "VTKHDF/Points": "cm", "history/heat_imbalance": "-"}
     assert {path: stored[path].attrs["unit"] for path in units} == units
     assert stored["run"].attrs["format_version"] == 1
+
+
+BLOCK = """*NODE, NSET=ALL
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+*NSET, NSET=TEMPERATURE_FACE
+3, 4
+*ELEMENT, TYPE=CPE4, ELSET=ALL
+1, 1, 2, 3, 4
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.3
+*EXPANSION
+1.E-5
+*CONDUCTIVITY
+1.
+*SOLID SECTION, ELSET=ALL, MATERIAL=M
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+ALL, 20.
+*STEP
+*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
+0.5, 1.
+*BOUNDARY
+1, 1, 2
+2, 2
+2, 11, 11, 20.
+TEMPERATURE_FACE, 2, 2, 0.01
+TEMPERATURE_FACE, 11, 11, 80.
+*END STEP
+"""
+
+
+@pytest.mark.parametrize(("options", "unit", "shown"), [
+    ('LOAD=TEMPERATURE_FACE,2, UNITS="mm MPa W K"', "mm", "U_y of TEMPERATURE_FACE (mm)"),
+    ('LOAD=TEMPERATURE_FACE,11, UNITS="mm MPa W K"', "K", "Temperature of TEMPERATURE_FACE (K)"),
+    ('UNITS="mm MPa W K"', "time", "Time"),
+    ('LOAD=TEMPERATURE_FACE,2', "length", "U_y of TEMPERATURE_FACE"),
+    ('LOAD=TEMPERATURE_FACE,11', "temperature", "Temperature of TEMPERATURE_FACE"),
+])
+def test_the_load_axis_has_the_unit_of_what_it_follows(tmp_path, options, unit, shown):
+    deck = tmp_path / "block.inp"
+    deck.write_text(f"*OPTIONS, {options}\n{BLOCK}")
+    assert run(deck)[0] == 0
+    with Result(tmp_path / "block.vtkhdf") as result:
+        assert result.file["history/load"].attrs["unit"] == unit
+        assert result.units.load_label(result.load_label) == shown
 
 
 @pytest.mark.parametrize("step", [0, INCREMENTS - 1])

@@ -58,7 +58,7 @@ def loads(result):
     rises = bool(np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0))
     return {
         "label": result.load_label,
-        "unit": plain(result.units.load_unit(result.load_label)),
+        "unit": plain(result.units.load_unit()),
         "values": load.tolist(),
         "times": result.history["time"].tolist(),
         # A load that turns would draw loading and unloading over each other.

@@ -22,8 +22,9 @@ contains
       type(deck_context_type), intent(inout) :: context    !! numbers -> indexes; receives notes
       type(model_type), intent(inout) :: model             !! receives the couplings
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer :: k, n
+      integer :: errors, k, n
 
+      errors = report%error_count()
       n = count([(cards%keywords(k)%name == 'COUPLING', k=1, size(cards%keywords))])
       allocate (model%couplings(n))
       n = 0
@@ -46,6 +47,7 @@ contains
                '*KINEMATIC must directly follow *COUPLING')
          end if
       end do
+      if (report%error_count() > errors) call report%lose('equation')
    end subroutine build_couplings
 
    pure logical function is_kinematic(cards, k)

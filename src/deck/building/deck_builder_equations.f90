@@ -47,6 +47,7 @@ contains
                call read_terms(cards, card, data, context, model, report, terms)
                if (terms%valid) call check_terms(terms, model, report)
                if (terms%valid) call add_equations(terms, model, report)
+               if (.not. terms%valid) call report%lose('equation')
             end do
          end associate
       end do

@@ -64,16 +64,19 @@ contains
       character(:), allocatable :: kind
       type(place_type), allocatable :: named(:)
       integer, allocatable :: elements(:), keys(:), order(:)
-      integer :: element, set, face, j, i
+      integer :: element, set, face, j, i, errors
       logical :: valid
 
       kind = 'ELEMENT'
       surface%card = card%place%image
       call need_parameter(card, 'NAME', report, surface%name)
+      errors = report%error_count()
       call choose(card, 'TYPE', 'ELEMENT/NODE', report, kind)
-      if (kind == 'NODE') then
-         call report%error(parameter_place(card, 'TYPE'), 'TYPE=NODE is refused on *SURFACE: '// &
-            'contact needs the areas and normals of faces; name elements and faces S1 to S4')
+      if (kind == 'NODE') call report%error(parameter_place(card, 'TYPE'), 'TYPE=NODE is '// &
+         'refused on *SURFACE: contact needs the areas and normals of faces; name elements and '// &
+         'faces S1 to S4')
+      if (report%error_count() > errors) then
+         ! The data of another type have other fields.
          allocate(surface%faces(2, 0))
          return
       end if
@@ -87,7 +90,9 @@ contains
          valid = .true.
          call read_target(cards%data(j), 1, 'element', context%element_index, mesh%element_sets, &
             report, element, set, valid)
-         call read_face(cards%data(j), report, face, valid)
+         ! An unknown set may be one of lines, which has no face.
+         if (valid .or. has_field(cards%data(j), 2)) call read_face(cards%data(j), report, face, &
+            valid)
          call check_extra(cards%data(j), 2, 'element or set, face', report)
          if (.not. valid) cycle
          elements = [element]

@@ -65,6 +65,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer, allocatable :: nodes(:)
 
+      if (report%has_lost('equation') .or. report%has_lost('element')) return
       nodes = nodes_of(request, model)
       nodes = pack(nodes, .not. used(nodes))
       if (size(nodes) == 0) return

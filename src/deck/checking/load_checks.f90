@@ -95,6 +95,7 @@ contains
       logical, intent(in) :: used(0:)
       type(deck_report_type), intent(inout) :: report
 
+      if (report%has_lost('equation') .or. report%has_lost('element')) return
       if (request%set > 0) then
          if (all(used(model%mesh%node_sets(request%set)%members))) return
       else if (used(request%item)) then

@@ -46,6 +46,7 @@ module cards
    !> All cards of a deck.
    type :: cards_type
       character(:), allocatable :: path                      !! the deck as given
+      type(string_type), allocatable :: files(:)             !! it and what it includes, as found
       type(string_type), allocatable :: images(:)            !! lines, those of included files too
       type(keyword_card_type), allocatable :: keywords(:)    !! keyword cards
       type(data_card_type), allocatable :: data(:)           !! data cards

@@ -11,7 +11,7 @@ module deck_reader
    use utf8, only: first_byte
    implicit none
    private
-   public :: read_deck
+   public :: read_deck, files_of_deck
 
    integer, parameter :: deepest_include = 16   !! files that may include each other
    integer, parameter :: most_files = 1000      !! of a deck, each counted as often as it is read
@@ -28,19 +28,12 @@ contains
       type(cards_type), intent(out) :: cards
       type(deck_report_type), intent(out) :: report     !! what is wrong with it
       type(card_lines_type) :: open_lines
-      type(string_type), allocatable :: none(:)
       character(:), allocatable :: fault
       integer :: i
       logical :: exists
 
-      cards%path = path
-      report%path = path
       open_lines%width = max(default_width, width)
-      allocate(report%source%paths(0))
-      call open_lines%parameters%take_settings(settings, report)
-      allocate (none(0))
-      call read_file(path, path, none, open_lines, cards, report, fault)
-      call open_lines%finish(cards, report)
+      call read_all_lines(path, settings, open_lines, cards, report, fault)
       call trim_cards(cards)
       call flatten_cards(cards, report)
       call generate_cards(cards, report)
@@ -65,6 +58,39 @@ contains
       end do
    end subroutine read_deck
 
+   !> The files of which a deck consists, as seen from the current folder: it and those that it
+   !> includes, as far as they can be read. What is wrong with it is not told.
+   function files_of_deck(path, settings) result(files)
+      character(*), intent(in) :: path                  !! the deck as given, no pipe
+      type(string_type), intent(in) :: settings(:)      !! --set, each NAME=VALUE
+      type(string_type), allocatable :: files(:)        !! their paths
+      type(card_lines_type) :: open_lines
+      type(cards_type) :: cards
+      type(deck_report_type) :: report
+      character(:), allocatable :: fault
+
+      call read_all_lines(path, settings, open_lines, cards, report, fault)
+      call move_alloc(cards%files, files)
+   end function files_of_deck
+
+   !> Reads all lines of a deck into cards as they are written.
+   subroutine read_all_lines(path, settings, open_lines, cards, report, fault)
+      character(*), intent(in) :: path
+      type(string_type), intent(in) :: settings(:)
+      type(card_lines_type), intent(inout) :: open_lines
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable, intent(out) :: fault        ! why it is not read; else empty
+      type(string_type), allocatable :: none(:)
+
+      cards%path = path
+      report%path = path
+      allocate (report%source%paths(0), cards%files(0), none(0))
+      call open_lines%parameters%take_settings(settings, report)
+      call read_file(path, path, none, open_lines, cards, report, fault)
+      call open_lines%finish(cards, report)
+   end subroutine read_all_lines
+
    !> Reads one file, and the files that it includes where it includes them.
    recursive subroutine read_file(path, found, above, open_lines, cards, report, fault)
       character(*), intent(in) :: path                       !! file as given, for messages
@@ -83,6 +109,7 @@ contains
       if (len(fault) == 0) fault = length_fault(lines)
       if (len(fault) > 0) return
       call append(report%source%paths, path)
+      call append(cards%files, found)
       file = size(report%source%paths)
       open_files = above
       call append(open_files, plain(found))

@@ -1,10 +1,11 @@
 !> What is wrong with a deck: all its errors and warnings, with their places, printed in one go.
 module deck_report
+   use alike_messages, only: first_alike
    use card_echo, only: column_of, print_card
    use deck_source, only: deck_source_type, place_type
    use sorting, only: sort_order
    use messages, only: print_line
-   use text, only: append, string_type, to_text, to_upper
+   use text, only: append, counted, string_type, to_text, to_upper
    implicit none
    private
    public :: deck_report_type
@@ -12,6 +13,7 @@ module deck_report
    integer, parameter :: severity_error = 1     !! the deck cannot be solved
    integer, parameter :: severity_warning = 2   !! the deck can be solved, perhaps not as meant
    integer, parameter :: most_errors = 50       !! errors that are printed
+   integer, parameter :: most_alike = 3         !! lines with one mistake that are all told
 
    !> One error or warning.
    type :: diagnostic_type
@@ -22,6 +24,14 @@ module deck_report
       integer :: places = 1                  !! places of its group, of which the first is told
       logical :: explains = .false.          !! whether it explains what else is wrong on its card
    end type diagnostic_type
+
+   !> A message in the order of the deck. Where it is one mistake on many lines of a card, the first
+   !> of them tells it for all.
+   type :: told_type
+      integer :: index = 0        !! of the diagnostic
+      integer :: more_lines = 0   !! further lines with the mistake, which are not told
+      integer :: last = 0         !! image of the last of these
+   end type told_type
 
    !> The errors and warnings of one deck, and the card images to which they point.
    type :: deck_report_type
@@ -246,16 +256,15 @@ contains
    function warnings(self) result(lines)
       class(deck_report_type), intent(in) :: self
       type(string_type), allocatable :: lines(:)      !! one a warning
-      integer, allocatable :: order(:)
-      integer :: i, n
+      type(told_type), allocatable :: told(:)
+      integer :: i
 
-      order = order_of(self)
-      allocate(lines(self%count - self%errors))
-      n = 0
-      do i = 1, self%count
-         if (self%diagnostics(order(i))%severity /= severity_warning) cycle
-         n = n + 1
-         lines(n)%value = first_line(self, self%diagnostics(order(i)))
+      told = told_by(self)
+      told = pack(told, [(self%diagnostics(told(i)%index)%severity == severity_warning, &
+         i=1, size(told))])
+      allocate(lines(size(told)))
+      do i = 1, size(told)
+         lines(i)%value = first_line(self, told(i))
       end do
    end function warnings
 
@@ -280,54 +289,109 @@ contains
    subroutine print_report(self, unit)
       class(deck_report_type), intent(in) :: self
       integer, intent(in) :: unit                     !! open for formatted output
-      integer, allocatable :: order(:)
+      type(told_type), allocatable :: told(:)
       integer :: i, errors
 
-      order = order_of(self)
+      told = told_by(self)
       errors = 0
-      do i = 1, self%count
-         associate (diagnostic => self%diagnostics(order(i)))
-            if (diagnostic%severity == severity_error) errors = errors + 1
-            if (diagnostic%severity == severity_error .and. errors > most_errors) cycle
-            call print_diagnostic(self, diagnostic, unit)
+      do i = 1, size(told)
+         associate (severity => self%diagnostics(told(i)%index)%severity)
+            if (severity == severity_error) errors = errors + 1
+            if (severity == severity_error .and. errors > most_errors) cycle
+            call print_diagnostic(self, told(i), unit)
          end associate
       end do
       if (errors > most_errors) call print_line(unit, self%path//': error: '// &
          'errors that are not shown: '//to_text(errors - most_errors))
    end subroutine print_report
 
-   subroutine print_diagnostic(self, diagnostic, unit)
+   subroutine print_diagnostic(self, told, unit)
       class(deck_report_type), intent(in) :: self
-      type(diagnostic_type), intent(in) :: diagnostic
+      type(told_type), intent(in) :: told
       integer, intent(in) :: unit
 
-      call print_line(unit, first_line(self, diagnostic))
-      if (diagnostic%place%image == 0) return
-      associate (image => self%source%images(diagnostic%place%image)%value)
-         call print_card(unit, image, min(diagnostic%place%column, len(image) + 1))
+      call print_line(unit, first_line(self, told))
+      associate (place => self%diagnostics(told%index)%place)
+         if (place%image == 0) return
+         associate (image => self%source%images(place%image)%value)
+            call print_card(unit, image, min(place%column, len(image) + 1))
+         end associate
       end associate
    end subroutine print_diagnostic
 
    !> `path:line:column: severity: message`, or `path: severity: message` for the deck as a whole.
-   function first_line(self, diagnostic) result(line)
+   function first_line(self, told) result(line)
       class(deck_report_type), intent(in) :: self
-      type(diagnostic_type), intent(in) :: diagnostic
+      type(told_type), intent(in) :: told
       character(:), allocatable :: line
       character(:), allocatable :: severity
 
-      severity = 'error: '
-      if (diagnostic%severity == severity_warning) severity = 'warning: '
-      associate (place => diagnostic%place, source => self%source)
-         if (place%image == 0) then
-            line = self%path//': '//severity//diagnostic%message
-         else
-            line = source%address_of(place)//':'// &
-               to_text(column_of(source%images(place%image)%value, place%column))// &
-               ': '//severity//diagnostic%message
-         end if
+      associate (diagnostic => self%diagnostics(told%index), source => self%source)
+         severity = 'error: '
+         if (diagnostic%severity == severity_warning) severity = 'warning: '
+         associate (place => diagnostic%place)
+            if (place%image == 0) then
+               line = self%path//': '//severity//diagnostic%message
+            else
+               line = source%address_of(place)//':'// &
+                  to_text(column_of(source%images(place%image)%value, place%column))// &
+                  ': '//severity//diagnostic%message
+            end if
+         end associate
+         if (diagnostic%places > 1) line = line//' ('//to_text(diagnostic%places)//' such places)'
       end associate
-      if (diagnostic%places > 1) line = line//' ('//to_text(diagnostic%places)//' such places)'
+      if (told%more_lines > 0) line = line//' (likewise on '// &
+         counted(told%more_lines, 'more line')//', the last is '// &
+         self%source%words_of(place_type(told%last))//')'
    end function first_line
+
+   !> The messages in the order of the deck, one mistake on more than a few lines of a card once.
+   function told_by(self) result(told)
+      class(deck_report_type), intent(in) :: self
+      type(told_type), allocatable :: told(:)
+      type(string_type) :: messages(self%count)
+      integer :: first(self%count), card(self%count), cards(self%source%count), i, last
+
+      told = [(told_type(i), i=1, self%count)]
+      told%index = order_of(self)
+      cards = 0
+      last = 0
+      ! Fewer messages are all told.
+      do i = 1, merge(size(cards), 0, self%count > most_alike)
+         if (begins_card(self%source%images(i)%value)) last = i
+         cards(i) = last
+      end do
+      card = 0
+      do i = 1, self%count
+         associate (diagnostic => self%diagnostics(told(i)%index))
+            messages(i)%value = merge('e', 'w', diagnostic%severity == severity_error)// &
+               diagnostic%message
+            if (diagnostic%place%image > 0 .and. diagnostic%places == 1) card(i) = &
+               cards(diagnostic%place%image)
+         end associate
+      end do
+      first = first_alike(card, messages)
+      do i = 1, self%count
+         associate (leader => told(first(i)), image => self%diagnostics(told(i)%index)%place%image)
+            if (first(i) == i) then
+               leader%last = image
+            else if (leader%last /= image) then
+               leader%last = image
+               leader%more_lines = leader%more_lines + 1
+            end if
+         end associate
+      end do
+      where (told%more_lines < most_alike) told%more_lines = 0
+      told = pack(told, [(first(i) == i .or. told(first(i))%more_lines == 0, i=1, self%count)])
+   end function told_by
+
+   pure logical function begins_card(line)
+      character(*), intent(in) :: line
+      character(:), allocatable :: words
+
+      words = adjustl(line)
+      begins_card = index(words, '*') == 1 .and. index(words, '**') /= 1
+   end function begins_card
 
    !> The order of the diagnostics by image, then column, then as reported.
    function order_of(self) result(order)

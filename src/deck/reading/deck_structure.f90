@@ -120,6 +120,8 @@ contains
          call report%lose('surface interaction')
       case ('CONTACT PAIR')
          call report%lose('contact pair')
+      case ('EQUATION', 'COUPLING', 'KINEMATIC')
+         call report%lose('equation')
       case default
          return
       end select

@@ -20,7 +20,7 @@ module keyword_meanings
    end type parameter_meaning_type
 
    character(*), parameter :: radiation = &
-      'heat leaves faces by *FILM and *DFLUX; radiation is not modelled'
+      'heat leaves faces by *FILM and *DFLUX; only contact gaps radiate'
    character(*), parameter :: heat = &
       'heat is applied by *CFLUX at nodes, *DFLUX on faces and in bodies'
    character(*), parameter :: films = 'convection is *FILM, on element faces or on a *SURFACE'
@@ -46,7 +46,9 @@ module keyword_meanings
       'increments and period are the data of *STATIC, *HEAT TRANSFER or *COUPLED ...'
 
    !> The first word that a keyword has decides.
-   type(keyword_meaning_type), parameter :: of_keywords(53) = [ &
+   type(keyword_meaning_type), parameter :: of_keywords(54) = [ &
+      keyword_meaning_type('GAPRADIA', &
+      'gaps radiate by EMISSIVITY= of *GAP LAW, such as *GAP LAW, TYPE=GAS, EMISSIVITY=0.8'), &
       keyword_meaning_type('RADIA', radiation), &
       keyword_meaning_type('FLUX', heat), &
       keyword_meaning_type('CECHARGE', heat), &
