@@ -67,7 +67,12 @@ def equations():
             for card in ("*EQUATION", "2", f"{n}, {dof}, 1., {m}, {dof}, -1.")]
 
 
-@pytest.mark.parametrize("related", [PAIR, TIE, equations()], ids=["pair", "tie", "equations"])
+COUPLINGS = ["*NODE", "901, 2., 2.5", *(card for name, surface in (("A", "LOW.TOP"), ("B", "HIGH.BOTTOM")) for card in (
+    f"*COUPLING, REF NODE=901, SURFACE={surface}, CONSTRAINT NAME={name}", "*KINEMATIC", "1, 2"))]
+
+
+@pytest.mark.parametrize("related", [PAIR, TIE, equations(), COUPLINGS],
+                         ids=["pair", "tie", "equations", "couplings"])
 def test_bodies_that_are_related_may_touch(tmp_path, related):
     assert warnings(tmp_path, blocks(), related, HELD, STEP) == []
 
@@ -213,6 +218,15 @@ def test_errors_of_folded_elements_are_numbers(tmp_path, heat):
         errors = file["history/heat_flux_error" if heat else "history/stress_error"][:]
     assert np.all(errors > 0.0), errors
     assert np.all(errors < 1.0), errors
+
+
+def test_errors_of_an_element_that_is_pinched_are_numbers(tmp_path):
+    """Two opposite midside nodes at the centre: x = xi eta^2 + 1, y = eta + 1, so the Jacobian eta^2 is 0 on a row of
+    points at which errors are integrated."""
+    cards = element("CPE8R", SQUARE + [MIDDLES[0], (1.0, 1.0), MIDDLES[2], (1.0, 1.0)])
+    with h5py.File(solve(write(tmp_path / "deck.inp", cards))) as file:
+        errors = file["history/stress_error"][:]
+    assert np.all((errors >= 0.0) & (errors < 1.0)), errors
 
 
 CONSTANTS = "*PHYSICAL CONSTANTS, ABSOLUTE ZERO={}, STEFAN BOLTZMANN={}"
