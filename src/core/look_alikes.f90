@@ -47,7 +47,7 @@ contains
 
       words = ''
       do position = 1, len(string)
-         if (iachar(string(position:position)) < iachar(c2)) cycle
+         if (iachar(string(position:position)) < 128) cycle
          do i = 1, size(known)
             k = len_trim(known(i)%bytes)
             if (index(string(position:), known(i)%bytes(:k)) /= 1) cycle

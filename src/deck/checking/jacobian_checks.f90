@@ -6,7 +6,7 @@ module jacobian_checks
    use deck_source, only: place_type
    use element_kinds, only: element_corner_count, element_node_count, linear_kind, side_node_count
    use kinds, only: dp
-   use mesh, only: mesh_type, nodes_per_element
+   use mesh, only: mesh_type
    use misplaced_nodes, only: corner_areas, element_jacobians, find_misplaced, node_jacobians
    use node_orders, only: alternates, exchanged_midsides
    use text, only: others, to_text
@@ -16,10 +16,11 @@ module jacobian_checks
 
    integer, parameter :: most_searched = 50   !! elements for which a misplaced node is looked for
 
-   !> Negative Jacobian at a node, as a part of the largest at the nodes of its element, which is
-   !> warned of. At corners with quarter points and at corners in one place it is 0, but for the few
-   !> digits of coordinates.
+   !> Negative Jacobian at a node, as a part of the largest at the nodes of its element, and part of
+   !> a side past a quarter point, from which on an element is warned of. At quarter points and at
+   !> corners in one place the Jacobian is 0, but for the few digits of coordinates.
    real(dp), parameter :: folded = 1.0e-2_dp
+   real(dp), parameter :: quarter = 0.25_dp    !! nearest to a corner that a midside node may be
 
 contains
 
@@ -179,30 +180,51 @@ contains
       type(deck_context_type), intent(in) :: context       !! places for messages, order
       type(mesh_type), intent(in) :: mesh                  !! sound at the Gauss points
       type(deck_report_type), intent(inout) :: report      !! receives a warning
-      real(dp) :: jacobians(nodes_per_element)
-      integer :: e, first, kind, n, node, number_folded
+      integer :: at, e, first, kind, n, node, number_folded
 
       number_folded = 0
       do e = 1, size(mesh%element_number)
          kind = mesh%element_kind(e)
          if (context%order == 1) kind = linear_kind(kind)
          n = element_node_count(kind)
-         if (is_straight(mesh%coordinates(:, mesh%element_nodes(:n, e)), &
-            element_corner_count(kind))) cycle
-         jacobians(:n) = node_jacobians(kind, mesh%coordinates(:, mesh%element_nodes(:n, e)))
-         if (minval(jacobians(:n)) >= -folded*maxval(jacobians(:n))) cycle
+         at = folded_node(kind, mesh%coordinates(:, mesh%element_nodes(:n, e)))
+         if (at == 0) cycle
          number_folded = number_folded + 1
          if (number_folded > 1) cycle
          first = e
-         node = mesh%node_number(mesh%element_nodes(minloc(jacobians(:n), dim=1), e))
+         node = mesh%node_number(mesh%element_nodes(at, e))
       end do
       if (number_folded == 0) return
       call report%warning(context%element_place(first), 'element '// &
-         to_text(mesh%element_number(first))//' is folded: its Jacobian is negative at node '// &
-         to_text(node)//', and fields near it are wrong; move the midside nodes towards the '// &
-         'middle of their sides and make its corners convex'// &
+         to_text(mesh%element_number(first))//' is folded at node '//to_text(node)// &
+         ': its Jacobian is negative near it, where fields are wrong; move the midside nodes '// &
+         'towards the middle of their sides and make its corners convex'// &
          others(number_folded, '; folded elements: '))
    end subroutine check_folds
+
+   !> The node at which an element is folded, as its position in the element; 0 where there is none.
+   !> At a corner to which both its sides return the Jacobian is positive again.
+   pure integer function folded_node(kind, coordinates)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: coordinates(:, :)            ! (2, nodes) [length]
+      real(dp) :: jacobians(size(coordinates, 2)), part
+      integer :: corners, i
+
+      folded_node = 0
+      corners = element_corner_count(kind)
+      if (is_straight(coordinates, corners)) return
+      jacobians = node_jacobians(kind, coordinates)
+      if (minval(jacobians) < -folded*maxval(jacobians)) folded_node = minloc(jacobians, dim=1)
+      if (folded_node > 0 .or. size(coordinates, 2) == corners) return
+      do i = 1, corners
+         associate (a => coordinates(:, i), b => coordinates(:, mod(i, corners) + 1))
+            if (all(abs(b - a) <= 0.0_dp)) cycle
+            part = dot_product(coordinates(:, corners + i) - a, b - a)/sum((b - a)**2)
+         end associate
+         if (part < quarter - folded) folded_node = i
+         if (part > 1 - quarter + folded) folded_node = mod(i, corners) + 1
+      end do
+   end function folded_node
 
    !> Whether an element is convex and its midside nodes are in the middle of its sides, so that its
    !> Jacobian is positive everywhere.

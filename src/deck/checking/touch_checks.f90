@@ -168,14 +168,14 @@ contains
       integer, intent(in) :: key(3)
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: message, node, place
-      integer :: i, places
+      integer :: before, i, places
 
       ! Two nodes at one place are both found.
       places = 0
+      before = 0
       do i = 1, size(touches)
-         if (i > 1) then
-            if (touches(i)%node == touches(i - 1)%node) cycle
-         end if
+         if (touches(i)%node == before) cycle
+         before = touches(i)%node
          if (touches(i)%partner == 0 .or. touches(i)%partner > touches(i)%node) places = places + 1
       end do
       node = to_text(model%mesh%node_number(touches(1)%node))
