@@ -2,7 +2,7 @@
 """Write the meshes that the examples include, beside this file: NAME.mesh for NAME.inp.
 
 A mesh is made of blocks of eight-node elements. A block's node set and element set have its name; its sides are the
-node sets and the surfaces NAME.LEFT, NAME.RIGHT, NAME.BOTTOM and NAME.TOP.
+node sets NAME.LEFT, NAME.RIGHT, NAME.BOTTOM and NAME.TOP. Those that the deck pairs or loads are surfaces, too.
 """
 from itertools import pairwise
 from pathlib import Path
@@ -22,9 +22,10 @@ def numbers(values, width=12):
     return [", ".join(map(str, values[i:i + width])) for i in range(0, len(values), width)]
 
 
-def block(name, xs, ys, first, kind, cut=None):
-    """Cards of a block with corner nodes at xs and ys; nodes and elements are numbered from `first`. `cut=(y, tip)`
-    parts the block along y from its left side to x = tip; the faces are the surfaces NAME.LOWER and NAME.UPPER."""
+def block(name, xs, ys, first, kind, faces, cut=None):
+    """Cards of a block with corner nodes at xs and ys; nodes and elements are numbered from `first`. The sides
+    `faces`, such as "TOP RIGHT", are surfaces. `cut=(y, tip)` parts the block along y from its left side to x = tip;
+    the faces are the surfaces NAME.LOWER and NAME.UPPER."""
     number, points, elements, where = {}, {}, [], {}
 
     def node(x, y, above):
@@ -50,7 +51,8 @@ def block(name, xs, ys, first, kind, cut=None):
     for side, axis, value, place in (("LEFT", 0, xs[0], 0), ("RIGHT", 0, xs[-1], 1),
                                      ("BOTTOM", 1, ys[0], 2), ("TOP", 1, ys[-1], 3)):
         cards += [f"*NSET, NSET={name}.{side}"] + numbers([n for n, p in points.items() if p[axis] == value])
-        cards += surface(f"{name}.{side}", [n for n, box in where.items() if box[place] == value], FACES[side])
+        if side in faces:
+            cards += surface(f"{name}.{side}", [n for n, box in where.items() if box[place] == value], FACES[side])
     if cut:
         at_cut = {n: box for n, box in where.items() if box[1] <= cut[1] + 1e-9}
         cards += surface(f"{name}.LOWER", [n for n, box in at_cut.items() if box[3] == cut[0]], 3)
@@ -79,8 +81,8 @@ def side_part(name, xs, ys, first, start, end):
 def press_fit():
     """Two rings, 20 to 40 and 40 to 60, 10 high."""
     heights = spaced(0.0, 10.0, 2)
-    return block("HUB", spaced(20.0, 40.0, 8, 1.5), heights, 1, "CAX8") + block(
-        "RIM", spaced(40.0, 60.0, 8, 1.3), heights, 1001, "CAX8")
+    return block("HUB", spaced(20.0, 40.0, 8, 1.5), heights, 1, "CAX8", "RIGHT") + block(
+        "RIM", spaced(40.0, 60.0, 8, 1.3), heights, 1001, "CAX8", "LEFT")
 
 
 def fuel_pellet():
@@ -89,10 +91,10 @@ def fuel_pellet():
     for k in range(3):
         rows = [height * k + v for v in [0.0, 0.7, 2.0, 3.5, 5.0, 6.5, 8.0, 9.3, 10.0]]
         name, first = f"PELLET{k + 1}", 1000 * k + 1
-        cards += block(name, radii, rows, first, "CAX8")
+        cards += block(name, radii, rows, first, "CAX8", "RIGHT TOP BOTTOM" if k else "RIGHT TOP")
     rows = sorted({height * k + v for k in range(3) for v in [0.0, 0.7, 2.0, 3.5, 5.0, 6.5, 8.0, 9.3, 10.0]})
     wall = spaced(4.12, 4.70, 2)
-    cards += block("TUBE", wall, rows, 4001, "CAX8")
+    cards += block("TUBE", wall, rows, 4001, "CAX8", "")
     for k in range(3):
         cards += side_part(f"BORE{k + 1}", wall, rows, 4001, height * k, height * (k + 1))
     return cards
@@ -103,8 +105,8 @@ def brake_pad():
     across = spaced(-20.0, 20.0, 16)
     disc_xs = spaced(-40.0, -20.0, 4)[:-1] + across + spaced(20.0, 40.0, 4)[1:]
     disc_ys = spaced(-10.0, 0.0, 4, 0.5)
-    cards = block("PAD", across, spaced(0.0, 12.0, 5, 2.0), 1, "CPE8")
-    cards += block("DISC", disc_xs, disc_ys, 1001, "CPE8")
+    cards = block("PAD", across, spaced(0.0, 12.0, 5, 2.0), 1, "CPE8", "BOTTOM TOP")
+    cards += block("DISC", disc_xs, disc_ys, 1001, "CPE8", "")
     return cards + part("TRACK", disc_xs, disc_ys, 1001, -20.0, 20.0)
 
 
@@ -113,21 +115,22 @@ def cracked_plate():
     xs = spaced(0.0, 10.0, 8, 0.2) + spaced(10.0, 40.0, 9, 8.0)[1:]
     half = spaced(0.0, 80.0, 11, 30.0)
     ys = [-y for y in reversed(half)] + half[1:]
-    return block("PLATE", xs, ys, 1, "CPS8", cut=(0.0, 10.0))
+    return block("PLATE", xs, ys, 1, "CPS8", "TOP", cut=(0.0, 10.0))
 
 
 def turbine_joint():
     """A blade's foot 20 wide, a shim and a disc of equal width, one on the other."""
     xs = spaced(0.0, 20.0, 10)
-    return (block("FOOT", xs, spaced(2.0, 14.0, 6, 3.0), 1, "CPE8")
-            + block("SHIM", xs, spaced(0.0, 2.0, 2), 1001, "CPE8")
-            + block("DISC", xs, spaced(-15.0, 0.0, 6, 1 / 3), 2001, "CPE8"))
+    return (block("FOOT", xs, spaced(2.0, 14.0, 6, 3.0), 1, "CPE8", "BOTTOM TOP")
+            + block("SHIM", xs, spaced(0.0, 2.0, 2), 1001, "CPE8", "BOTTOM TOP")
+            + block("DISC", xs, spaced(-15.0, 0.0, 6, 1 / 3), 2001, "CPE8", "TOP"))
 
 
 def thermal_cycling():
     """A strip 40 long and 1 high on a base of equal length and 4 high."""
     xs = spaced(0.0, 40.0, 40)
-    return block("STRIP", xs, [0.0, 1.0], 1, "CPS8") + block("BASE", xs, spaced(-4.0, 0.0, 2, 0.5), 1001, "CPS8")
+    return block("STRIP", xs, [0.0, 1.0], 1, "CPS8", "BOTTOM TOP") + block(
+        "BASE", xs, spaced(-4.0, 0.0, 2, 0.5), 1001, "CPS8", "TOP")
 
 
 def main():

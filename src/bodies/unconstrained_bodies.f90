@@ -1,6 +1,7 @@
 !> Bodies that supports and contact points do not constrain, and bodies whose temperature nothing
 !> determines, in words: for a whole step, whatever its contact does, and at an instant of it.
 module unconstrained_bodies
+   use bodies, only: body_name
    use conductance_laws, only: law_none
    use constraint_joints, only: joints_of
    use contact_states, only: contact_open, contact_slip, contact_stick
@@ -14,7 +15,7 @@ module unconstrained_bodies
    implicit none
    private
    public :: unconstrained_in_step, unconstrained_now
-   public :: undetermined_in_step, undetermined_now, undetermined_beside, body_name
+   public :: undetermined_in_step, undetermined_now, undetermined_beside
 
    real(dp), parameter :: negligible = 1.0e-6_dp    !! part of a body in a free temperature
 
@@ -335,28 +336,5 @@ contains
          name = 'node '//to_text(model%mesh%node_number(motion%node))//' of an equation'
       end if
    end function mover
-
-   !> How a body is named to the user, such as 'body 2 (of STEEL, first node 38)'.
-   pure function body_name(model, body) result(name)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: body                  !! index of the body
-      character(:), allocatable :: name
-      character(:), allocatable :: materials
-      integer :: m
-
-      associate (mesh => model%mesh)
-         materials = ''
-         do m = 1, size(model%materials)
-            if (.not. any(mesh%element_body == body .and. &
-               model%sections(mesh%element_section)%material == m)) cycle
-            if (.not. allocated(model%materials(m)%name)) cycle
-            materials = materials//' and '//model%materials(m)%name
-         end do
-         name = 'body '//to_text(body)//' ('
-         if (len(materials) > 0) name = name//'of '//materials(6:)//', '
-         name = name//'first node '//to_text(minval(mesh%node_number, mask= &
-            mesh%node_body == body))//')'
-      end associate
-   end function body_name
 
 end module unconstrained_bodies

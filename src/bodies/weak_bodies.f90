@@ -1,10 +1,10 @@
 !> Why the stiffness of a body is singular although its rigid motions are held, in words.
 module weak_bodies
+   use bodies, only: body_name
    use element_kinds, only: axisymmetric, quad8_reduced
    use kinds, only: dp
    use model, only: model_type
    use text, only: to_text
-   use unconstrained_bodies, only: body_name
    implicit none
    private
    public :: weakness_of_bodies

@@ -119,7 +119,9 @@ contains
          along_xi = matmul(coordinates, rule%slope_xi(g, :rule%nodes))
          along_eta = matmul(coordinates, rule%slope_eta(g, :rule%nodes))
          jacobian = along_xi(1)*along_eta(2) - along_xi(2)*along_eta(1)
-         inverse(:, g) = [along_eta(2), -along_xi(2), -along_eta(1), along_xi(1)]/jacobian
+         ! A point without volume, in the fold of an element, adds nothing to a sum.
+         if (abs(jacobian) > 0.0_dp) inverse(:, g) = [along_eta(2), -along_xi(2), -along_eta(1), &
+            along_xi(1)]/jacobian
          radius = dot_product(rule%shape(g, :rule%nodes), coordinates(1, :))
          volume(g) = rule%weight(g)*jacobian*area_factor(radius, thickness, is_axisymmetric)
       end do

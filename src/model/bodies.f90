@@ -2,9 +2,11 @@
 module bodies
    use element_kinds, only: axisymmetric, element_node_count
    use mesh, only: mesh_type
+   use model, only: model_type
+   use text, only: to_text
    implicit none
    private
-   public :: find_bodies, bodies_on_axis
+   public :: find_bodies, bodies_on_axis, body_name
 
 contains
 
@@ -49,6 +51,29 @@ contains
       on_axis = .false.
       on_axis(mesh%element_body) = mesh%element_plane == axisymmetric
    end function bodies_on_axis
+
+   !> How a body is named to the user, such as 'body 2 (of STEEL, first node 38)'.
+   pure function body_name(model, body) result(name)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: body
+      character(:), allocatable :: name
+      character(:), allocatable :: materials
+      integer :: m
+
+      associate (mesh => model%mesh)
+         materials = ''
+         do m = 1, size(model%materials)
+            if (.not. any(mesh%element_body == body .and. &
+               model%sections(mesh%element_section)%material == m)) cycle
+            if (.not. allocated(model%materials(m)%name)) cycle
+            materials = materials//' and '//model%materials(m)%name
+         end do
+         name = 'body '//to_text(body)//' ('
+         if (len(materials) > 0) name = name//'of '//materials(6:)//', '
+         name = name//'first node '//to_text(minval(mesh%node_number, mask= &
+            mesh%node_body == body))//')'
+      end associate
+   end function body_name
 
    !> Every thing a group of its own.
    pure function separate_groups(things) result(parent)

@@ -5,7 +5,8 @@ module interface_reports
    use contact_points, only: contact_points_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use element_kinds, only: axisymmetric
+   use contact_definitions, only: contact_definition_type
+   use element_kinds, only: axisymmetric, plane_stress
    use errors, only: error_type
    use interface_warnings, only: clearance_warning, offset_warning, overlap_warning
    use kinds, only: dp
@@ -90,6 +91,8 @@ contains
             end if
             warning = distance_warning(model%mesh, model%ties(i), ties(i))
             if (len(warning) > 0) call report%warning(card, warning)
+            warning = plane_warning(model, model%ties(i)%faces)
+            if (len(warning) > 0) call report%warning(card, warning)
          end associate
          call append(notes, tie_words(model%mesh, model%ties(i), ties(i)))
       end do
@@ -127,6 +130,7 @@ contains
          call warn(overlap_warning(model%mesh, points))
       end if
       call warn(thickness_warning(model, i))
+      call warn(plane_warning(model, model%contacts(i)))
    contains
       subroutine warn(message)
          character(*), intent(in) :: message
@@ -161,6 +165,29 @@ contains
             to_text(mesh%element_number(elements(1)))
       end associate
    end function thickness_warning
+
+   !> Plane stress and plane strain meet where one body may be free to become thicker and the other
+   !> is not; empty where all elements at the interface are of one plane.
+   pure function plane_warning(model, definition) result(warning)
+      type(model_type), intent(in) :: model
+      type(contact_definition_type), intent(in) :: definition
+      character(:), allocatable :: warning
+      integer, allocatable :: elements(:)
+      logical, allocatable :: is_stress(:)
+
+      warning = ''
+      associate (mesh => model%mesh)
+         elements = [mesh%surfaces(definition%slave)%faces(1, :), &
+            mesh%surfaces(definition%master)%faces(1, :)]
+         is_stress = mesh%element_plane(elements) == plane_stress
+         if (all(is_stress .eqv. is_stress(1))) return
+         warning = definition%title()//': element '//to_text(mesh%element_number(elements( &
+            findloc(is_stress, .true., dim=1))))//' is in plane stress and element '// &
+            to_text(mesh%element_number(elements(findloc(is_stress, .false., dim=1))))// &
+            ' in plane strain: one may become thicker where the other may not; give both '// &
+            'bodies elements of one kind, or *OPTIONS, PLANE='
+      end associate
+   end function plane_warning
 
    !> Reports every check at an arc length beyond the end of its interface.
    subroutine check_arc_lengths(model, interfaces, report)

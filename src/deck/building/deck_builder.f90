@@ -32,14 +32,17 @@ module deck_builder
    use deck_structure, only: card_count, check_structure
    use errors, only: error_type
    use heat_checks, only: check_heat_paths, check_starts
+   use jacobian_checks, only: check_folds
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
    use load_checks, only: first_heat
    use kinds, only: dp
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use quantity_types, only: quantity_type
+   use radiation_checks, only: check_constants
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
    use text, only: to_text
+   use touch_checks, only: check_touches
    use usage_checks, only: check_usage
    use variations, only: add_contact_levels, apply_variation, variation_type
    implicit none
@@ -140,6 +143,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: deck_nodes
 
+      call find_bodies(model%mesh)
+      call check_folds(context, model%mesh, report)
+      call check_touches(context, model, report)
       call drop_idle_heat(context, model, report)
       call check_heat_quantities(context%verifiable, model, report)
       call apply_loads(context, model, report)
@@ -157,6 +163,7 @@ contains
       if (.not. report%has_errors()) then
          call check_usage(cards, context, model, report)
          call check_heat_paths(cards, model, report)
+         call check_constants(cards, model, report)
       end if
       call find_bodies(model%mesh)
       if (model%solver == solver_by_size) call choose_solver(context, model)

@@ -14,7 +14,7 @@ module heat_checks
    use text, only: counted, to_text
    implicit none
    private
-   public :: check_heat_paths, check_starts
+   public :: check_heat_paths, check_starts, temperature_range
 
    real(dp), parameter :: small_strain = 0.1_dp   !! largest for which small strains hold
 
@@ -110,10 +110,11 @@ contains
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
-      real(dp) :: strain, range
+      real(dp) :: ends(2), range, strain
       integer :: k, m
 
-      range = temperature_range(model)
+      ends = temperature_range(model)
+      range = ends(2) - ends(1)
       m = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name == 'MATERIAL') m = m + 1
@@ -129,11 +130,11 @@ contains
       end do
    end subroutine check_expansion
 
-   !> Largest difference between temperatures that the deck gives: initial ones, prescribed ones and
-   !> sinks of films, with the largest factors of their amplitudes.
-   pure real(dp) function temperature_range(model)
-      type(model_type), intent(in) :: model
-      real(dp) :: ends(2)
+   !> Least and largest of the temperatures that the deck gives: initial ones, prescribed ones and
+   !> sinks of films, with the extreme factors of their amplitudes.
+   pure function temperature_range(model) result(ends)
+      type(model_type), intent(in) :: model      !! with its loads and supports
+      real(dp) :: ends(2)                        !! [temperature]
       integer :: i, s
 
       ends = [minval(model%initial_temperature), maxval(model%initial_temperature)]
@@ -149,7 +150,6 @@ contains
             end do
          end associate
       end do
-      temperature_range = ends(2) - ends(1)
    end function temperature_range
 
    !> Widens a range to a value; where it follows an amplitude, to all values that this gives it.

@@ -4,17 +4,23 @@ module jacobian_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use element_kinds, only: element_corner_count, element_node_count, side_node_count
+   use element_kinds, only: element_corner_count, element_node_count, linear_kind, side_node_count
    use kinds, only: dp
    use mesh, only: mesh_type
-   use misplaced_nodes, only: corner_areas, element_jacobians, find_misplaced
+   use misplaced_nodes, only: corner_areas, element_jacobians, find_misplaced, node_jacobians
    use node_orders, only: alternates, exchanged_midsides
    use text, only: others, to_text
    implicit none
    private
-   public :: check_jacobians, check_corners
+   public :: check_jacobians, check_corners, check_folds
 
    integer, parameter :: most_searched = 50   !! elements for which a misplaced node is looked for
+
+   !> Negative Jacobian at a node, as a part of the largest at the nodes of its element, and part of
+   !> a side past a quarter point, from which on an element is warned of. At quarter points and at
+   !> corners in one place the Jacobian is 0, but for the few digits of coordinates.
+   real(dp), parameter :: folded = 1.0e-2_dp
+   real(dp), parameter :: quarter = 0.25_dp    !! nearest to a corner that a midside node may be
 
 contains
 
@@ -167,6 +173,82 @@ contains
          end do
       end do
    end function is_crossed
+
+   !> Warns of elements that are folded at a node, although their Jacobian is positive at all Gauss
+   !> points: their map is not one to one.
+   subroutine check_folds(context, mesh, report)
+      type(deck_context_type), intent(in) :: context       !! places for messages, order
+      type(mesh_type), intent(in) :: mesh                  !! sound at the Gauss points
+      type(deck_report_type), intent(inout) :: report      !! receives a warning
+      integer :: at, e, first, kind, n, node, number_folded
+
+      number_folded = 0
+      do e = 1, size(mesh%element_number)
+         kind = mesh%element_kind(e)
+         if (context%order == 1) kind = linear_kind(kind)
+         n = element_node_count(kind)
+         at = folded_node(kind, mesh%coordinates(:, mesh%element_nodes(:n, e)))
+         if (at == 0) cycle
+         number_folded = number_folded + 1
+         if (number_folded > 1) cycle
+         first = e
+         node = mesh%node_number(mesh%element_nodes(at, e))
+      end do
+      if (number_folded == 0) return
+      call report%warning(context%element_place(first), 'element '// &
+         to_text(mesh%element_number(first))//' is folded at node '//to_text(node)// &
+         ': its Jacobian is negative near it, where fields are wrong; move the midside nodes '// &
+         'towards the middle of their sides and make its corners convex'// &
+         others(number_folded, '; folded elements: '))
+   end subroutine check_folds
+
+   !> The node at which an element is folded, as its position in the element; 0 where there is none.
+   !> At a corner to which both its sides return the Jacobian is positive again.
+   pure integer function folded_node(kind, coordinates)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: coordinates(:, :)            ! (2, nodes) [length]
+      real(dp) :: jacobians(size(coordinates, 2)), part
+      integer :: corners, i
+
+      folded_node = 0
+      corners = element_corner_count(kind)
+      if (is_straight(coordinates, corners)) return
+      jacobians = node_jacobians(kind, coordinates)
+      if (minval(jacobians) < -folded*maxval(jacobians)) folded_node = minloc(jacobians, dim=1)
+      if (folded_node > 0 .or. size(coordinates, 2) == corners) return
+      do i = 1, corners
+         associate (a => coordinates(:, i), b => coordinates(:, mod(i, corners) + 1))
+            if (all(abs(b - a) <= 0.0_dp)) cycle
+            part = dot_product(coordinates(:, corners + i) - a, b - a)/sum((b - a)**2)
+         end associate
+         if (part < quarter - folded) folded_node = i
+         if (part > 1 - quarter + folded) folded_node = mod(i, corners) + 1
+      end do
+   end function folded_node
+
+   !> Whether an element is convex and its midside nodes are in the middle of its sides, so that its
+   !> Jacobian is positive everywhere.
+   pure logical function is_straight(coordinates, corners)
+      real(dp), intent(in) :: coordinates(:, :)            ! (2, nodes) [length]
+      integer, intent(in) :: corners
+      real(dp), parameter :: central = 1.0e-3_dp           ! of the side
+      real(dp), dimension(2) :: ahead, back
+      integer :: i, next
+
+      is_straight = .false.
+      back = coordinates(:, 1) - coordinates(:, corners)
+      do i = 1, corners
+         next = mod(i, corners) + 1
+         ahead = coordinates(:, next) - coordinates(:, i)
+         if (back(1)*ahead(2) - back(2)*ahead(1) <= 0.0_dp) return
+         if (size(coordinates, 2) > corners) then
+            if (sum((coordinates(:, corners + i) - coordinates(:, i) - 0.5_dp*ahead)**2) > &
+               central**2*sum(ahead**2)) return
+         end if
+         back = ahead
+      end do
+      is_straight = .true.
+   end function is_straight
 
    !> The same of elements that lost their midside nodes; the first that is not sound is named.
    subroutine check_corners(place, mesh, report)

@@ -7,10 +7,10 @@ module misplaced_nodes
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
    use quadrature, only: integration_rule, most_points, point_count
-   use shape_functions, only: element_gradients
+   use shape_functions, only: element_gradients, node_position
    implicit none
    private
-   public :: find_misplaced, element_jacobians, corner_areas
+   public :: find_misplaced, element_jacobians, node_jacobians, corner_areas
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! part of the square searched that is no position
 
@@ -181,6 +181,20 @@ contains
          call element_gradients(kind, coordinates, points(:, g), gradients, jacobians(g))
       end do
    end function element_jacobians
+
+   !> Jacobians of an element at its nodes.
+   pure function node_jacobians(kind, coordinates) result(jacobians)
+      integer, intent(in) :: kind                         !! quad8, ... of element_kinds
+      real(dp), intent(in) :: coordinates(:, :)           !! (2, nodes) [length]
+      real(dp) :: jacobians(element_node_count(kind))     !! [length^2]
+      real(dp) :: at(2, size(jacobians)), gradients(2, size(jacobians))
+      integer :: q
+
+      at = node_position(kind)
+      do q = 1, size(jacobians)
+         call element_gradients(kind, coordinates, at(:, q), gradients, jacobians(q))
+      end do
+   end function node_jacobians
 
    !> Twice the area of the triangle that each corner forms with its neighbours, positive where it
    !> turns anticlockwise.

@@ -38,20 +38,23 @@ contains
       call check_amplitudes(cards, context%loads, model, told, report)
    end subroutine check_usage
 
-   !> Warns once of the cards of a keyword whose names no card refers to. Meshes and materials that
-   !> a deck includes may well hold more than it needs.
+   !> Warns once of the cards of a keyword whose names no card refers to. A library that a deck
+   !> includes may well have more materials, interactions and amplitudes than it needs; a surface
+   !> without use may be a pair that was forgotten.
    subroutine check_names(cards, keyword, noun, report)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: keyword, noun
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: name, names
       integer :: count, first, k
+      logical :: from_library
 
+      from_library = keyword /= 'SURFACE'
       names = ''
       count = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= keyword) cycle
-         if (report%source%file(cards%keywords(k)%place%image) /= 1) cycle
+         if (from_library .and. report%source%file(cards%keywords(k)%place%image) > 1) cycle
          name = to_upper(parameter_text(cards%keywords(k), 'NAME'))
          if (is_used(cards, keyword, name)) cycle
          count = count + 1

@@ -13,6 +13,7 @@ module card_lines
    use keyword_cards, only: is_parameter, make_keyword_card
    use keyword_slips, only: lacks_star, mend_commas
    use keywords, only: built, known_keywords
+   use look_alikes, only: find_look_alike
    use text, only: read_integer, to_text, to_upper
    implicit none
    private
@@ -60,6 +61,8 @@ contains
             'comments of other programs')
          return
       end if
+      if (is_keyword(line) .or. .not. (title .or. self%skips_data)) call suspect_look_alike(line, &
+         image, report)
       if (is_keyword(line) .or. lacks_star(line, title, cards)) then
          call self%finish(cards, report)
          call split_fields(line, image, report, fields)
@@ -89,6 +92,21 @@ contains
       end if
       call take_data_line(self, line, image, cards, report)
    end subroutine take_line
+
+   !> Warns of the first character of a line that looks like another one. The origin of an expected
+   !> value is any text.
+   subroutine suspect_look_alike(line, image, report)
+      character(*), intent(in) :: line
+      integer, intent(in) :: image
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: words
+      integer :: position
+
+      call find_look_alike(line, position, words)
+      if (position == 0) return
+      if (index(to_upper(line(:position)), 'SOURCE=') > 0) return
+      call report%suspect(place_type(image, position), 'this character is '//words)
+   end subroutine suspect_look_alike
 
    !> Whether a line behind an element that goes on is the next element: the first lacks its last
    !> nodes, and the comma at its end is a slip.

@@ -1,0 +1,226 @@
+!> Faces that touch though nothing relates them: of two bodies without a pair or a tie, of one body
+!> along a seam, and of elements that do not share whole sides.
+module touch_checks
+   use bodies, only: body_name
+   use contact_definitions, only: contact_definition_type
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use element_kinds, only: side_nodes
+   use element_sides, only: element_sides_type
+   use equations, only: equation_nodes
+   use mesh, only: mesh_type
+   use model, only: model_type
+   use sorting, only: number_index_type, sort_order
+   use text, only: counted, others, to_text
+   use touching_sides, only: find_touches, touch_type
+   implicit none
+   private
+   public :: check_touches
+
+   integer, parameter :: face_hangs = 1, face_meets = 2   !! kinds of touches
+
+contains
+
+   !> Warns of faces that touch and are not related, once for two bodies, for the seams of a body
+   !> and for hanging nodes.
+   subroutine check_touches(context, model, report)
+      type(deck_context_type), intent(in) :: context      !! places for messages
+      type(model_type), intent(in) :: model               !! not refined, its bodies known
+      type(deck_report_type), intent(inout) :: report     !! receives warnings
+      type(element_sides_type) :: sides
+      type(touch_type), allocatable :: touches(:)
+      integer, allocatable :: order(:), key(:, :)         ! (3, touches) as keys_of
+      integer :: first, k, last
+
+      call find_touches(model%mesh, sides, touches)
+      if (size(touches) == 0) return
+      call drop_related(model, sides, touches)
+      key = keys_of(model%mesh, sides, touches)
+      order = sort_order(touches%node)
+      do k = 1, 3
+         order = order(sort_order(key(k, order)))
+      end do
+      first = 1
+      do while (first <= size(order))
+         last = first
+         do while (last < size(order))
+            if (any(key(:, order(last + 1)) /= key(:, order(first)))) exit
+            last = last + 1
+         end do
+         call warn(context, model, sides, touches(order(first:last)), key(:, order(first)), report)
+         first = last + 1
+      end do
+   end subroutine check_touches
+
+   !> Drops the touches of faces that a *CONTACT PAIR, *TIE, *EQUATION or *COUPLING relates.
+   subroutine drop_related(model, sides, touches)
+      type(model_type), intent(in) :: model
+      type(element_sides_type), intent(in) :: sides
+      type(touch_type), allocatable, intent(inout) :: touches(:)
+      type(number_index_type) :: of_surface(size(model%mesh%surfaces))   ! sides of each
+      type(contact_definition_type), allocatable :: pairs(:)
+      logical :: constrained(size(model%mesh%node_number)), related(size(touches))
+      integer :: i, k
+
+      allocate (pairs(size(model%contacts) + size(model%ties)))
+      do i = 1, size(model%contacts)
+         pairs(i) = model%contacts(i)
+      end do
+      do i = 1, size(model%ties)
+         pairs(size(model%contacts) + i) = model%ties(i)%faces
+      end do
+      do k = 1, size(of_surface)
+         if (any(pairs%slave == k) .or. any(pairs%master == k)) call of_surface(k)%build( &
+            sides_of(model%mesh, sides, k))
+      end do
+      constrained = constrained_of(model)
+      do i = 1, size(touches)
+         related(i) = is_paired(touches(i)%side, touches(i)%other) .or. &
+            (constrained(touches(i)%node) .and. &
+            any(constrained(pack(sides%ends(:, touches(i)%side), &
+            sides%ends(:, touches(i)%side) > 0))))
+      end do
+      touches = pack(touches, .not. related)
+   contains
+      logical function is_paired(one, other)
+         integer, intent(in) :: one, other
+         integer :: p
+
+         is_paired = .true.
+         do p = 1, size(pairs)
+            associate (slave => of_surface(pairs(p)%slave), master => of_surface(pairs(p)%master))
+               if (slave%find(one) > 0 .and. master%find(other) > 0) return
+               if (slave%find(other) > 0 .and. master%find(one) > 0) return
+            end associate
+         end do
+         is_paired = .false.
+      end function is_paired
+   end subroutine drop_related
+
+   !> The sides of a surface.
+   pure function sides_of(mesh, sides, surface) result(list)
+      type(mesh_type), intent(in) :: mesh
+      type(element_sides_type), intent(in) :: sides
+      integer, intent(in) :: surface
+      integer, allocatable :: list(:)
+      integer :: f
+
+      associate (faces => mesh%surfaces(surface)%faces)
+         list = [(sides%of_element(faces(2, f), faces(1, f)), f=1, size(faces, 2))]
+      end associate
+   end function sides_of
+
+   !> Nodes of equations and of faces that follow a reference node.
+   function constrained_of(model) result(constrained)
+      type(model_type), intent(in) :: model
+      logical :: constrained(size(model%mesh%node_number))
+      integer :: f, i
+
+      constrained = equation_nodes(model%equations, size(constrained))
+      do i = 1, size(model%couplings)
+         associate (faces => model%mesh%surfaces(model%couplings(i)%surface)%faces)
+            do f = 1, size(faces, 2)
+               constrained(model%mesh%element_nodes(side_nodes(model%mesh%element_kind( &
+                  faces(1, f)), faces(2, f)), faces(1, f))) = .true.
+            end do
+         end associate
+      end do
+   end function constrained_of
+
+   !> What each touch is told with: hanging nodes, or two faces of the same bodies. Nodes hang on a
+   !> side if both its corners are nodes of the sides that lie on it.
+   function keys_of(mesh, sides, touches) result(key)
+      type(mesh_type), intent(in) :: mesh
+      type(element_sides_type), intent(in) :: sides
+      type(touch_type), intent(in) :: touches(:)
+      integer, allocatable :: key(:, :)                   ! (3, touches) two bodies, kind
+      logical :: shared(2, sides%count)
+      integer :: bodies(2), i, k
+
+      shared = .false.
+      do i = 1, size(touches)
+         associate (touch => touches(i))
+            do k = 1, 2
+               shared(k, touch%side) = shared(k, touch%side) .or. &
+                  any(sides%ends(:, touch%other) == sides%ends(2*k - 1, touch%side))
+            end do
+         end associate
+      end do
+      allocate (key(3, size(touches)))
+      do i = 1, size(touches)
+         associate (touch => touches(i))
+            if (all(shared(:, touch%side))) then
+               key(:, i) = [0, 0, face_hangs]
+            else
+               bodies = mesh%element_body(sides%elements(1, [touch%side, touch%other]))
+               key(:, i) = [minval(bodies), maxval(bodies), face_meets]
+            end if
+         end associate
+      end do
+   end function keys_of
+
+   !> Warns of the touches of one key.
+   subroutine warn(context, model, sides, touches, key, report)
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      type(element_sides_type), intent(in) :: sides
+      type(touch_type), intent(in) :: touches(:)          ! by their nodes
+      integer, intent(in) :: key(3)
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: message, node, place
+      integer :: before, i, places
+
+      ! Two nodes at one place are both found.
+      places = 0
+      before = 0
+      do i = 1, size(touches)
+         if (touches(i)%node == before) cycle
+         before = touches(i)%node
+         if (touches(i)%partner == 0 .or. touches(i)%partner > touches(i)%node) places = places + 1
+      end do
+      node = to_text(model%mesh%node_number(touches(1)%node))
+      associate (x => model%mesh%coordinates(:, touches(1)%node))
+         place = to_text(x(1))//', '//to_text(x(2))
+         if (key(3) == face_hangs) then
+            message = 'node '//node//' at '//place//' hangs: it lies on '// &
+               side_words(model%mesh, sides, touches(1)%side)//' and is no node of it, so that '// &
+               'the fields on both sides differ; let elements meet along whole sides, or give '// &
+               'the two parts nodes of their own and join them by *TIE'// &
+               others(places, '; hanging nodes: ')
+         else
+            if (touches(1)%partner > 0) then
+               place = 'node '//node//' and node '// &
+                  to_text(model%mesh%node_number(touches(1)%partner))//' at '//place
+            else
+               place = 'node '//node//' at '//place//' on '// &
+                  side_words(model%mesh, sides, touches(1)%side)
+            end if
+            message = body_name(model, key(1))
+            if (key(1) == key(2)) then
+               message = message//' is cut along a seam: its faces touch at '
+            else
+               message = message//' and '//body_name(model, key(2))//' touch at '
+            end if
+            message = message//counted(places, 'place')//', first '//place//', but no '// &
+               '*CONTACT PAIR, *TIE, *EQUATION or *COUPLING relates them, so that they pass '// &
+               'through each other and exchange no heat; pair or tie these faces, or let them '// &
+               'share their nodes'
+         end if
+      end associate
+      call report%warning(context%node_place(touches(1)%node), message)
+   end subroutine warn
+
+   !> A side as messages name it, such as 'side 3 of element 1'.
+   pure function side_words(mesh, sides, side) result(words)
+      type(mesh_type), intent(in) :: mesh
+      type(element_sides_type), intent(in) :: sides
+      integer, intent(in) :: side
+      character(:), allocatable :: words
+
+      associate (e => sides%elements(1, side))
+         words = 'side '//to_text(findloc(sides%of_element(:, e), side, dim=1))//' of element '// &
+            to_text(mesh%element_number(e))
+      end associate
+   end function side_words
+
+end module touch_checks
