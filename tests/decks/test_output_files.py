@@ -258,6 +258,7 @@ def names_written(deck, folder):
 def includes(folder, name, included):
     """Write a deck that is read from another file; return the paths of both."""
     file = heat(folder, included, 2)
+    write(file, without_unused_surfaces(file.read_text().splitlines()))
     return write(folder / name, [f"*INCLUDE, INPUT={included}"]), file
 
 
