@@ -96,10 +96,10 @@ def kept(unrendered, draw, monkeypatch):
 
 @pytest.fixture
 def fail(tmp_path, capsys):
-    """Return a function that calls plot, expects exit status 1, and gives the message."""
+    """Return a function that calls plot, expects exit status 2, and gives the message."""
 
     def call(*arguments):
-        assert main([*map(str, arguments)]) == 1
+        assert main([*map(str, arguments)]) == 2
         captured = capsys.readouterr()
         assert captured.err.startswith("plot: error: ")
         assert captured.err.count("\n") == 1
@@ -488,16 +488,17 @@ def test_errors_are_drawn_element_by_element(kept, result, tmp_path):
 
 
 def test_errors_of_elements_of_several_types_stay_with_their_elements():
-    group = {
-        "NumberOfPoints": [5],
-        "NumberOfCells": [2],
+    arrays = {
         "Points": np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [4, 1, 0]]),
         "Connectivity": np.array([0, 1, 2, 3, 1, 4, 2]),
         "Offsets": np.array([0, 4, 7]),
         "Types": np.array([9, 5]),
         "PointData/node_id": np.arange(1, 6),
     }
-    cells = Cells.read(group)
+    with h5py.File("mesh", "w", driver="core", backing_store=False) as file:
+        for name, values in arrays.items():
+            file[name] = values
+        cells = Cells.read(file)
     places = element_fields.centres(cells, cells.points)
     np.testing.assert_allclose(places, [[1.0, 1.0], [8.0 / 3.0, 1.0]])
     window = np.array([[3.0, 0.0], [5.0, 2.0]])
@@ -879,7 +880,7 @@ def test_launcher_takes_the_python_of_the_build_and_names_missing_packages(tmp_p
     post = shutil.copytree(POST, tmp_path / "post", ignore=shutil.ignore_patterns("__pycache__"))
     bare = [sys.executable, "-S", "-E", str(post / "plot"), "--help"]
     told = subprocess.run(bare, capture_output=True, text=True, check=False)
-    assert told.returncode == 1
+    assert told.returncode == 2
     assert f"is missing; install the packages of {post / 'requirements.txt'}" in told.stderr
     python = tmp_path / "build" / "venv" / "bin" / "python"
     python.parent.mkdir(parents=True)
@@ -1043,6 +1044,7 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
     with h5py.File(asked, "a") as file:
         group = file.create_group("accuracy")
         group["cpu_seconds"], group["unknowns"] = [0.1, 0.3], [100, 900]
+        group["elements"], group["increments"] = [10, 40], [15, 15]
         group["bounds/CYLINDER/normal_force"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.05, 0.1]]
         group["bounds/CYLINDER/heat_rate"] = np.zeros((2, 4))
     (figure,) = kept("accuracy", asked)
@@ -1078,6 +1080,7 @@ def test_the_legend_of_an_accuracy_shows_what_is_drawn(kept, result, bounds, lin
     with h5py.File(result, "a") as file:
         group = file.create_group("accuracy")
         group["cpu_seconds"], group["unknowns"] = [0.1, 0.3], [100, 900]
+        group["elements"], group["increments"] = [10, 40], [15, 15]
         rows = [[1, 1e4, 340.0 * bound, 340.0] for bound in bounds]
         group["bounds/CYLINDER/normal_force"] = rows
     (figure,) = kept("accuracy", result)

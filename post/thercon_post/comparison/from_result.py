@@ -82,7 +82,7 @@ def pair_frame(contacts, states, row):
 
 def nodes(result):
     """Return the fields of the nodes, one frame a time step of /VTKHDF."""
-    times = result.file["VTKHDF/Steps/Values"][()]
+    times = result.field_times
     present = result.file["VTKHDF/PointData"]
     names = [name for name, (array, _) in FIELDS.items() if array in present]
     load = np.interp(times, result.history["time"], result.history["load"])

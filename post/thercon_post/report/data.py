@@ -121,7 +121,7 @@ def histories(result):
 
 def fields_data(result):
     """Return mesh and fields at the increments that the page keeps; None without fields."""
-    times = result.file["VTKHDF/Steps/Values"][()]
+    times = result.field_times
     if len(times) == 0:
         return None
     there = {q: result.field(q, len(times) - 1) for q in FIELD_SOURCES}

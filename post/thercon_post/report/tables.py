@@ -50,13 +50,13 @@ def facts(result, listing):
          f"{len(bodies)} bod{'y' if len(bodies) == 1 else 'ies'}"),
     ]
     rows += [(words, text(run[key])) for key, words in FACTS.items() if key in run]
-    if "accuracy" in result.file:
+    if result.accuracy:
         words = listing.accuracy[0] if listing and listing.accuracy else ""
         words = words.removeprefix("requested accuracy ")
-        rows += [("requested accuracy", words or accuracy_words(result.file["accuracy"]))]
+        rows += [("requested accuracy", words or accuracy_words(result.accuracy))]
     spent = f"{seconds:.2f} s"
-    if "accuracy" in result.file:
-        cpu = result.file["accuracy/cpu_seconds"][:]
+    if result.accuracy:
+        cpu = result.accuracy["cpu_seconds"]
         spent += f" in round {len(cpu)}; all rounds took {sum(cpu):.2f} CPU seconds"
     rows += [("time of the run", spent)]
     listed = joined(html("<div><dt>{}</dt><dd>{}</dd></div>", *row) for row in rows)
@@ -93,15 +93,14 @@ def bounds(result):
 
 def bound_row(result, contact, key, value):
     """Return value, bound and its parts; words where nothing is known of them, or to be known."""
-    errors = result.file.get(f"errors/{contact.name}/{key}")
+    errors = result.error_bounds(contact, key)
     row = ["", number(value), "not estimated", "", "–", "–", "–"]
-    if errors is None or len(errors) == 0 or result.file["errors/time"][-1] != \
-            result.history["time"][-1]:
+    if errors is None:
         return row
     if key.startswith("edge_") and value >= contact["s"][-1]:
         row[2] = "none: end of the face"
         return row
-    _, bound, *parts = errors[-1]
+    _, bound, *parts = errors
     row[4:] = [number(part, 2) for part in parts]
     row[2] = "uncertain"
     if np.isfinite(bound):
@@ -113,22 +112,22 @@ def bound_row(result, contact, key, value):
 def accuracy_words(group):
     """Return whether a requested accuracy is reached, after how many rounds."""
     count = len(group["unknowns"])
-    words = f"{'' if group.attrs['reached'] else 'not '}reached after {count} round"
+    words = f"{'' if group['reached'] else 'not '}reached after {count} round"
     words += "" if count == 1 else "s"
-    return words + (f"; round {count + 1} was begun" if group.attrs["later_round_begun"] else "")
+    return words + (f"; round {count + 1} was begun" if group["later_round_begun"] else "")
 
 
 def rounds(result, listing):
     """Return the rounds of a requested accuracy: what each cost, and its bounds."""
-    group = result.file.get("accuracy")
+    group = result.accuracy
     if group is None:
         return ""
-    named = [(contact.name, words_of(key), contact.unit(key), rows[:])
+    named = [(contact.name, words_of(key), contact.unit(key), rows)
              for contact in contacts_of(result)
              for key, rows in group["bounds"].get(contact.name, {}).items()]
-    costs = [group[key][:] for key in ("unknowns", "elements", "increments")]
+    costs = [group[key] for key in ("unknowns", "elements", "increments")]
     found = [[k + 1, *(each[k] for each in costs), f"{seconds:.2f}"]
-             for k, seconds in enumerate(group["cpu_seconds"][:])]
+             for k, seconds in enumerate(group["cpu_seconds"])]
     head = ["round", "unknowns", "elements", "increments", "CPU seconds"]
     told = table("Rounds of the requested accuracy", head, found, range(1, 5))
     head = ["interface", "quantity", *(f"round {k + 1}" for k in range(len(found))), "target",
