@@ -228,6 +228,29 @@ def test_load_can_be_given_more_than_once_and_increments_by_number(tabulate, res
     assert set(drawn["increment"]) == {"1", "2", "3"}
 
 
+def test_of_a_load_that_occurs_twice_the_last_increment_is_drawn(tabulate, tmp_path):
+    """Loading and unloading pass it; here unloading has other pressures and temperatures."""
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, loads=(10.0, 20.0, 30.0, 20.0, 10.0))
+    with h5py.File(path, "r+") as file:
+        file["history/time"][...] = file["VTKHDF/Steps/Values"][...] = np.arange(1.0, 6.0)
+        pressure, temperature = file["contact/CYLINDER/pressure"], file["VTKHDF/PointData/temperature"]
+        pressure[3:] *= 0.5
+        temperature[3 * len(temperature) // 5:] += 7.0
+        pressures, temperatures = pressure[()], np.split(temperature[()], 5)
+    for load, row in ((20, 3), (10, 4)):
+        tabulate("profiles", path, "--load", load)
+        drawn = table(tmp_path, f"case.profiles-{load}-increment-{row + 1}.csv")
+        assert set(drawn["increment"]) == {str(row + 1)}
+        np.testing.assert_array_equal(numbers(drawn["pressure"]), pressures[row])
+        tabulate("fields", path, "--load", load, "--quantity", "temperature")
+        drawn = table(tmp_path, f"case.fields-temperature-{load}-increment-{row + 1}.csv")
+        np.testing.assert_array_equal(numbers(drawn["temperature"]), temperatures[row])
+    tabulate("profiles", path, "--increment", 2)
+    drawn = table(tmp_path, "case.profiles-20-increment-2.csv")
+    np.testing.assert_array_equal(numbers(drawn["pressure"]), pressures[1])
+
+
 def test_zone_curves_are_the_sharpened_edges_on_the_axis_of_the_picture(draw, result, tmp_path):
     assert draw("zones", result) == [*three("case.zones"), "case.zones-pairs.csv"]
     drawn = table(tmp_path, "case.zones.csv")
