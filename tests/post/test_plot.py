@@ -228,6 +228,24 @@ def test_load_can_be_given_more_than_once_and_increments_by_number(tabulate, res
     assert set(drawn["increment"]) == {"1", "2", "3"}
 
 
+@pytest.mark.parametrize("points", [1, 2])
+def test_a_face_of_one_or_two_contact_points_is_drawn(tabulate, tmp_path, points):
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, loads=(300.0, 900.0))
+    with h5py.File(path, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        for name, values in {name: item[()] for name, item in contact.items()}.items():
+            if not name.startswith("edge"):
+                del contact[name]
+                contact[name] = values[..., :points]
+    for picture in ("profiles", "zones"):
+        tabulate(picture, path)
+    drawn = table(tmp_path, "case.profiles.csv")
+    with h5py.File(path) as file:
+        pressure = file["contact/CYLINDER/pressure"][-1]
+    np.testing.assert_array_equal(numbers(drawn["pressure"]), pressure)
+
+
 def test_of_a_load_that_occurs_twice_the_last_increment_is_drawn(tabulate, tmp_path):
     """Loading and unloading pass it; here unloading has other pressures and temperatures."""
     path = tmp_path / "case.vtkhdf"
