@@ -472,6 +472,17 @@ def test_a_file_with_a_node_once_meets_both_of_its_points_where_they_agree(compa
     assert status == 1 and "node 2 x=1 y=0" in said
 
 
+def test_a_result_without_increments_is_named(refused, result):
+    with h5py.File(result, "r+") as file:
+        for group in ("history", "VTKHDF/Steps"):
+            for name, item in list(file[group].items()):
+                if isinstance(item, h5py.Dataset):
+                    empty = item[:0]
+                    del file[group][name]
+                    file[group][name] = empty
+    assert "holds no accepted increment" in refused(result, result)
+
+
 def test_a_table_that_has_a_node_twice_is_still_an_error(refused, sections, tmp_path):
     rows = {"node": [1, 2, 2, 3], "x": [0, 1, 1, 2], "y": [0, 0, 0, 0], "U1": [0.1, 0.2, 0.3, 0.3]}
     said = refused(sections("one"), write_csv(tmp_path / "twice.csv", rows))

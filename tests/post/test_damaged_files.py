@@ -28,7 +28,7 @@ from thercon_post.comparison import cli as comparison  # noqa: E402
 from thercon_post.report import cli as report  # noqa: E402
 
 FILES = int(os.environ.get("THERCON_FUZZ", "60"))
-FIRST = int(os.environ.get("THERCON_FUZZ_FIRST", "0"))
+FIRST = int(os.environ.get("THERCON_FUZZ_FIRST", "60"))
 LONGEST = 60  # seconds
 ROOM = 3 * 2**30  # bytes of address space beside what the tests have
 CALCULIX = Path(__file__).resolve().parent / "calculix"

@@ -26,6 +26,7 @@ FIELDS = {
 def read(path, stack):
     """Return the source of a result file, kept open as long as `stack`."""
     result = stack.enter_context(Result(path))
+    result.rows()  # without an increment there is nothing to compare
     source = Source(str(path), "result", [history(result)])
     source.units, source.load_label = result.units, result.load_label
     if result.contact_names:
