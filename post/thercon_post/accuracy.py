@@ -13,11 +13,11 @@ SMALLEST = 1e-3  # of a target: bounds below it are marked at the foot, uncertai
 
 def draw(result, options):
     """Draw the rounds of a result; return the files written."""
-    rounds = result.file.get("accuracy")
+    rounds = result.accuracy
     if rounds is None:
         raise UserError(f"{result.path}: no accuracy was requested (*ACCURACY, --accuracy), or its "
                         "first round did not come to its end")
-    cost = np.cumsum(rounds["cpu_seconds"][:])
+    cost = np.cumsum(rounds["cpu_seconds"])
     series = list(targets(result, rounds))
     if not series:
         raise UserError(f"{result.path}: no quantity has a target")
@@ -34,7 +34,7 @@ def draw(result, options):
         label += uncertain_words(is_uncertain)
         marks |= draw_target(axes, cost, ratio, is_uncertain, number, label)
         table = {"target": np.full(len(cost), name, dtype=object), "cpu_seconds": cost}
-        table |= {"unknowns": rounds["unknowns"][:], "value": value, "bound": bound}
+        table |= {"unknowns": rounds["unknowns"], "value": value, "bound": bound}
         tables.append(table | {"allowed": allowed})
     axes.axhline(1.0, color=style.GREY, lw=0.8, ls="--", label="target")
     for words, mark in marks.items():
@@ -90,4 +90,4 @@ def targets(result, rounds):
     for contact in result.contacts():
         for quantity, rows in rounds["bounds"].get(contact.name, {}).items():
             if np.any(rows[:, 0] > 0):
-                yield f"{style.plain(contact.name)} {words_of(quantity)}", rows[:], contact.unit(quantity)
+                yield f"{style.plain(contact.name)} {style.plain(words_of(quantity))}", rows, contact.unit(quantity)

@@ -4,8 +4,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .checked_file import need, numbers
+
 # VTK cell type -> corners; quadratic cells list their midside nodes after the corners.
 CORNERS = {5: 3, 22: 3, 9: 4, 23: 4}
+NODES = {5: 3, 22: 6, 9: 4, 23: 8}
 QUADRATIC = {22, 23}
 
 
@@ -26,21 +29,27 @@ class Cells:
     @classmethod
     def read(cls, group):
         """Read the mesh of a VTKHDF group that has one part, the same at all times."""
-        count = int(group["NumberOfPoints"][0])
-        cells = int(group["NumberOfCells"][0])
-        points = group["Points"][:count, :2].astype(float)
-        offsets = group["Offsets"][: cells + 1].astype(int)
-        connectivity = group["Connectivity"][: offsets[-1]].astype(int)
-        types = group["Types"][:cells].astype(int)
-        node_id = group["PointData/node_id"][:count].astype(int)
+        count = len(numbers(group, "Points", like=(None, 3)))
+        cells = len(numbers(group, "Types", like=(None,)))
+        need(group, count > 0 and cells > 0, "there are no points or cells")
+        points = numbers(group, "Points", finite=True)[:, :2].astype(float)
+        types = numbers(group, "Types").astype(int)
+        offsets = numbers(group, "Offsets", like=(cells + 1,)).astype(int)
+        connectivity = numbers(group, "Connectivity", like=(None,)).astype(int)
+        node_id = numbers(group, "PointData/node_id")[:count].astype(int)
+        need(group, np.isin(types, list(NODES)).all(), "Types has values that are no cells of thercon")
+        need(group, offsets[0] == 0 and np.all(np.diff(offsets) == [NODES[k] for k in types])
+             and offsets[-1] <= len(connectivity), "Offsets do not fit the types of the cells")
+        connectivity = connectivity[: offsets[-1]]
+        need(group, connectivity.min() >= 0 and connectivity.max() < count,
+             "Connectivity names points that are not there")
+        need(group, node_id.shape == (count,), "PointData/node_id has not one number for each point")
         body = cls._cell_data(group, "body", cells)
         element = cls._cell_data(group, "element_id", cells)
         groups, bodies, elements, places = {}, {}, {}, {}
         for kind in np.unique(types):
             members = np.flatnonzero(types == kind)
-            starts = offsets[members]
-            nodes = int(offsets[members[0] + 1] - starts[0])
-            groups[int(kind)] = connectivity[starts[:, None] + np.arange(nodes)]
+            groups[int(kind)] = connectivity[offsets[members][:, None] + np.arange(NODES[int(kind)])]
             bodies[int(kind)] = body[members]
             elements[int(kind)] = element[members]
             places[int(kind)] = members
@@ -48,8 +57,12 @@ class Cells:
 
     @staticmethod
     def _cell_data(group, name, cells):
-        data = group.get(f"CellData/{name}")
-        return np.ones(cells, dtype=int) if data is None else data[:cells].astype(int)
+        name = f"CellData/{name}"
+        if name not in group:
+            return np.ones(cells, dtype=int)
+        data = numbers(group, name)[:cells].astype(int)
+        need(group, data.shape == (cells,), f"{name} has not one number for each cell")
+        return data
 
     @property
     def count(self):

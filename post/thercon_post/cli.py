@@ -1,12 +1,11 @@
 """Command line of post/plot."""
 
 import argparse
-import sys
 from contextlib import ExitStack
 from itertools import chain
 
 from . import accuracy, convergence, fields, mesh, profiles, style, trade, zones
-from .errors import UserError
+from .errors import UserError, program
 from .result import FIELD_SOURCES, Result
 
 SUMMARY = """Pictures of a thercon result: each call writes PNG and SVG, and what was drawn as CSV.
@@ -194,12 +193,8 @@ def run(arguments):
         return picture[options.picture].draw(results[0], options)
 
 
-def main(arguments=None):
+@program("plot")
+def main(arguments):
     """Run the command line; return the exit status."""
-    try:
-        written = run(sys.argv[1:] if arguments is None else arguments)
-        print("".join(f"{path}\n" for path in written), end="")
-    except UserError as error:
-        print(f"plot: error: {error}", file=sys.stderr)
-        return 1
+    print("".join(f"{path}\n" for path in run(arguments)), end="")
     return 0

@@ -177,7 +177,7 @@ def series_looks(number):
 def finish(counts, relaxation, runs):
     """Label and scale the two lower panels."""
     counts.set_ylabel("Iterations")
-    most = max(np.max(np.bincount(run.data["increment"])) for run in runs)
+    most = max(np.unique(run.data["increment"], return_counts=True)[1].max() for run in runs)
     counts.set_ylim(0, 1.12 * most)
     counts.tick_params(labelbottom=False)
     counts.yaxis.set_major_locator(whole_numbers(5))

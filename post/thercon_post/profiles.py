@@ -100,7 +100,7 @@ class Picture:
         """
         at, values, shown = self.coordinate, self.values(quantity, row), self.inside()
         both = quantity == "mu_p" and self.two_signs()
-        near = np.convolve(shown, [1, 1, 1], "same") > 0  # lines run on to the next pairs
+        near = np.convolve(shown, [1, 1, 1])[1:-1] > 0  # lines run on to the next pairs
         drawn = np.concatenate((values[near], -values[near])) if both else values[near]
         looks = {"color": self.colours[number], "linestyle": QUANTITY_LINES[quantity]}
         if quantity != "mu_p":

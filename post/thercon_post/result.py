@@ -10,8 +10,10 @@ import numpy as np
 
 from . import stresses
 from .cells import Cells
+from .checked_file import need, numbers, open_checked
 from .errors import UserError, nearest_name
 from .units import UNIT_NAMES, Units
+from .words import printable
 
 OPEN, SLIP, STICK = 0, 1, 2
 
@@ -39,6 +41,12 @@ FIELD_SOURCES = {
 
 # Datasets of a contact that hold one value a contact point.
 GEOMETRY = ("slave_node", "master_node", "x", "y", "s", "weight")
+# Those that every contact has of its points at the increments, and of its edges.
+STATES = ("pressure", "status")
+EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
+ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
+ITERATION = ("increment", "iteration", "residual", "g_min", "g_max")
+COMPONENTS = {"displacement": 3, "stress": 4, "principal_stress": 3, "heat_flux": 3}
 
 
 def words_of(name):
@@ -127,11 +135,9 @@ class Result:
             raise UserError(f"{path}: no such file")
         if self.path.is_dir():
             raise UserError(f"{path}: is a folder, not a result file")
-        try:
-            self.file = h5py.File(self.path, "r")
-        except OSError as reason:
-            raise UserError(f"{path}: is not an HDF5 file that can be read ({reason})") from None
-        missing = [group for group in ("history", "VTKHDF", "run") if group not in self.file]
+        self.file = open_checked(self.path)
+        missing = [group for group in ("history", "VTKHDF", "run")
+                   if not isinstance(self.file.get(group), h5py.Group)]
         if missing:
             self.file.close()
             raise UserError(f"{path}: is HDF5 but not a thercon result: it has no /{missing[0]}")
@@ -153,12 +159,20 @@ class Result:
     @cached_property
     def history(self):
         """Datasets of /history by name: one value for each accepted increment."""
-        return {key: item[()] for key, item in self.file["history"].items()}
+        group = self.file["history"]
+        found = {key: numbers(group, key) for key in group}
+        for key in ("time", "load"):
+            found[key] = numbers(group, key, like=(None,), finite=True)
+        for key, values in found.items():
+            fits = values.ndim in (1, 2) and len(values) == len(found["time"])
+            need(group, fits, f"{key} has not one row for each increment")
+        return found
 
     @cached_property
     def load_label(self):
         """What the load axis shows, as the file names it."""
-        return text(self.file["history/load"].attrs.get("label", "load"))
+        label = text(self.file["history"]["load"].attrs.get("label", "load"))
+        return label.replace("$", "")  # which begins a formula in a picture
 
     @property
     def increments(self):
@@ -173,7 +187,37 @@ class Result:
             raise UserError(
                 f"{self.path}: holds no iterations: nothing in this deck is iterated on"
             )
-        return {key: item[()] for key, item in group.items()}
+        count = len(numbers(group, "increment", like=(None,)))
+        found = {key: numbers(group, key, like=(count,)) for key in {*group, *ITERATION}}
+        for key in ("increment", "iteration"):
+            is_count = found[key].dtype.kind in "iu" and np.all(found[key] > 0)
+            need(group, is_count, f"{key} has values that are no counts from 1")
+        return found
+
+    @cached_property
+    def accuracy(self):
+        """Attributes and datasets of /accuracy by name, one value a round, and `bounds`: {contact:
+        {quantity: rows (step, value, bound, target)}}; None where no accuracy was requested."""
+        group = self.file.get("accuracy")
+        if group is None:
+            return None
+        rounds = len(numbers(group, "cpu_seconds", like=(None,)))
+        need(group, rounds > 0 and "bounds" in group, "there are no rounds")
+        found = {key: numbers(group, key, like=(rounds,)) for key in ROUND}
+        found |= {key: bool(group.attrs.get(key)) for key in ("reached", "later_round_begun")}
+        found["bounds"] = {name: {key: numbers(group[f"bounds/{name}"], key, like=(rounds, 4))
+                                  for key in group[f"bounds/{name}"]} for name in group["bounds"]}
+        return found
+
+    def error_bounds(self, contact, key):
+        """Return value, bound and its parts of a quantity of a contact at the last increment; None
+        where there are none."""
+        group = self.file.get(f"errors/{contact.name}")
+        if group is None or key not in group:
+            return None
+        times = numbers(self.file["errors"], "time", like=(None,))
+        rows = numbers(group, key, like=(len(times), 5))
+        return rows[-1] if len(rows) and times[-1] == self.history["time"][-1] else None
 
     @cached_property
     def deck(self):
@@ -197,11 +241,28 @@ class Result:
             hint = nearest_name(name, self.contact_names)
             raise UserError(f"{self.path}: no contact '{name}'{hint} (contacts: {known})")
         group = self.file["contact"][name]
-        data = {key: item[()] for key, item in group.items()}
+        data = self.contact_data(group)
         units = {key: text(item.attrs.get("unit", "")) for key, item in group.items()}
         friction = group.attrs.get("friction")
+        need(group, friction is None or isinstance(friction, np.number), "friction is no number")
         pairing = text(group.attrs.get("pairing", "NODES"))
         return Contact(name, data, None if friction is None else float(friction), pairing, units)
+
+    def contact_data(self, group):
+        """Return the datasets of a contact by name."""
+        points = len(numbers(group, "x", like=(None,)))
+        need(group, points > 0, "there are no contact points")
+        data = {key: numbers(group, key, like=(points,), finite=True) for key in GEOMETRY}
+        states = {key: numbers(group, key, like=(self.increments, points)) for key in STATES}
+        edges = {key: numbers(group, key, like=(self.increments, None)[: 1 + key.startswith("edges")])
+                 for key in EDGES}
+        need(group, np.all(np.diff(data["s"]) >= 0.0), "s does not grow along the face")
+        need(group, np.isin(states["status"], (OPEN, SLIP, STICK)).all(), "status is not 0, 1 or 2")
+        others = {key: numbers(group, key) for key in group if key not in {*data, *states, *edges}}
+        for key, values in others.items():
+            fits = values.shape in ((self.increments,), (self.increments, points))
+            need(group, fits, f"{key} has not one row for each increment")
+        return data | states | edges | others
 
     def contacts(self, name=None):
         """Return the contact pairs asked for: the named one, or all."""
@@ -251,7 +312,7 @@ class Result:
         if contact.pairing == "NODES":
             return [cells.face(contact[key]) for key in ("slave_node", "master_node")]
         ends = np.concatenate([each["slave_node"] for each in self.contacts()])
-        step = len(self.file["VTKHDF/Steps/Values"]) - 1
+        step = len(self.field_times) - 1
         status = self.point_data("contact_status", step) if step >= 0 else None
         carry = np.zeros(len(cells.points), bool) if status is None else ~np.isnan(status)
         both = cells.face(cells.node_id[carry])
@@ -259,9 +320,16 @@ class Result:
         own = np.isin(cells.node_id[both[:, :2]], contact["slave_node"]).all(axis=1)
         return [both[own], both[~of_slaves]]
 
+    @cached_property
+    def field_times(self):
+        """Total times at which the file has fields."""
+        return numbers(self.file["VTKHDF"], "Steps/Values", like=(None,), finite=True)
+
     def field_row(self, row):
         """Return the index of the VTKHDF time step that holds the increment in `row`."""
-        times = self.file["VTKHDF/Steps/Values"][()]
+        times = self.field_times
+        if len(times) == 0:
+            raise UserError(f"{self.path}: holds no fields (thinned by FREQUENCY)")
         time = self.history["time"][row]
         step = int(np.argmin(np.abs(times - time)))
         if abs(times[step] - time) > 1e-9 * max(abs(time), 1.0):
@@ -274,21 +342,30 @@ class Result:
 
     def point_data(self, name, step):
         """Return a point data array of /VTKHDF at a time step; None where it is absent."""
-        group = self.file["VTKHDF/PointData"]
-        if name not in group:
-            return None
-        offsets = self.file.get(f"VTKHDF/Steps/PointDataOffsets/{name}")
-        start = int(np.ravel(offsets[step])[0]) if offsets is not None else 0
-        return group[name][start : start + len(self.cells.points)]
+        return self.data_at("Point", name, step, len(self.cells.points))
 
     def cell_data(self, name, step):
         """Return a cell data array of /VTKHDF at a time step; None where it is absent."""
-        group = self.file["VTKHDF/CellData"]
-        if name not in group:
+        return self.data_at("Cell", name, step, self.cells.count)
+
+    def data_at(self, kind, name, step, count):
+        """Return `count` rows of point or cell data at a time step; None where they are absent."""
+        group = self.file["VTKHDF"]
+        data = group.get(f"{kind}Data/{name}")
+        if data is None:
             return None
-        offsets = self.file.get(f"VTKHDF/Steps/CellDataOffsets/{name}")
-        start = int(np.ravel(offsets[step])[0]) if offsets is not None else 0
-        return group[name][start : start + self.cells.count]
+        start = 0
+        if f"Steps/{kind}DataOffsets/{name}" in group:
+            offsets = numbers(group, f"Steps/{kind}DataOffsets/{name}")
+            need(group, len(offsets) > step, f"{name} has no offset for each time")
+            start = int(np.ravel(offsets[step])[0])
+        columns = (COMPONENTS[name],) if name in COMPONENTS else ()
+        fits = data.shape[1:] == columns and 0 <= start <= len(data) - count
+        need(group, fits and data.dtype.kind in "biuf", f"{name} is no field of {count} rows a time")
+        values = data[start : start + count]
+        need(group, name != "displacement" or np.isfinite(values).all(),
+             "displacement has values that are no numbers")
+        return values
 
     def source(self, quantity, step):
         """Return the array that a picture quantity is of, with all components; None where it is
@@ -335,4 +412,5 @@ def text(value):
     """Return an HDF5 string attribute as str, however it was stored."""
     if isinstance(value, np.ndarray):
         value = value.ravel()[0] if value.size else ""
-    return value.decode() if isinstance(value, bytes) else str(value)
+    words = value.decode(errors="replace") if isinstance(value, bytes) else str(value)
+    return printable(words)

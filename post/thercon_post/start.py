@@ -6,14 +6,15 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+from .errors import FAILED
+
 PYTHON = Path(__file__).resolve().parents[2] / "build" / "venv" / "bin" / "python"
 
 
-def run(script, module, failed):
+def run(script, module):
     """Run `main` of a module of this package as the program `script`; return its exit status.
 
-    Begins again with the Python of build/venv where that is there; `failed` is the exit status
-    where a package is missing.
+    Begins again with the Python of build/venv where that is there.
     """
     sys.dont_write_bytecode = True  # the source tree stays as it is
     script = Path(script).resolve()
@@ -28,5 +29,5 @@ def run(script, module, failed):
             f"packages of {script.parent / 'requirements.txt'} (`./setup.sh build` does)",
             file=sys.stderr,
         )
-        return failed
+        return FAILED
     return main()

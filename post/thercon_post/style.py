@@ -7,6 +7,7 @@ import numpy as np
 
 from .errors import UserError
 from .tables import write_table
+from .words import printable
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402  the backend is chosen first
@@ -91,7 +92,7 @@ def file_name(result, picture, *parts):
 
 def plain(words):
     """Return words, such as a file's name, so that none of them is read as a formula."""
-    return words.replace("$", r"\$")
+    return printable(words).replace("$", r"\$")
 
 
 def marker(number):

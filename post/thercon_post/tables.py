@@ -14,9 +14,10 @@ def cell(value):
 
 
 def write_table(path, columns):
-    """Write columns {name: values}, all of one length; numbers keep every digit."""
+    """Write columns {name: values}, all of one length; numbers keep every digit. A byte in the name
+    of a file that is no UTF-8 becomes a question mark."""
     rows = zip(*(np.asarray(values).tolist() for values in columns.values()), strict=True)
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with open(path, "w", newline="", encoding="utf-8", errors="replace") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(map(cell, columns))
         writer.writerows(map(cell, row) for row in rows)

@@ -103,7 +103,7 @@ def figure_of(trade):
 
 def quantity_words(name):
     """Return what the errors of a column are of."""
-    return "worst of all" if name == "error_worst" else words_of(name.removeprefix("error_"))
+    return "worst of all" if name == "error_worst" else style.plain(words_of(name.removeprefix("error_")))
 
 
 def draw_panel(axes, trade, name):

@@ -404,3 +404,108 @@ def test_help_says_the_exit_status(capsys):
     assert ended.value.code == 0
     said = capsys.readouterr().out
     assert "exit status: 0 all within tolerance; 1 something is not; 2 wrong usage" in said
+
+
+@pytest.fixture
+def sections(tmp_path):
+    """Return a function that writes a result with two sections along x = 1, and a table of its nodes.
+
+    Nodes 2 and 5 are points 1 and 4 of the left section, 6 and 7 of the right one, with the same
+    displacement and another stress.
+    """
+
+    def call(name, right=(6, 7)):
+        path = tmp_path / f"{name}.vtkhdf"
+        write_result(path, contacts=(), loads=(1.0,), columns=1, rows=1)
+        points = np.zeros((8, 3))
+        points[:, :2] = [[0, 0], [1, 0], [2, 0], [2, 1], [1, 1], [0, 1], [1, 0], [1, 1]]
+        nodes = np.array([1, 2, 3, 4, 5, 6, 2, 5])
+        stress = np.zeros((8, 4))
+        stress[:, 0] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 20.0, 50.0]
+        moved = np.zeros((8, 3))
+        moved[:, 0] = 0.1 * nodes
+        with h5py.File(path, "r+") as file:
+            grid = file["VTKHDF"]
+            for key in ("PointData", "CellData", "Points", "Types", "Offsets", "Connectivity"):
+                del grid[key]
+            grid["Points"], grid["Types"], grid["Offsets"] = points, np.array([9, 9]), [0, 4, 8]
+            grid["Connectivity"] = [0, 1, 4, 5, right[0], 2, 3, right[1]]
+            grid["CellData/body"], grid["CellData/material"] = [1, 1], [1, 2]
+            grid["PointData/node_id"] = nodes
+            grid["PointData/stress"], grid["PointData/displacement"] = stress, moved
+        return path
+
+    return call
+
+
+def test_nodes_of_two_sections_are_compared_side_by_side(compare, sections):
+    """Every point of a result meets itself; another stress on one side of a node is found."""
+    first, second = sections("one"), sections("two")
+    status, said, _ = compare(first, second, "--all-keys")
+    assert status == 0
+    for quantity in ("U1", "S11"):
+        line = line_of(said, quantity)
+        assert (line["rows"], line["not_in_a"], line["not_in_b"]) == (8, 0, 0)
+    with h5py.File(second, "r+") as file:
+        file["VTKHDF/PointData/stress"][6, 0] = 21.0
+    status, said, _ = compare(first, second, "--only", "S11")
+    assert status == 1 and "node 2 x=1 y=0" in said
+
+
+@pytest.mark.parametrize("is_a", [True, False])
+def test_a_file_with_a_node_once_meets_both_of_its_points_where_they_agree(compare, sections, tmp_path,
+                                                                           is_a):
+    """The displacement is that of both sections. Which stress is meant is open: it is left out."""
+    rows = {"node": np.arange(1, 7), "x": [0, 1, 2, 2, 1, 0], "y": [0, 0, 0, 1, 1, 1],
+            "U1": 0.1 * np.arange(1, 7), "S11": [1.0, 11.0, 3.0, 4.0, 27.5, 6.0]}
+    files = [sections("one"), write_csv(tmp_path / "mean.csv", rows)]
+    status, said, _ = compare(*(files if is_a else files[::-1]))
+    assert status == 0
+    moved, stress = line_of(said, "U1"), line_of(said, "S11")
+    assert (moved["rows"], moved["not_in_a"], moved["not_in_b"]) == (6, 0, 0)
+    assert (stress["rows"], stress["not_in_a"], stress["not_in_b"]) == (4, 0, 0)
+    assert "S11: 2 rows at places with several points left out" in said and "U1: " not in said
+    assert compare(*files, "--all-keys")[0] == 1
+    rows["U1"][1] += 0.01
+    write_csv(tmp_path / "mean.csv", rows)
+    status, said, _ = compare(*(files if is_a else files[::-1]), "--only", "U1")
+    assert status == 1 and "node 2 x=1 y=0" in said
+
+
+def test_a_result_without_increments_is_named(refused, result):
+    with h5py.File(result, "r+") as file:
+        for group in ("history", "VTKHDF/Steps"):
+            for name, item in list(file[group].items()):
+                if isinstance(item, h5py.Dataset):
+                    empty = item[:0]
+                    del file[group][name]
+                    file[group][name] = empty
+    assert "holds no accepted increment" in refused(result, result)
+
+
+def test_a_table_that_has_a_node_twice_is_still_an_error(refused, sections, tmp_path):
+    rows = {"node": [1, 2, 2, 3], "x": [0, 1, 1, 2], "y": [0, 0, 0, 0], "U1": [0.1, 0.2, 0.3, 0.3]}
+    said = refused(sections("one"), write_csv(tmp_path / "twice.csv", rows))
+    assert "B has node 2 twice with other values, 0.2 and 0.3" in said
+
+
+def test_a_contact_point_beside_its_node_is_matched_by_the_node(compare, refused, tmp_path):
+    """The last point of a slave that overhangs its master lies at the master's end."""
+    for name in ("one", "two"):
+        write_result(tmp_path / f"{name}.vtkhdf", loads=(5.0,))
+        with h5py.File(tmp_path / f"{name}.vtkhdf", "r+") as file:
+            contact = file["contact/CYLINDER"]
+            contact.attrs["pairing"] = "SURFACES"
+            at, pressure, nodes = contact["x"][()], contact["pressure"][0], contact["slave_node"][()]
+            heights = contact["y"][()]
+            contact["x"][-1] = at[-1] - 0.3 * (at[-1] - at[-2])
+    files = [tmp_path / "one.vtkhdf", tmp_path / "two.vtkhdf"]
+    status, said, _ = compare(*files, "--all-keys")
+    assert status == 0 and line_of(said, "pressure")["rows"] == len(at)
+    columns = {"node": nodes, "x": at, "y": heights, "pressure": pressure}
+    other = write_csv(tmp_path / "nodes.csv", columns)
+    status, said, _ = compare(files[0], other)
+    assert status == 0 and line_of(said, "pressure")["rows"] == len(at)
+    columns["x"] = at + 0.1
+    write_csv(other, columns)
+    assert "other meshes are matched" in refused(files[0], other)

@@ -96,10 +96,10 @@ def kept(unrendered, draw, monkeypatch):
 
 @pytest.fixture
 def fail(tmp_path, capsys):
-    """Return a function that calls plot, expects exit status 1, and gives the message."""
+    """Return a function that calls plot, expects exit status 2, and gives the message."""
 
     def call(*arguments):
-        assert main([*map(str, arguments)]) == 1
+        assert main([*map(str, arguments)]) == 2
         captured = capsys.readouterr()
         assert captured.err.startswith("plot: error: ")
         assert captured.err.count("\n") == 1
@@ -226,6 +226,47 @@ def test_load_can_be_given_more_than_once_and_increments_by_number(tabulate, res
     drawn = table(tmp_path, "case.profiles-60-120-180.csv")
     assert set(drawn["load"]) == {"60.0", "120.0", "180.0"}
     assert set(drawn["increment"]) == {"1", "2", "3"}
+
+
+@pytest.mark.parametrize("points", [1, 2])
+def test_a_face_of_one_or_two_contact_points_is_drawn(tabulate, tmp_path, points):
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, loads=(300.0, 900.0))
+    with h5py.File(path, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        for name, values in {name: item[()] for name, item in contact.items()}.items():
+            if not name.startswith("edge"):
+                del contact[name]
+                contact[name] = values[..., :points]
+    for picture in ("profiles", "zones"):
+        tabulate(picture, path)
+    drawn = table(tmp_path, "case.profiles.csv")
+    with h5py.File(path) as file:
+        pressure = file["contact/CYLINDER/pressure"][-1]
+    np.testing.assert_array_equal(numbers(drawn["pressure"]), pressure)
+
+
+def test_of_a_load_that_occurs_twice_the_last_increment_is_drawn(tabulate, tmp_path):
+    """Loading and unloading pass it; here unloading has other pressures and temperatures."""
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, loads=(10.0, 20.0, 30.0, 20.0, 10.0))
+    with h5py.File(path, "r+") as file:
+        file["history/time"][...] = file["VTKHDF/Steps/Values"][...] = np.arange(1.0, 6.0)
+        pressure, temperature = file["contact/CYLINDER/pressure"], file["VTKHDF/PointData/temperature"]
+        pressure[3:] *= 0.5
+        temperature[3 * len(temperature) // 5:] += 7.0
+        pressures, temperatures = pressure[()], np.split(temperature[()], 5)
+    for load, row in ((20, 3), (10, 4)):
+        tabulate("profiles", path, "--load", load)
+        drawn = table(tmp_path, f"case.profiles-{load}-increment-{row + 1}.csv")
+        assert set(drawn["increment"]) == {str(row + 1)}
+        np.testing.assert_array_equal(numbers(drawn["pressure"]), pressures[row])
+        tabulate("fields", path, "--load", load, "--quantity", "temperature")
+        drawn = table(tmp_path, f"case.fields-temperature-{load}-increment-{row + 1}.csv")
+        np.testing.assert_array_equal(numbers(drawn["temperature"]), temperatures[row])
+    tabulate("profiles", path, "--increment", 2)
+    drawn = table(tmp_path, "case.profiles-20-increment-2.csv")
+    np.testing.assert_array_equal(numbers(drawn["pressure"]), pressures[1])
 
 
 def test_zone_curves_are_the_sharpened_edges_on_the_axis_of_the_picture(draw, result, tmp_path):
@@ -488,16 +529,17 @@ def test_errors_are_drawn_element_by_element(kept, result, tmp_path):
 
 
 def test_errors_of_elements_of_several_types_stay_with_their_elements():
-    group = {
-        "NumberOfPoints": [5],
-        "NumberOfCells": [2],
+    arrays = {
         "Points": np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [4, 1, 0]]),
         "Connectivity": np.array([0, 1, 2, 3, 1, 4, 2]),
         "Offsets": np.array([0, 4, 7]),
         "Types": np.array([9, 5]),
         "PointData/node_id": np.arange(1, 6),
     }
-    cells = Cells.read(group)
+    with h5py.File("mesh", "w", driver="core", backing_store=False) as file:
+        for name, values in arrays.items():
+            file[name] = values
+        cells = Cells.read(file)
     places = element_fields.centres(cells, cells.points)
     np.testing.assert_allclose(places, [[1.0, 1.0], [8.0 / 3.0, 1.0]])
     window = np.array([[3.0, 0.0], [5.0, 2.0]])
@@ -893,7 +935,7 @@ def test_launcher_takes_the_python_of_the_build_and_names_missing_packages(tmp_p
     post = shutil.copytree(POST, tmp_path / "post", ignore=shutil.ignore_patterns("__pycache__"))
     bare = [sys.executable, "-S", "-E", str(post / "plot"), "--help"]
     told = subprocess.run(bare, capture_output=True, text=True, check=False)
-    assert told.returncode == 1
+    assert told.returncode == 2
     assert f"is missing; install the packages of {post / 'requirements.txt'}" in told.stderr
     python = tmp_path / "build" / "venv" / "bin" / "python"
     python.parent.mkdir(parents=True)
@@ -1057,6 +1099,7 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
     with h5py.File(asked, "a") as file:
         group = file.create_group("accuracy")
         group["cpu_seconds"], group["unknowns"] = [0.1, 0.3], [100, 900]
+        group["elements"], group["increments"] = [10, 40], [15, 15]
         group["bounds/CYLINDER/normal_force"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.05, 0.1]]
         group["bounds/CYLINDER/heat_rate"] = np.zeros((2, 4))
     (figure,) = kept("accuracy", asked)
@@ -1092,6 +1135,7 @@ def test_the_legend_of_an_accuracy_shows_what_is_drawn(kept, result, bounds, lin
     with h5py.File(result, "a") as file:
         group = file.create_group("accuracy")
         group["cpu_seconds"], group["unknowns"] = [0.1, 0.3], [100, 900]
+        group["elements"], group["increments"] = [10, 40], [15, 15]
         rows = [[1, 1e4, 340.0 * bound, 340.0] for bound in bounds]
         group["bounds/CYLINDER/normal_force"] = rows
     (figure,) = kept("accuracy", result)

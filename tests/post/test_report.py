@@ -413,9 +413,9 @@ def test_the_page_says_what_there_is_where_nothing_is_judged(tmp_path):
 
 
 def test_what_is_no_result_is_refused(tmp_path, capsys):
-    assert main([str(tmp_path / "none.vtkhdf")]) == 1
+    assert main([str(tmp_path / "none.vtkhdf")]) == 2
     assert capsys.readouterr().err.endswith("none.vtkhdf: no such file\n")
-    assert main([]) == 1
+    assert main([]) == 2
     assert capsys.readouterr().err.count("\n") == 1
 
 

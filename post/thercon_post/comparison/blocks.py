@@ -146,12 +146,13 @@ def make_block(name, other, rows, a, b, columns, states):
     """Return the block of a quantity, with B's values on the rows of A."""
     state = name in states
     values, theirs = np.ma.asanyarray(a[name]), np.ma.asanyarray(b[other])
-    first = rows.first
+    first, left_out = rows.first, 0
     if rows.second is None:
         met = [along(theirs, curve, state) for curve in rows.curves]
         there = np.ma.concatenate(met) if met else theirs[:0]
     else:
-        first, second = single(name, rows, a, theirs)
+        first, second, left_out = united(rows, a, b, values, theirs)
+        first, second = single(name, first, second, a, theirs)
         there = theirs[second]
     padding = np.asarray(b.get("padding", np.zeros(len(theirs), dtype=bool)))
     curve = None
@@ -168,7 +169,7 @@ def make_block(name, other, rows, a, b, columns, states):
         there,
         int((~padding[rows.not_in_a]).sum()),
         len(rows.not_in_b),
-        rows.ambiguous,
+        rows.ambiguous + left_out,
         state=state,
         curve=curve,
     )
@@ -196,26 +197,53 @@ def along(values, curve, state):
     return np.ma.array(np.interp(at, nodes, heights))
 
 
-def single(name, rows, a, values):
+def united(rows, a, b, values, theirs):
+    """Return rows of A and B, and how many are left out.
+
+    Where a file has several points of a node and the other one has not as many, these are one if
+    their values are the same; else it is open which of them is meant.
+    """
+    first, second, left_out = rows.first, rows.second, 0
+    if "copy" in a:
+        starts, differs = groups(second, values[first])
+        left_out += int((starts & differs).sum())
+        first, second = first[starts & ~differs], second[starts & ~differs]
+    if "copy" in b:
+        starts, differs = groups(first, theirs[second])
+        left_out += int((starts & differs).sum())
+        first, second = first[starts & ~differs], second[starts & ~differs]
+    return first, second, left_out
+
+
+def groups(keys, values):
+    """Return which rows are the first of their key, and which have a key with several values."""
+    _, starts, group = np.unique(keys, return_index=True, return_inverse=True)
+    data = np.ma.filled(values.astype(float), np.nan)
+    reference = data[starts][group]
+    other = ~((data == reference) | (np.isnan(data) & np.isnan(reference)))
+    is_first = np.zeros(len(keys), dtype=bool)
+    is_first[starts] = True
+    return is_first, np.bincount(group, other, len(starts))[group] > 0
+
+
+def single(name, first, second, a, values):
     """Return rows of A and B once each; equal keys are an error unless B repeats the value."""
-    if len(np.unique(rows.second)) < len(rows.second):
-        k = int(np.flatnonzero(np.bincount(rows.second)[rows.second] > 1)[0])
+    if len(np.unique(second)) < len(second):
+        k = int(np.flatnonzero(np.bincount(second)[second] > 1)[0])
         raise UserError(
-            f"{name}: {match.row_words(a, rows.first[k])} and another row of A have the same row "
-            "of B: choose one contact with --contact"
+            f"{name}: {match.row_words(a, first[k])} and another row of A have the same row of B: "
+            "choose one contact with --contact"
         )
-    _, starts, group = np.unique(rows.first, return_index=True, return_inverse=True)
-    if len(starts) < len(rows.first):
-        data = np.ma.filled(values[rows.second].astype(float), np.nan)
-        reference = data[starts][group.ravel()]
-        differs = ~((data == reference) | (np.isnan(data) & np.isnan(reference)))
-        if differs.any():
-            k = int(np.flatnonzero(differs)[0])
-            raise UserError(
-                f"{name}: B has {match.row_words(a, rows.first[k])} twice with other values, "
-                f"{reference[k]:g} and {data[k]:g}"
-            )
-    return rows.first[starts], rows.second[starts]
+    starts, differs = groups(first, values[second])
+    if differs.any():
+        row = first[differs][0]
+        found = np.ma.filled(values[second][first == row].astype(float), np.nan)
+        other = found[found != found[0]][0]
+        raise UserError(
+            f"{name}: B has {match.row_words(a, row)} twice with other values, {found[0]:g} and "
+            f"{other:g}"
+        )
+    return first[starts], second[starts]
 
 
 def listed(names):

@@ -1,11 +1,10 @@
 """Command line of post/compare."""
 
-import sys
 from contextlib import ExitStack
 from pathlib import Path
 
 from .. import style
-from ..errors import UserError
+from ..errors import UserError, program
 from ..tables import write_table
 from . import from_csv, from_frd, from_result, mapping, picture, print_file, report
 from .blocks import listed
@@ -120,10 +119,7 @@ def stack(tables):
     return {name: [value for table in tables for value in table[name]] for name in tables[0]}
 
 
-def main(arguments=None):
+@program("compare")
+def main(arguments):
     """Run the command line; return the exit status."""
-    try:
-        return 0 if run(sys.argv[1:] if arguments is None else arguments) else 1
-    except UserError as error:
-        print(f"compare: error: {error}", file=sys.stderr)
-        return 2
+    return 0 if run(arguments) else 1

@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 
 from ..result import OPEN, Result
+from . import match
 from .series import Series, Source
 
 # Names of *VERIFY -> point data of /VTKHDF and component.
@@ -25,6 +26,7 @@ FIELDS = {
 def read(path, stack):
     """Return the source of a result file, kept open as long as `stack`."""
     result = stack.enter_context(Result(path))
+    result.rows()  # without an increment there is nothing to compare
     source = Source(str(path), "result", [history(result)])
     source.units, source.load_label = result.units, result.load_label
     if result.contact_names:
@@ -56,7 +58,7 @@ def pairs(result):
     contacts = result.contacts()
     states = [key for key, each in contacts[0].data.items() if is_state(each, contacts[0], result)]
     states = [key for key in states if all(key in contact.data for contact in contacts)]
-    frames = [partial(pair_frame, contacts, states, row) for row in range(result.increments)]
+    frames = [partial(pair_frame, result, contacts, states, row) for row in range(result.increments)]
     axes = {axis: result.history[axis] for axis in ("time", "load")}
     return Series([*states, "closed"], frames, axes)
 
@@ -66,14 +68,18 @@ def is_state(values, contact, result):
     return values.shape == (result.increments, len(contact["x"]))
 
 
-def pair_frame(contacts, states, row):
-    """Return the columns of all pairs at one increment; the node is the slave's."""
+def pair_frame(result, contacts, states, row):
+    """Return the columns of all pairs at one increment; the node is the slave's, which may lie
+    beside the contact point: beyond the end of the master."""
     frame = {
         "contact": np.concatenate([np.full(len(each["x"]), each.name) for each in contacts]),
         "node": np.concatenate([each["slave_node"] for each in contacts]),
     }
     for key in ("x", "y", "s"):
         frame[key] = np.concatenate([each[key] for each in contacts])
+    order = np.argsort(result.cells.node_id, kind="stable")
+    rows = order[np.searchsorted(result.cells.node_id, frame["node"], sorter=order) % len(order)]
+    frame["node_x"], frame["node_y"] = result.cells.points[rows].T
     for key in states:
         frame[key] = np.concatenate([each[key][row] for each in contacts])
     frame["closed"] = (frame["status"] != OPEN).astype(int)
@@ -82,7 +88,7 @@ def pair_frame(contacts, states, row):
 
 def nodes(result):
     """Return the fields of the nodes, one frame a time step of /VTKHDF."""
-    times = result.file["VTKHDF/Steps/Values"][()]
+    times = result.field_times
     present = result.file["VTKHDF/PointData"]
     names = [name for name, (array, _) in FIELDS.items() if array in present]
     load = np.interp(times, result.history["time"], result.history["load"])
@@ -91,9 +97,11 @@ def nodes(result):
 
 
 def node_frame(result, names, step):
-    """Return the columns of all nodes at one time step."""
+    """Return the columns of all nodes at one time step; a node of several bodies or sections is a
+    point for each of them, numbered by `copy`."""
     x, y = result.cells.points.T
     frame = {"node": result.cells.node_id, "x": x, "y": y}
+    frame["copy"] = match.numbered(result.cells.node_id)
     arrays = {FIELDS[name][0] for name in names}
     arrays = {array: result.point_data(array, step) for array in arrays}
     for name in names:

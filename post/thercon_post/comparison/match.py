@@ -67,9 +67,23 @@ def by_key(a, b):
         both = np.concatenate((np.ma.getdata(a[name]), np.ma.getdata(b[name])))
         inverse = np.unique(both, return_inverse=True)[1].ravel()
         codes = np.unique(codes * (inverse.max() + 1) + inverse, return_inverse=True)[1].ravel()
+    if "copy" in a and "copy" in b:  # the n-th with the n-th, where both have as many
+        here, there = (np.bincount(each, minlength=codes.max() + 1)[codes]
+                       for each in (codes[:count], codes[count:]))
+        copies = np.concatenate((a["copy"], b["copy"]))
+        codes = codes * (copies.max() + 1) + np.where(here == there, copies, 0)
     rows = join(codes[:count], codes[count:])
     check_places(a, b, rows, keys)
     return rows
+
+
+def numbered(keys):
+    """Return for each row how many rows up to it have its key."""
+    _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
+    order = np.argsort(inverse, kind="stable")
+    found = np.empty(len(keys), dtype=int)
+    found[order] = np.arange(len(keys)) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+    return found
 
 
 def join(first, second):
@@ -89,7 +103,7 @@ def check_places(a, b, rows, keys):
     """Raise the error for nodes that have one number and lie at different places."""
     if not all(name in columns for name in ("x", "y") for columns in (a, b)) or not len(rows.first):
         return
-    there, here = places(a)[rows.first], places(b)[rows.second]
+    there, here = places(a, "node_")[rows.first], places(b, "node_")[rows.second]
     apart = np.hypot(*(there - here).T)
     worst = int(np.argmax(apart))
     if apart[worst] > SAME_PLACE * size(places(a)):
@@ -101,9 +115,10 @@ def check_places(a, b, rows, keys):
         )
 
 
-def places(columns):
-    """Return the points of a frame (rows, 2)."""
-    return np.column_stack([np.ma.getdata(columns[name]) for name in ("x", "y")]).astype(float)
+def places(columns, of=""):
+    """Return the points of a frame (rows, 2), or those `of` its nodes where they lie elsewhere."""
+    names = [of + name if of + name in columns else name for name in ("x", "y")]
+    return np.column_stack([np.ma.getdata(columns[name]) for name in names]).astype(float)
 
 
 def size(points):

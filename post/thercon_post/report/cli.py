@@ -1,10 +1,9 @@
 """Command line of post/report."""
 
 import argparse
-import sys
 from pathlib import Path
 
-from ..errors import UserError
+from ..errors import UserError, program
 from ..result import Result
 from .page import page
 
@@ -42,13 +41,10 @@ def write(text, folder, name):
     return path
 
 
-def main(arguments=None):
+@program("report")
+def main(arguments):
     """Run the command line; return the exit status."""
-    try:
-        options = parser().parse_args(arguments)
-        with Result(options.result) as result:
-            print(write(page(result), options.out, result.name))
-    except UserError as error:
-        print(f"report: error: {error}", file=sys.stderr)
-        return 1
+    options = parser().parse_args(arguments)
+    with Result(options.result) as result:
+        print(write(page(result), options.out, result.name))
     return 0

@@ -1,7 +1,6 @@
-"""The numbers that the page draws, as one JSON text: arrays are base64 of little-endian numbers."""
+"""The numbers that the page draws: arrays are base64 of little-endian numbers."""
 
 import base64
-import json
 
 import numpy as np
 
@@ -17,9 +16,9 @@ COLOURS = ("viridis", "inferno", "RdBu_r")
 SHADES = 64
 
 
-def as_json(result):
+def page_data(result):
     """Return all that the script of the page needs."""
-    data = {
+    return {
         "load": loads(result),
         "units": {key: plain(unit) for key, unit in result.units.names.items()},
         "contacts": [contact_data(result, contact) for contact in contacts_of(result)],
@@ -27,7 +26,6 @@ def as_json(result):
         "fields": fields_data(result),
         "colours": {name: shades(name) for name in COLOURS},
     }
-    return json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
 def contacts_of(result):
@@ -123,7 +121,7 @@ def histories(result):
 
 def fields_data(result):
     """Return mesh and fields at the increments that the page keeps; None without fields."""
-    times = result.file["VTKHDF/Steps/Values"][()]
+    times = result.field_times
     if len(times) == 0:
         return None
     there = {q: result.field(q, len(times) - 1) for q in FIELD_SOURCES}

@@ -1,6 +1,6 @@
 'use strict';
 // The deformed bodies with one field: a raster of colour bands below outlines in SVG.
-function fieldPicture(data, {$, floats, integers, show, escaped, ticks, loadWords, withUnit, later}) {
+function fieldPicture(data, {$, floats, integers, show, html, put, ticks, loadWords, withUnit, later}) {
 const BANDS = 14, ROUNDING = 1e-6;   // values are stored with seven digits
 const all = data.fields, points = floats(all.points), count = points.length / 2;
 const nodes = integers(all.node_id), displacement = all.displacement && floats(all.displacement);
@@ -13,7 +13,7 @@ const bodies = [...new Set(groups.flatMap(group => Array.from(group.body)))].sor
 const palettes = Object.fromEntries(Object.entries(data.colours).map(([name, hex]) =>
    [name, hex.match(/.{6}/g).map(c => [0, 2, 4].map(k => parseInt(c.slice(k, k + 2), 16)))]));
 
-$('quantity').innerHTML = quantities.map((each, k) => `<option value="${k}">${escaped(each.label)}</option>`).join('');
+put($('quantity'), html`${quantities.map((each, k) => html`<option value="${k}">${each.label}</option>`)}`);
 $('quantity').value = String(Math.max(0, quantities.findIndex(each => each.key === 'von_mises')));
 if (!all.near) $('region').parentElement.hidden = true;
 if (!displacement) $('scale').parentElement.hidden = true;
@@ -184,19 +184,19 @@ function curves(list, places, box, {height, size}) {
 }
 function drawBars(scales, quantity, tallest) {
    const H = Math.max(150, Math.min(300, tallest) / scales.length) + 50;
-   $('bars').innerHTML = scales.map(scale => {
+   put($('bars'), html`${scales.map(scale => {
       const tall = (H - 58) / scale.bands, out = [];
-      scale.shades.forEach(([r, g, b], k) => out.push(`<rect x="4" y="${42 + (scale.bands - 1 - k) * tall}" width="18" height="${tall + 0.3}" fill="rgb(${r},${g},${b})"/>`));
+      scale.shades.forEach(([r, g, b], k) => out.push(html`<rect x="4" y="${42 + (scale.bands - 1 - k) * tall}" width="18" height="${tall + 0.3}" fill="rgb(${r},${g},${b})"/>`));
       const every = scale.bands > 8 ? 2 : 1;
       for (let k = 0; k <= scale.bands; k++) {
          if (Math.round(scale.first / scale.step + k) % every) continue;
          const y = 42 + (scale.bands - k) * tall;
-         out.push(`<path d="M22 ${y}h5" stroke="#333"/><text x="31" y="${y + 4}">${show(scale.first + k * scale.step)}</text>`);
+         out.push(html`<path d="M22 ${y}h5" stroke="#333"/><text x="31" y="${y + 4}">${show(scale.first + k * scale.step)}</text>`);
       }
       const whose = scales.length > 1 ? `bod${scale.bodies.length > 1 ? 'ies' : 'y'} ${scale.bodies.sort((a, b) => a - b).join(', ')}` : '';
-      return `<svg viewBox="0 0 136 ${H}" role="img" aria-label="Colours of ${escaped(quantity.label)} ${whose}"><text x="4" y="14">${escaped(quantity.unit)}</text>` +
-         `<text x="4" y="28">${whose}</text><rect x="4" y="42" width="18" height="${H - 58}" fill="none" stroke="#333"/>${out.join('')}</svg>`;
-   }).join('');
+      return html`<svg viewBox="0 0 136 ${H}" role="img" aria-label="Colours of ${quantity.label} ${whose}"><text x="4" y="14">${quantity.unit}</text>
+         <text x="4" y="28">${whose}</text><rect x="4" y="42" width="18" height="${H - 58}" fill="none" stroke="#333"/>${out}</svg>`;
+   })}`);
 }
 function tellRange(quantity, step, row, given) {
    const size = quantity.of === 'points' ? count : elements, values = quantity.values;
@@ -212,7 +212,7 @@ function tellRange(quantity, step, row, given) {
    const said = low < 0 ? 'no values at this increment' :
       `smallest ${show(values[low])} at ${where(low)}, largest ${show(values[high])} at ${where(high)}`;
    const late = row === given ? '' : ` (the page keeps no fields of increment ${given + 1})`;
-   $('range').innerHTML = `${escaped(withUnit(quantity.label, quantity.unit))}, ${escaped(loadWords(row))}${late}: <b>${said}</b>.`;
+   put($('range'), html`${withUnit(quantity.label, quantity.unit)}, ${loadWords(row)}${late}: <b>${said}</b>.`);
 }
 
 function draw(given) {
@@ -225,9 +225,9 @@ function draw(given) {
    const canvas = $('panel').querySelector('canvas'), shape = (box[2] - box[0]) / (box[3] - box[1]);
    $('panel').style.maxWidth = `min(100%, ${Math.round(640 * shape)}px)`;
    const frame = paint(places, quantity, step, scales, box, canvas);
-   const thin = edges.length ? `<path d="${curves(edges, places, box, frame)}" fill="none" stroke="#000" stroke-opacity="0.3" stroke-width="0.7"/>` : '';
-   $('lines').innerHTML = `<svg viewBox="0 0 ${frame.width} ${frame.height}" style="overflow:hidden" role="img" aria-label="${escaped(quantity.label)} on the deformed bodies, ${escaped(loadWords(all.rows[step]))}">` +
-      `${thin}<path d="${curves(boundary, places, box, frame)}" fill="none" stroke="#000" stroke-width="2"/></svg>`;
+   const thin = edges.length ? html`<path d="${curves(edges, places, box, frame)}" fill="none" stroke="#000" stroke-opacity="0.3" stroke-width="0.7"/>` : '';
+   put($('lines'), html`<svg viewBox="0 0 ${frame.width} ${frame.height}" style="overflow:hidden" role="img" aria-label="${quantity.label} on the deformed bodies, ${loadWords(all.rows[step])}">
+      ${thin}<path d="${curves(boundary, places, box, frame)}" fill="none" stroke="#000" stroke-width="2"/></svg>`);
    drawBars(scales, quantity, $('panel').clientHeight);
    tellRange(quantity, step, all.rows[step], given);
    $('field-note').textContent = [

@@ -8,8 +8,19 @@ const integers = text => new Int32Array(bytes(text).buffer);
 const BLUE = '#0072b2', ORANGE = '#c26a00', VERMILION = '#d55e00', GREY = '#666';
 
 // ---- words ----
-const escaped = text => String(text).replace(/[&<>"]/g,
-   c => ({'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;'})[c]);
+// What html`...` makes: each value put into it is escaped, unless it is such HTML, or a list of it.
+class Markup { constructor(text) { this.text = text; } }
+const escaped = text => String(text).replace(/[&<>"']/g,
+   c => ({'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;', "'": '&#39;'})[c]);
+const textOf = value => value instanceof Markup ? value.text :
+   Array.isArray(value) ? value.map(textOf).join('') : escaped(value);
+const html = (parts, ...values) =>
+   new Markup(parts.reduce((text, part, k) => text + textOf(values[k - 1]) + part));
+// The one way by which HTML comes onto the page.
+function put(box, markup) {
+   if (!(markup instanceof Markup)) throw new TypeError('no HTML made by html`...`');
+   box.innerHTML = markup.text;
+}
 function show(value, digits = 5) {
    if (!Number.isFinite(value)) return '–';
    const size = Math.abs(value);
@@ -48,17 +59,17 @@ function chart(box, options) {
    const X = v => left + (v - x0) / (x1 - x0) * (W - left - right);
    const Y = v => H - bottom - (v - y0) / (y1 - y0) * (H - top - bottom);
    const out = [], id = `${box.id}-clip`;
-   out.push(`<clipPath id="${id}"><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}"/></clipPath>`);
+   out.push(html`<clipPath id="${id}"><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}"/></clipPath>`);
    for (const t of ticks(x0, x1, 6))
-      out.push(`<path d="M${X(t)} ${H - bottom}v5" stroke="#333"/><text class="tick" x="${X(t)}" y="${H - bottom + 18}" text-anchor="middle">${show(t)}</text>`);
+      out.push(html`<path d="M${X(t)} ${H - bottom}v5" stroke="#333"/><text class="tick" x="${X(t)}" y="${H - bottom + 18}" text-anchor="middle">${show(t)}</text>`);
    for (const t of ticks(y0, y1, 5))
-      out.push(`<path d="M${left} ${Y(t)}H${W - right}" stroke="#e6e6e6"/><text class="tick" x="${left - 6}" y="${Y(t) + 4}" text-anchor="end">${show(t)}</text>`);
-   out.push(`<g clip-path="url(#${id})">`);
+      out.push(html`<path d="M${left} ${Y(t)}H${W - right}" stroke="#e6e6e6"/><text class="tick" x="${left - 6}" y="${Y(t) + 4}" text-anchor="end">${show(t)}</text>`);
+   out.push(html`<g clip-path="url(#${id})">`);
    for (const cloud of options.clouds || [])
-      out.push(`<path d="${cloud.points.map(([x, y]) => cloud.shape(X(x), Y(y))).join('')}" fill="${cloud.fill}" stroke="${cloud.colour}"/>`);
-   if (y0 < 0 && y1 > 0) out.push(`<path d="M${left} ${Y(0)}H${W - right}" stroke="#888"/>`);
+      out.push(html`<path d="${cloud.points.map(([x, y]) => cloud.shape(X(x), Y(y))).join('')}" fill="${cloud.fill}" stroke="${cloud.colour}"/>`);
+   if (y0 < 0 && y1 > 0) out.push(html`<path d="M${left} ${Y(0)}H${W - right}" stroke="#888"/>`);
    for (const x of options.uprights || [])
-      out.push(`<path d="M${X(x)} ${top}V${H - bottom}" stroke="#333" stroke-dasharray="2 3" class="upright"/>`);
+      out.push(html`<path d="M${X(x)} ${top}V${H - bottom}" stroke="#333" stroke-dasharray="2 3" class="upright"/>`);
    for (const line of options.lines) {
       let path = '', pen = 'M', marks = '';
       for (let k = 0; k < line.x.length; k++) {
@@ -69,16 +80,16 @@ function chart(box, options) {
          if (line.mark && !(line.plain && line.plain[k]))
             marks += `M${(X(a) - 2.6).toFixed(1)} ${Y(b).toFixed(1)}a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0 -5.2 0`;
       }
-      out.push(`<path d="${path}" fill="none" stroke="${line.colour}" stroke-width="${line.width || 1.6}" stroke-dasharray="${line.dash || ''}"/>`);
-      if (marks) out.push(`<path d="${marks}" fill="${line.hollow ? '#fff' : line.colour}" stroke="${line.colour}"/>`);
+      out.push(html`<path d="${path}" fill="none" stroke="${line.colour}" stroke-width="${line.width || 1.6}" stroke-dasharray="${line.dash || ''}"/>`);
+      if (marks) out.push(html`<path d="${marks}" fill="${line.hollow ? '#fff' : line.colour}" stroke="${line.colour}"/>`);
    }
-   out.push(`</g><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}" fill="none" stroke="#333"/>`);
-   out.push(`<text x="${(left + W - right) / 2}" y="${H - 8}" text-anchor="middle">${escaped(options.xLabel)}</text>`);
+   out.push(html`</g><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}" fill="none" stroke="#333"/>`);
+   out.push(html`<text x="${(left + W - right) / 2}" y="${H - 8}" text-anchor="middle">${options.xLabel}</text>`);
    if (options.yLabel)
-      out.push(`<text transform="translate(14 ${(top + H - bottom) / 2}) rotate(-90)" text-anchor="middle">${escaped(options.yLabel)}</text>`);
+      out.push(html`<text transform="translate(14 ${(top + H - bottom) / 2}) rotate(-90)" text-anchor="middle">${options.yLabel}</text>`);
    const total = H + legend(out, [...options.lines, ...(options.clouds || [])].filter(e => e.name), W, left, H + 14) ;
-   const caption = options.caption ? `<figcaption>${options.caption}</figcaption>` : '';
-   box.innerHTML = `<svg viewBox="0 0 ${W} ${total}" role="img" aria-label="${escaped(options.title)}">${out.join('')}</svg>${caption}`;
+   const caption = options.caption ? html`<figcaption>${options.caption}</figcaption>` : '';
+   put(box, html`<svg viewBox="0 0 ${W} ${total}" role="img" aria-label="${options.title}">${out}</svg>${caption}`);
 }
 // Adds the entries below the axes; returns the height they take.
 function legend(out, entries, width, left, top) {
@@ -86,9 +97,9 @@ function legend(out, entries, width, left, top) {
    for (const entry of entries) {
       const room = 38 + 7 * entry.name.length;
       if (x > left && x + room > width) { x = left; y += 18; }
-      out.push(entry.shape ? `<path d="${entry.shape(x + 12, y - 4)}" fill="${entry.fill}" stroke="${entry.colour}"/>` :
-         `<path d="M${x} ${y - 4}h24" stroke="${entry.colour}" stroke-width="${entry.width || 1.6}" stroke-dasharray="${entry.dash || ''}"/>`);
-      out.push(`<text x="${x + 30}" y="${y}">${escaped(entry.name)}</text>`);
+      out.push(entry.shape ? html`<path d="${entry.shape(x + 12, y - 4)}" fill="${entry.fill}" stroke="${entry.colour}"/>` :
+         html`<path d="M${x} ${y - 4}h24" stroke="${entry.colour}" stroke-width="${entry.width || 1.6}" stroke-dasharray="${entry.dash || ''}"/>`);
+      out.push(html`<text x="${x + 30}" y="${y}">${entry.name}</text>`);
       x += room + 10;
    }
    return entries.length ? y - top + 22 : 0;
@@ -118,7 +129,7 @@ const contacts = data.contacts.map(each => {
    return decoded;
 });
 const contact = () => contacts[$('interface') ? Number($('interface').value) : 0];
-const part = () => contact().part && `${escaped(contact().part)}.`;
+const part = () => contact().part && `${contact().part}.`;
 const rowOf = (values, width, k = row) => values.subarray(k * width, (k + 1) * width);
 // Points of all edges of a kind beside the main one.
 function further(key) {
@@ -175,7 +186,7 @@ function profile(id, title, quantities, label, zero, caption) {
       lines.push({x: points.map(p => p[0]), y: points.map(p => p[1]), plain: points.map(p => p[2]),
          colour, dash, name, mark: !dash, hollow: key === 'shear'});
    }
-   $(id).innerHTML = '';
+   put($(id), html``);
    if (!lines.length) return;
    for (const key of ['contact', 'stick']) uprights.push(...finite(rowOf(c.edges[key], 4)));
    const room = 0.02 * (c.window[1] - c.window[0]) || 0.5;
@@ -197,18 +208,18 @@ function drawProfiles() {
    if (shear && mu) tractions.push(['pressure', bothSigns ? '±μp' : 'μp', GREY, '3 3', mu]);
    if (shear && mu && bothSigns) tractions.push(['pressure', '', GREY, '3 3', -mu]);
    profile('tractions', 'Contact tractions', tractions, withUnit('traction', unit('stress')), true,
-      `Tractions, ${escaped(said)}. Dotted lines are the edges of contact and stick. ${part()}`);
+      `Tractions, ${said}. Dotted lines are the edges of contact and stick. ${part()}`);
    profile('flux', 'Heat flux', [['heat_flux', 'heat flux q', '#000', '']], withUnit('heat flux q', unit('flux')), false,
-      `Heat flux from slave to master, ${escaped(said)}.`);
-   profile('gap', 'Gap', [['gap', 'gap', BLUE, '']], withUnit('gap', unit('length')), false, `Gap, ${escaped(said)}.`);
+      `Heat flux from slave to master, ${said}.`);
+   profile('gap', 'Gap', [['gap', 'gap', BLUE, '']], withUnit('gap', unit('length')), false, `Gap, ${said}.`);
 }
 function drawTotals() {
    const c = contact(), words = [];
-   const add = (name, value, of) => { if (Number.isFinite(value)) words.push(`<span>${name} <b>${show(value)}</b> ${escaped(of)}</span>`); };
+   const add = (name, value, of) => { if (Number.isFinite(value)) words.push(html`<span>${name} <b>${show(value)}</b> ${of}</span>`); };
    for (const each of c.totals) add(each.label, each.values[row], each.unit);
    add(`edge of contact ${c.axis} =`, c.main.contact[row], unit('length'));
    add(`edge of stick ${c.axis} =`, c.main.stick[row], unit('length'));
-   $('totals').innerHTML = words.join('');
+   put($('totals'), html`${words}`);
 }
 function drawContact() {
    if (!contacts.length) return;
@@ -222,13 +233,13 @@ function drawHistories() {
    const low = Math.min(...abscissa), high = Math.max(...abscissa), room = 0.03 * (high - low) || 0.5;
    const box = $('histories');
    if (!box.childElementCount)
-      box.innerHTML = data.history.map((_, k) => `<figure id="history-${k}"></figure>`).join('');
+      put(box, html`${data.history.map((_, k) => html`<figure id="history-${k}"></figure>`)}`);
    data.history.forEach((each, k) => chart($(`history-${k}`), {
       width: 360, height: 200, title: `${each.label} over the load`,
       xLabel: data.load.axis, xRange: [low - room, high + room], yLabel: each.unit,
       yRange: rangeOf(each.values.map(v => v === null ? NaN : v), true), uprights: [abscissa[row]],
       lines: [{x: abscissa, y: each.values.map(v => v === null ? NaN : v), colour: BLUE, mark: count <= 60}],
-      caption: `${escaped(each.label)}: <b>${show(each.values[row] === null ? NaN : each.values[row])}</b> ${escaped(each.unit)}`,
+      caption: html`${each.label}: <b>${show(each.values[row] === null ? NaN : each.values[row])}</b> ${each.unit}`,
    }));
 }
 
@@ -245,7 +256,7 @@ function later() {
    if (!waiting) requestAnimationFrame(draw);
    waiting = true;
 }
-const fields = data.fields ? fieldPicture(data, {$, floats, integers, show, escaped, ticks, loadWords, withUnit, later}) : null;
+const fields = data.fields ? fieldPicture(data, {$, floats, integers, show, html, put, ticks, loadWords, withUnit, later}) : null;
 if (!fields) $('fields').hidden = true;
 $('load').addEventListener('input', () => { row = Number($('load').value) - 1; later(); });
 for (const id of ['interface', 'same']) if ($(id)) $(id).addEventListener('change', later);

@@ -1,73 +1,80 @@
 """The page: what does not change with the load, around the script that draws the rest."""
 
-from html import escape
-from pathlib import Path
-
 from ..result import text
 from . import tables
-from .data import as_json, contacts_of
+from .data import contacts_of, page_data
+from .html import as_json, digest, html, joined, own
 from .listing import read_listing
 
-HERE = Path(__file__).parent
-# Nothing on the page may ask for anything outside it.
-POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"
+# Nothing on the page may ask for anything outside it, and no script but its own may run.
+POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; script-src '{}'; img-src data:; "
+    "base-uri 'none'; form-action 'none'"
+)
+PAGE = """<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<link rel="icon" href="data:,">
+<title>{heading} – {name}, thercon</title>
+<style>{styles}</style>
+</head>
+<body>
+<a class="skip" href="#summary">Skip to the summary</a>
+<header>
+<h1>{heading}</h1>
+<p>{file}, written by thercon {version}</p>
+<nav aria-label="Sections"><ul>{links}</ul></nav>
+</header>
+{bar}
+<main>
+<noscript><p class="note">The pictures need JavaScript; the tables do not.</p></noscript>
+{body}
+</main>
+<script type="application/json" id="data">{data}</script>
+<script>{script}</script>
+</body>
+</html>
+"""
+SECTION = """<section id="{key}" aria-labelledby="{key}-title">
+<h2 id="{key}-title">{title}</h2>
+{content}
+</section>"""
+LINK = '<li><a href="#{key}">{title}</a></li>'
 
 
 def page(result):
     """Return the whole page as text."""
     result.rows()  # without an increment there is nothing to show
     listing = read_listing(result.path.with_suffix(".lst"), result.deck)
-    heading = text(result.file["run"].attrs.get("heading", "")) or result.name
+    summary = [tables.facts(result, listing), tables.bounds(result), tables.rounds(result, listing)]
     sections = [
-        ("summary", "Summary", tables.facts(result, listing) + tables.bounds(result)
-         + tables.rounds(result, listing)),
+        ("summary", "Summary", joined(summary)),
         *([("contact", "Contact", contact_section(result))] if result.contact_names else []),
-        ("fields", "Fields", FIELDS),
-        ("history", "History", '<div id="histories" class="plots"></div>'),
+        ("fields", "Fields", html(FIELDS)),
+        ("history", "History", html('<div id="histories" class="plots"></div>')),
         ("checks", "Checks", tables.checks(result, listing)),
         ("warnings", "Warnings", tables.warnings(result, listing)),
         ("deck", "Deck", tables.deck(result)),
     ]
-    links = "".join(f'<li><a href="#{key}">{title}</a></li>' for key, title, _ in sections)
-    body = "\n".join(
-        f'<section id="{key}" aria-labelledby="{key}-title">\n<h2 id="{key}-title">{title}</h2>\n'
-        f"{content}\n</section>"
-        for key, title, content in sections
+    named = [dict(zip(("key", "title", "content"), section)) for section in sections]
+    script = own("field.js", "page.js")
+    return html(
+        PAGE,
+        policy=POLICY.format(digest(script)),
+        heading=run_text(result, "heading") or result.name,
+        name=result.name,
+        file=result.path.name,
+        version=run_text(result, "version"),
+        styles=own("page.css"),
+        links=joined(html(LINK, **each) for each in named),
+        bar=load_bar(result),
+        body=joined([html(SECTION, **each) for each in named], "\n"),
+        data=as_json(page_data(result)),
+        script=script,
     )
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="{POLICY}">
-<link rel="icon" href="data:,">
-<title>{escape(heading)} – {escape(result.name)}, thercon</title>
-<style>
-{own("page.css")}</style>
-</head>
-<body>
-<a class="skip" href="#summary">Skip to the summary</a>
-<header>
-<h1>{escape(heading)}</h1>
-<p>{escape(result.path.name)}, written by thercon {escape(run_text(result, "version"))}</p>
-<nav aria-label="Sections"><ul>{links}</ul></nav>
-</header>
-{load_bar(result)}
-<main>
-<noscript><p class="note">The pictures need JavaScript; the tables do not.</p></noscript>
-{body}
-</main>
-<script type="application/json" id="data">{as_json(result)}</script>
-<script>
-{own("field.js")}{own("page.js")}</script>
-</body>
-</html>
-"""
-
-
-def own(name):
-    """Return a file that stands beside this one."""
-    return (HERE / name).read_text(encoding="utf-8")
 
 
 def run_text(result, key):
@@ -77,31 +84,26 @@ def run_text(result, key):
 
 def load_bar(result):
     """Return the slider that chooses the increment of all pictures."""
-    last = result.increments
-    return f"""<form id="bar" aria-label="Load of all pictures">
+    return html("""<form id="bar" aria-label="Load of all pictures">
 <label for="load">Increment</label>
 <input type="range" id="load" min="1" max="{last}" step="1" value="{last}">
 <output id="now" for="load"></output>
-</form>"""
+</form>""", last=result.increments)
 
 
 def contact_section(result):
     """Return the frame of the pictures of a contact."""
-    options = "".join(
-        f'<option value="{k}">{escape(contact.name)}</option>'
-        for k, contact in enumerate(contacts_of(result))
-    )
-    choice = f'<p class="choice"><label for="interface">Interface</label> <select id="interface">' \
-             f"{options}</select> <label><input type=\"checkbox\" id=\"same\"> " \
-             "same scale at every load</label></p>"
-    return f"""{choice}
+    options = [html('<option value="{}">{}</option>', k, contact.name)
+               for k, contact in enumerate(contacts_of(result))]
+    return html("""<p class="choice"><label for="interface">Interface</label> <select id="interface">\
+{options}</select> <label><input type="checkbox" id="same"> same scale at every load</label></p>
 <div id="totals" aria-live="polite"></div>
 <div class="plots">
 <figure id="zones"></figure>
 <figure id="tractions"></figure>
 <figure id="flux"></figure>
 <figure id="gap"></figure>
-</div>"""
+</div>""", options=joined(options))
 
 
 FIELDS = """<form class="choice" aria-label="What the field shows">

@@ -1,12 +1,12 @@
 """Tables of the page that do not change with the load."""
 
 import re
-from html import escape
 
 import numpy as np
 
 from ..result import text, words_of
 from .data import contacts_of, plain
+from .html import html, joined
 
 FACTS = {  # attribute of /run -> words
     "modelled": "modelled",
@@ -18,18 +18,17 @@ FACTS = {  # attribute of /run -> words
 
 
 def table(caption, head, rows, numbers=()):
-    """Return a table; `rows` are cells of HTML, those in the columns `numbers` set as numbers."""
-    looks = [' class="number"' if k in numbers else "" for k in range(len(head))]
-    top = "".join(f'<th scope="col"{look}>{each}</th>' for look, each in zip(looks, head))
+    """Return a table; the columns `numbers` of `rows` are set as numbers."""
+    looks = [html(' class="number"') if k in numbers else "" for k in range(len(head))]
+    top = joined(html('<th scope="col"{}>{}</th>', *each) for each in zip(looks, head))
     lines = []
     for row in rows:
-        cells = [f'<th scope="row">{row[0]}</th>']
-        for k, cell in enumerate(row[1:], 1):
-            cells.append(f"<td{looks[k]}>{cell}</td>")
-        lines.append(f"<tr>{''.join(cells)}</tr>")
-    return (
-        f'<div class="wide"><table><caption>{caption}</caption><thead><tr>{top}</tr></thead>'
-        f"<tbody>{''.join(lines)}</tbody></table></div>"
+        cells = [html('<th scope="row">{}</th>', row[0])]
+        cells += [html("<td{}>{}</td>", looks[k], cell) for k, cell in enumerate(row[1:], 1)]
+        lines.append(html("<tr>{}</tr>", joined(cells)))
+    return html(
+        '<div class="wide"><table><caption>{}</caption><thead><tr>{}</tr></thead>'
+        "<tbody>{}</tbody></table></div>", caption, top, joined(lines)
     )
 
 
@@ -42,26 +41,26 @@ def facts(result, listing):
     rows = []
     if listing:
         told = ("outcome", listing.outcome), ("ended early", listing.ended_early)
-        rows += [(name, escape(words)) for name, words in told if words]
+        rows += [(name, words) for name, words in told if words]
     rows += [
         ("increments", result.increments),
-        ("last increment", escape(last_load(result))),
+        ("last increment", last_load(result)),
         ("checks", f"{passed} passed, {failed} failed" if passed + failed else "none"),
         ("mesh", f"{cells.count} elements, {len(np.unique(cells.node_id))} nodes, "
          f"{len(bodies)} bod{'y' if len(bodies) == 1 else 'ies'}"),
     ]
-    rows += [(words, escape(text(run[key]))) for key, words in FACTS.items() if key in run]
-    if "accuracy" in result.file:
+    rows += [(words, text(run[key])) for key, words in FACTS.items() if key in run]
+    if result.accuracy:
         words = listing.accuracy[0] if listing and listing.accuracy else ""
         words = words.removeprefix("requested accuracy ")
-        rows += [("requested accuracy", escape(words) or accuracy_words(result.file["accuracy"]))]
+        rows += [("requested accuracy", words or accuracy_words(result.accuracy))]
     spent = f"{seconds:.2f} s"
-    if "accuracy" in result.file:
-        cpu = result.file["accuracy/cpu_seconds"][:]
+    if result.accuracy:
+        cpu = result.accuracy["cpu_seconds"]
         spent += f" in round {len(cpu)}; all rounds took {sum(cpu):.2f} CPU seconds"
     rows += [("time of the run", spent)]
-    listed = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in rows)
-    return f'<dl class="facts">{listed}</dl>'
+    listed = joined(html("<div><dt>{}</dt><dd>{}</dd></div>", *row) for row in rows)
+    return html('<dl class="facts">{}</dl>', listed)
 
 
 def last_load(result):
@@ -87,22 +86,21 @@ def bounds(result):
             rows[-1][3] = contact.unit(key)
         head = ["quantity", "value", "error bound", "unit", "by the mesh", "by increments",
                 "by iteration"]
-        caption = f"Interface {escape(contact.name)} at the last increment"
+        caption = f"Interface {contact.name} at the last increment"
         found.append(table(caption, head, rows, (1, 2, 4, 5, 6)))
-    return "".join(found)
+    return joined(found)
 
 
 def bound_row(result, contact, key, value):
     """Return value, bound and its parts; words where nothing is known of them, or to be known."""
-    errors = result.file.get(f"errors/{contact.name}/{key}")
+    errors = result.error_bounds(contact, key)
     row = ["", number(value), "not estimated", "", "–", "–", "–"]
-    if errors is None or len(errors) == 0 or result.file["errors/time"][-1] != \
-            result.history["time"][-1]:
+    if errors is None:
         return row
     if key.startswith("edge_") and value >= contact["s"][-1]:
         row[2] = "none: end of the face"
         return row
-    _, bound, *parts = errors[-1]
+    _, bound, *parts = errors
     row[4:] = [number(part, 2) for part in parts]
     row[2] = "uncertain"
     if np.isfinite(bound):
@@ -114,31 +112,31 @@ def bound_row(result, contact, key, value):
 def accuracy_words(group):
     """Return whether a requested accuracy is reached, after how many rounds."""
     count = len(group["unknowns"])
-    words = f"{'' if group.attrs['reached'] else 'not '}reached after {count} round"
+    words = f"{'' if group['reached'] else 'not '}reached after {count} round"
     words += "" if count == 1 else "s"
-    return words + (f"; round {count + 1} was begun" if group.attrs["later_round_begun"] else "")
+    return words + (f"; round {count + 1} was begun" if group["later_round_begun"] else "")
 
 
 def rounds(result, listing):
     """Return the rounds of a requested accuracy: what each cost, and its bounds."""
-    group = result.file.get("accuracy")
+    group = result.accuracy
     if group is None:
         return ""
-    named = [(contact.name, words_of(key), contact.unit(key), rows[:])
+    named = [(contact.name, words_of(key), contact.unit(key), rows)
              for contact in contacts_of(result)
              for key, rows in group["bounds"].get(contact.name, {}).items()]
-    costs = [group[key][:] for key in ("unknowns", "elements", "increments")]
+    costs = [group[key] for key in ("unknowns", "elements", "increments")]
     found = [[k + 1, *(each[k] for each in costs), f"{seconds:.2f}"]
-             for k, seconds in enumerate(group["cpu_seconds"][:])]
+             for k, seconds in enumerate(group["cpu_seconds"])]
     head = ["round", "unknowns", "elements", "increments", "CPU seconds"]
     told = table("Rounds of the requested accuracy", head, found, range(1, 5))
     head = ["interface", "quantity", *(f"round {k + 1}" for k in range(len(found))), "target",
             "unit", "verdict"]
     said = listing.accuracy if listing else []
-    rows = [[escape(name), words, *target_cells(each, unit, remark(said, f"{name} {words}"))]
+    rows = [[name, words, *target_cells(each, unit, remark(said, f"{name} {words}"))]
             for name, words, unit, each in named]
-    return told + table("Error bounds of each round against their targets", head, rows,
-                        range(2, len(found) + 3))
+    return joined([told, table("Error bounds of each round against their targets", head, rows,
+                               range(2, len(found) + 3))])
 
 
 def remark(said, target):
@@ -158,10 +156,11 @@ def target_cells(rows, unit, remark):
     cells = ["–" if each[0] == 0 else "uncertain" if np.isnan(each[2]) else number(each[2], digits)
              for each in rows]
     if step == 0:
-        return [*cells, "–", unit, f"nothing to judge{escape(remark)}"]
+        return [*cells, "–", unit, f"nothing to judge{remark}"]
     verdict = "met" if bound <= allowed else "not met"
     look = "pass" if bound <= allowed else "fail"
-    return [*cells, number(allowed, digits), unit, f'<span class="{look}">{verdict}</span>{escape(remark)}']
+    told = html('<span class="{}">{}</span>{}', look, verdict, remark)
+    return [*cells, number(allowed, digits), unit, told]
 
 
 def number(value, digits=6):
@@ -171,9 +170,8 @@ def number(value, digits=6):
 
 def missing(result):
     """Return the note where the listing of the run is not beside its result."""
-    name = escape(result.path.with_suffix(".lst").name)
-    return (f'<p class="note">They are in the listing of the run, but {name} beside the result is '
-            "missing, incomplete or of another deck.</p>")
+    return html('<p class="note">They are in the listing of the run, but {} beside the result is '
+                "missing, incomplete or of another deck.</p>", result.path.with_suffix(".lst").name)
 
 
 def checks(result, listing):
@@ -181,22 +179,21 @@ def checks(result, listing):
     run = result.file["run"].attrs
     passed, failed = (int(run.get(f"verify_{key}", 0)) for key in ("passed", "failed"))
     if passed + failed == 0:
-        return "<p>The deck has no *VERIFY checks.</p>"
-    told = f"<p>{passed} passed, {failed} failed.</p>"
+        return html("<p>The deck has no *VERIFY checks.</p>")
+    told = html("<p>{} passed, {} failed.</p>", passed, failed)
     if listing is None:
-        return told + missing(result)
+        return joined([told, missing(result)])
     head = ["card", "quantity", "where", "time", "expected", "found", "deviation", "allowed",
             "verdict", "kind and source"]
     rows = []
     for check in sorted(listing.checks, key=lambda each: each.verdict == "PASS"):
-        source = escape(f"{check.kind}: {check.source}" if check.source else check.kind)
-        verdict = f'<span class="{check.verdict.lower()}">{check.verdict}</span>'
-        if check.failed:
-            verdict += f" {escape(check.failed)}"
+        source = f"{check.kind}: {check.source}" if check.source else check.kind
+        verdict = html('<span class="{}">{}</span>{}', check.verdict.lower(), check.verdict,
+                       f" {check.failed}" if check.failed else "")
         words = (check.card, check.quantity, check.where, check.time, check.expected, check.found,
                  check.deviation, f"{check.allowed} {check.measure}")
-        rows.append([*map(escape, words), verdict, source])
-    return told + table("*VERIFY checks, failed ones first", head, rows, (3, 4, 5, 6, 7))
+        rows.append([*words, verdict, source])
+    return joined([told, table("*VERIFY checks, failed ones first", head, rows, (3, 4, 5, 6, 7))])
 
 
 def warnings(result, listing):
@@ -204,14 +201,14 @@ def warnings(result, listing):
     if listing is None:
         return missing(result)
     if not listing.warnings:
-        return "<p>No warnings.</p>"
-    items = "".join(f"<li>{escape(words)}</li>" for words in listing.warnings)
-    return f'<ul class="warnings">{items}</ul>'
+        return html("<p>No warnings.</p>")
+    items = joined(html("<li>{}</li>", words) for words in listing.warnings)
+    return html('<ul class="warnings">{}</ul>', items)
 
 
 def deck(result):
     """Return the card images with their numbers."""
     width = len(str(len(result.deck)))
     cards = "\n".join(f"{k:{width}}  {card}" for k, card in enumerate(result.deck, 1))
-    return (f"<details><summary>{len(result.deck)} cards</summary>"
-            f'<pre tabindex="0" aria-label="Deck">{escape(cards)}</pre></details>')
+    return html('<details><summary>{} cards</summary><pre tabindex="0" aria-label="Deck">{}</pre>'
+                "</details>", len(result.deck), cards)
