@@ -156,7 +156,7 @@ contains
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
       class(accelerator_type), allocatable :: accelerator
-      type(iteration_record_type) :: passes((1 + path_share)*controls%max_iterations)
+      type(iteration_record_type), allocatable :: passes(:)
       type(contact_state_type) :: good
       integer :: turns(size(next%omega)), away, before, i
       real(dp) :: wanted
@@ -165,11 +165,13 @@ contains
       turns = 0
       away = 0
       wanted = controls%tolerance
+      allocate (passes(0))
       call begin_passes(bodies, data, next%omega, workspace)
       call make_accelerator(controls, size(next%omega), accelerator)
       associate (pass => workspace%pass, record => workspace%record)
-         do i = 1, size(passes)
+         do i = 1, huge(i) - 1
             if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
+            if ((i - 1)/(1 + path_share) >= controls%max_iterations) exit
             ! Where the edge goes over a contact point U jumps, and there is no path.
             if (workspace%cuts_hats .and. accelerator%follows_path) exit
             call check_overdue(error)
@@ -179,10 +181,10 @@ contains
             if (workspace%cuts_hats) workspace%cut = cut_hats_at(workspace%edge_hats, &
                bodies%points%weight, pass%omega)
             call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
-            passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
-               residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
+            passes = [passes, iteration_record_type(increment=record%increment, &
+               iteration=before + i, residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
                g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
-               pairs_changed=count(next%contact%contact_state /= good%contact_state))
+               pairs_changed=count(next%contact%contact_state /= good%contact_state))]
             pass%found = .not. allocated(error)
             if (.not. pass%found) then
                if (accelerator%retreats) call accelerator%next(pass)
@@ -259,12 +261,12 @@ contains
    subroutine close_passes(record, passes, last, wanted, error)
       type(solution_report_type), intent(inout) :: record
       type(iteration_record_type), intent(in) :: passes(:)
-      integer, intent(in) :: last   !! the loop's, beyond the last pass where that was not enough
+      integer, intent(in) :: last   !! at which the loop ended, with an error or beyond all passes
       real(dp), intent(in) :: wanted
       type(error_type), allocatable, intent(inout) :: error
       integer :: n
 
-      n = min(last, count(passes%iteration > 0))
+      n = size(passes)
       if (allocated(error)) n = last - 1
       record%iterations = [record%iterations, passes(:n)]
       if (allocated(error) .or. n == 0) return

@@ -225,6 +225,20 @@ def test_a_deck_of_static_steps_has_no_heat(tmp_path):
     assert "NEVER APPROACHED" not in listing
 
 
+def test_given_temperatures_are_a_result_of_a_deck_of_static_steps(tmp_path):
+    deck = rods(tmp_path / "given.inp", [
+        (STATIC, HELD + pushed(PUSH) + "*TEMPERATURE\nHOT, 40.\nCOLD.BOTTOM, 15.\n")])
+    with h5py.File(solve(deck)) as file:
+        height = file["VTKHDF/Points"][()][:, 1]
+        count = len(height)
+        temperature = file[f"{POINTS}/temperature"][()][-count:]
+    hot = height > 0.5 * MESHED_GAP
+    np.testing.assert_allclose(temperature[hot], 40.0, rtol=1e-12)
+    at_bottom = np.isclose(height, -LENGTH)
+    np.testing.assert_allclose(temperature[at_bottom], 15.0, rtol=1e-12)
+    np.testing.assert_allclose(temperature[~hot & ~at_bottom], 0.0, atol=1e-12)
+
+
 def test_what_no_step_solved_so_far_is_nan(tmp_path):
     steps = [(HEAT, HEATED), (STATIC, HELD + pushed(PUSH))]
     result = solve(rods(tmp_path / "later.inp", steps))

@@ -96,6 +96,17 @@ def test_what_a_step_does_not_solve_has_no_error(result):
     assert np.isnan(rows(result, "heat_flux_error")[2]).all()
 
 
+def test_a_heat_step_keeps_the_error_of_the_stress_that_it_keeps(tmp_path):
+    """Mechanics first: the body, which does not expand, keeps its stress."""
+    deck = write(tmp_path / "kept.inp", PULL + HEAT)
+    with h5py.File(solve(deck)) as file:
+        history, field = (file[f"{group}/stress_error"][()] for group in ("history",
+                                                                        "VTKHDF/CellData"))
+    assert 0.0 < history[0, 0] < 1.0
+    np.testing.assert_array_equal(history[1:], history[:1].repeat(2, axis=0))
+    np.testing.assert_array_equal(field.reshape(3, -1)[1:], field.reshape(3, -1)[[0, 0]])
+
+
 def test_listing_tells_the_errors_at_the_end_of_each_step(result):
     """One line a body and step."""
     data, listing = result

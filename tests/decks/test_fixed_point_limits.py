@@ -137,3 +137,16 @@ def test_a_pair_without_weight_does_not_keep_the_others_from_converging(tmp_path
     np.testing.assert_allclose(face["conductance"][1:], 0.01 / (0.01 + face["gap"][1:]), rtol=1e-7)
     # A parabola that ends at the next node, at half the radius, carries the load on the whole area.
     assert face["conductance"][0] == pytest.approx(3.0 + 2 * 0.01 / 0.5**2, rel=1e-6)
+
+
+@pytest.mark.parametrize("method", ["NEWTON", "ZAITSEV", "PICARD", "ANDERSON"])
+def test_any_number_of_iterations_may_be_allowed(tmp_path, method):
+    """The largest one that a deck can give changes nothing where a few are enough."""
+    cards = stack("none", 2, 1)
+    for limit in ("50", "2147483647"):
+        at = cards.index("*STEP")
+        deck = write(tmp_path / f"limit{limit}.inp", cards[:at], [
+            f"*FIXED POINT, METHOD={method}, MAXITER={limit}"], cards[at:])
+        with h5py.File(solve(deck)) as file:
+            force = file["contact/F1/normal_force"][-1]
+        assert force == pytest.approx(YOUNG * EXPANSION * HOT / 2 / (1 - POISSON), rel=1e-9)

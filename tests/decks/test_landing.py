@@ -2,6 +2,8 @@
 
 import h5py
 import numpy as np
+import pytest
+from blocks import block, solid, write
 from deck_runs import CYLINDER, copy_deck, run, solve
 
 DIRECT = {", STEADY STATE, DIRECT": ", STEADY STATE", "20., 900.": "100., 900."}
@@ -35,3 +37,21 @@ def test_two_nodes_paired_twice_are_refused_by_their_numbers(tmp_path):
     assert "nodes 1 and" in process.stderr
     assert "by an earlier *CONTACT PAIR already" in process.stderr
     assert "*CONTACT PAIR, INTERACTION=FACES, NAME=AGAIN" in process.stderr
+
+
+@pytest.mark.parametrize(("timing", "corner", "ends"), [
+    ("", 0.3, [0.3, 0.5, 1.0, 1.3, 1.5, 2.0, 2.5, 3.0]),
+    ("", 1.3, [0.5, 1.0, 1.5, 2.0, 2.3, 2.5, 3.0]),
+    (", TIME=TOTAL TIME", 0.3, [0.3, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0]),
+    (", TIME=TOTAL TIME", 1.3, [0.5, 1.0, 1.3, 1.5, 2.0, 2.5, 3.0])])
+def test_increments_land_on_the_corners_of_amplitudes_in_step_or_total_time(
+        tmp_path, timing, corner, ends):
+    """Steps of 1 and 2 in increments of 0.5."""
+    deck = write(tmp_path / "corner.inp", block("BLOCK", [0.0, 1.0], [0.0, 1.0]),
+                 solid("BLOCK", 1000.0, 0.0), [
+        f"*AMPLITUDE, NAME=TENT{timing}", f"0., 0., {corner}, 1., 3., 0.",
+        "*BOUNDARY", "BLOCK.BOTTOM, 1, 2",
+        "*STEP", "*STATIC", "0.5, 1.", "*DLOAD, AMPLITUDE=TENT", "1, P3, 1.", "*END STEP",
+        "*STEP", "*STATIC", "0.5, 2.", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        np.testing.assert_allclose(file["history/time"], ends, rtol=1e-12)

@@ -3,6 +3,7 @@
 import h5py
 import numpy as np
 import pytest
+from blocks import without_unused_surfaces, write
 from deck_runs import run, solve
 from physics import material, mesh
 from test_mortar_patch import EXACT, PRESSURE, contact, deck_of, even, joint
@@ -101,3 +102,23 @@ def test_faces_that_no_mortar_point_fits_are_refused(tmp_path, kind):
     at = next(k for k, card in enumerate(corner) if card.startswith("*SURFACE INTERACTION"))
     corner[at:at] = ["*SURFACE, NAME=ROUND", "1, S1", "1, S4"]
     assert "the slave surface ROUND goes round a corner at node 1:" in refused(path, corner)
+
+
+@pytest.mark.parametrize("slave", ["UP", "LOW"])
+@pytest.mark.parametrize("kind", ["CAX4", "CAX8"])
+def test_heat_crosses_a_radial_gap_on_the_radius_midway(tmp_path, kind, slave):
+    """A gas between cylinders with radii 1 and 1.1, which themselves do not resist: its conductance
+    1/(0.1 + 0.9) is that of an area of radius 1.05."""
+    cards = [*mesh("LOW", [0.5, 1.0], even(0.0, 1.0, 3), kind),
+             *mesh("UP", [1.1, 2.0], even(0.0, 1.0, 2), kind, first=101),
+             *(card for name in ("LOW", "UP")
+               for card in material(name, (1e5, 0.0), 0.0, conductivity=1e9))]
+    pair = ["UP.LEFT", "LOW.RIGHT"] if slave == "UP" else ["LOW.RIGHT", "UP.LEFT"]
+    cards += ["*SURFACE INTERACTION, NAME=I", "*GAP LAW, TYPE=GAS", "1., 0.9",
+              "*CONTACT PAIR, INTERACTION=I, NAME=C, PAIRING=SURFACES", ", ".join(pair),
+              "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.",
+              "*BOUNDARY", "LOW.BOTTOM, 2", "UP.BOTTOM, 2", "LOW.LEFT, 11, 11, 100.",
+              "UP.RIGHT, 11, 11, 0.", "*END STEP"]
+    with h5py.File(solve(write(tmp_path / "gap.inp", without_unused_surfaces(cards)))) as file:
+        heat = file["contact/C/heat_rate"][-1] * (1 if slave == "LOW" else -1)
+    assert heat == pytest.approx(2 * np.pi * 1.05 * 100.0, rel=1e-7)

@@ -484,6 +484,19 @@ def test_a_later_round_that_does_not_converge_keeps_the_last_whole_one(tmp_path)
     assert "ITERATION HISTORY" in listing[listing.index("\nENDED EARLY\n"):]
 
 
+def test_a_later_round_that_is_refused_keeps_the_last_whole_one(tmp_path):
+    """Numbers of elements near the largest integer leave none for those of a finer mesh."""
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", changes={
+        "\n1046, 1148, ": "\n2147483600, 1148, "})
+    process = run("run", deck, "--out", tmp_path, "--accuracy", "1%")
+    assert process.returncode == 2, process.stderr
+    assert "the numbers of new nodes and elements" in process.stderr
+    assert "error: round 2 cannot begin; the results are those of round 1\n" in process.stderr
+    rows, _, reached = rounds_of(tmp_path / "deck.vtkhdf")
+    assert len(rows["elements"]) == 1 and reached == 0
+    assert "requested accuracy not reached after 1 round" in process.stdout
+
+
 def test_a_later_round_without_memory_keeps_the_last_whole_one(tmp_path):
     """Some limit of the process lets it solve the first round and not a later one."""
     kept = []

@@ -3,8 +3,9 @@
 import h5py
 import numpy as np
 import pytest
-from blocks import block, solid, write
+from blocks import block, solid, without_unused_surfaces, write
 from deck_runs import solve
+from physics import material, mesh
 
 YOUNG, HEIGHT, PRESSURE = 1000.0, 2.0, 4.0
 SHORTENS = PRESSURE * HEIGHT / YOUNG  # nu = 0
@@ -72,3 +73,19 @@ def test_a_prescribed_displacement_ramps_too(tmp_path):
              "*END STEP"]
     times, down = answer(solve(write(tmp_path / "pushed.inp", BLOCK, HELD, cards)))
     np.testing.assert_allclose(down, times, rtol=1e-12)
+
+
+def test_nodes_on_the_axis_stay_there_when_new_supports_end_all_others(tmp_path):
+    """Heat near the axis of a disc pulls these nodes along the radius."""
+    cards = [*mesh("DISC", [0.0, 1.0, 2.0], [0.0, 1.0], "CAX4"),
+             *material("DISC", (YOUNG, 0.3), expansion=1e-3)]
+    held = ["*BOUNDARY, OP=NEW", "DISC.BOTTOM, 2"]
+    deck = write(tmp_path / "disc.inp", without_unused_surfaces(cards),
+                 ["*STEP", "*STATIC", "1., 1.", *held, "*TEMPERATURE", "DISC.LEFT, 50.",
+                  "*END STEP", "*STEP", "*STATIC", "1., 1.", *held, "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        radius = file["VTKHDF/Points"][()][:, 0]
+        first, second = file["VTKHDF/PointData/displacement"][()].reshape(2, len(radius), 3)
+    assert np.all(first[radius > 0.0, 0] > 1e-3)
+    assert np.all(second[radius == 0.0, 0] == 0.0)
+    np.testing.assert_allclose(second, first, rtol=0.0, atol=1e-12)
