@@ -118,3 +118,36 @@ def test_a_limit_of_the_control_group_counts(tmp_path):
         os.rmdir(folder)
     assert process.returncode == 3, process.stderr
     assert f"may use 100 MB ({found[1]})" in process.stderr
+
+
+@pytest.mark.parametrize("kilobytes", [256, 512])
+@pytest.mark.parametrize("arguments", [["run", "--quiet"], ["run", "--quiet", "--jobs", 1], ["check"]])
+def test_a_soft_limit_of_the_stack_is_raised(tmp_path, arguments, kilobytes):
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*REFINE, LEVELS=1"])
+    limits = 1024 * kilobytes, resource.getrlimit(resource.RLIMIT_STACK)[1]
+    process = subprocess.run(
+        [PROGRAM, *map(str, arguments), deck], cwd=tmp_path, capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, limits), check=False)
+    assert process.returncode == 0, process.stderr
+
+
+@pytest.mark.parametrize("kilobytes", [256, 8191])
+@pytest.mark.parametrize("arguments", [["run"], ["run", "--jobs", 1], ["check"], ["trade"]])
+def test_a_hard_limit_of_the_stack_is_told_with_what_to_do(tmp_path, arguments, kilobytes):
+    limit = 1024 * kilobytes
+    process = subprocess.run(
+        [PROGRAM, *map(str, arguments), CYLINDER], cwd=tmp_path, capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, (limit, limit)), check=False)
+    assert process.returncode == 3
+    assert process.stderr == (f"thercon: error: the stack may have {kilobytes} kB and needs 8192 kB; "
+                              "raise its hard limit (ulimit -Hs)\n")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("solver", ["SKYLINE", "MUMPS"])
+def test_the_estimate_covers_a_plain_run(tmp_path, solver):
+    """Without bounds of errors, which take most of the memory: what is left is the solver's."""
+    deck = without_checks(CYLINDER, tmp_path, [
+        "*REFINE, LEVELS=3", "*OPTIONS, ERRORS=NO", f"*SOLVER, TYPE={solver}"])
+    deck.write_text(deck.read_text().replace("\n20., 900.", "\n300., 900."))
+    assert 1.0 <= estimate(deck) / peak(deck) <= 2.0

@@ -145,8 +145,8 @@ def test_fields_without_inner_unknowns_have_one_solution_with_both_solvers(tmp_p
     assert len(skyline) > 3
     for key, values in skyline.items():
         scale = max(np.nanmax(np.abs(values), initial=0.0), 1e-3)   # below that all is rounding
-        # The bound of an edge is steep in small differences of pressure.
-        part = 1e-4 if key.startswith("errors/") else 1e-10
+        # Which of elements that err alike the finer mesh divides follows rounding.
+        part = 1e-2 if key.startswith("errors/") else 1e-10
         for solver in ("MUMPS", "default"):
             np.testing.assert_allclose(found[solver][key], values, rtol=0.0, atol=part * scale,
                                        err_msg=f"{solver}: {key}")
