@@ -12,6 +12,7 @@ program thercon
    use errors, only: error_type, status_deck
    use file_calls, only: check_printed, print_text, survive_file_limits
    use interruption, only: catch_signals
+   use memory_calls, only: allow_stack
    use messages, only: print_error
    use version_report, only: print_versions
    implicit none
@@ -29,10 +30,11 @@ program thercon
 
    status = 0
    call survive_file_limits()
-   call read_command(command, error)
+   call allow_stack(error)
+   if (.not. allocated(error)) call read_command(command, error)
    if (allocated(error)) then
       call print_error('thercon', error%message)
-      call c_exit(int(status_deck, c_int))
+      call c_exit(int(error%status, c_int))
    end if
    select case (command%action)
    case (command_help)

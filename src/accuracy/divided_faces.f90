@@ -36,6 +36,7 @@ module divided_faces
       procedure :: start
       procedure :: begin_step
       procedure :: find_change
+      procedure :: release
    end type divided_faces_type
 
 contains
@@ -108,6 +109,13 @@ contains
       call quantities_of_state(simulation%bodies, next, step%scheme, values)
       change = change - values
    end subroutine find_change
+
+   !> Frees the factors.
+   subroutine release(self)
+      class(divided_faces_type), intent(inout) :: self
+
+      call self%run%release()
+   end subroutine release
 
    !> The fields of the run on the divided mesh.
    subroutine take_fields(self, state, divided)

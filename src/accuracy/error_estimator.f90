@@ -58,6 +58,7 @@ module error_estimator
       procedure :: start
       procedure :: begin_increment
       procedure :: end_increment
+      procedure :: release
    end type error_estimator_type
 
 contains
@@ -145,6 +146,13 @@ contains
          end associate
       end do
    end subroutine end_increment
+
+   !> Frees the factors of the finer mesh.
+   subroutine release(self)
+      class(error_estimator_type), intent(inout) :: self
+
+      call self%divided%release()
+   end subroutine release
 
    !> Why a quantity has no bound; nothing where it has one.
    pure function reason(doubled, no_mesh, errors, q) result(why_not)

@@ -22,7 +22,8 @@ module refined_model
 
    !> The refined model. Its old nodes keep their indexes, its new ones follow.
    type :: refined_model_type
-      logical, allocatable :: is_divided(:)     !! (old elements) those that are divided
+      !> (old elements) those that are divided; only once the model is prepared in whole
+      logical, allocatable :: is_divided(:)
       type(model_type) :: model                 !! the model, refined
       type(division_type) :: division           !! how its elements were divided
       type(contact_points_type), allocatable :: interfaces(:) !! interfaces in the deck's order
@@ -62,7 +63,6 @@ contains
       type(contact_points_type), allocatable :: no_ties(:)
       integer :: i
 
-      self%is_divided = is_divided
       self%division = divide(model%mesh, is_divided)
       self%model = model
       call refine_chosen(self%model, is_divided)
@@ -77,6 +77,7 @@ contains
       self%points = joined_points(self%interfaces, no_ties, self%model)
       call match_points(self, points)
       call self%loads%prepare(self%model)
+      self%is_divided = is_divided
    end subroutine prepare
 
    !> Moves the loads to the end of a step, through the ends of those before it. What a step gives

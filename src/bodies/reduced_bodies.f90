@@ -18,7 +18,7 @@ module reduced_bodies
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type, joined_points, match_surfaces, match_tie
    use held_points, only: find_held_directions
-   use rigid_motions, only: unsupported_motions
+   use rigid_motions, only: joint_type, unsupported_motions
    use sparse_matrix, only: sparse_matrix_type
    use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
    use text, only: to_text
@@ -104,11 +104,14 @@ contains
       logical, intent(in) :: mechanics                       !! whether displacements are numbered
       logical, intent(in) :: heat                            !! whether temperatures are numbered
       type(error_type), allocatable, intent(out) :: error
+      ! gfortran never frees the components of a function's result within an array constructor.
+      type(joint_type), allocatable :: of_equations(:), of_ties(:)
 
       if (mechanics) then
          call find_held_directions(self%points, held)
-         call unsupported_motions(model%mesh, held, [joints_of(self%points%ties), &
-            joints_of(self%points%equations)], self%rigid)
+         of_ties = joints_of(self%points%ties)
+         of_equations = joints_of(self%points%equations)
+         call unsupported_motions(model%mesh, held, [of_ties, of_equations], self%rigid)
       end if
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) call constrain_displacements(used, held, points, &

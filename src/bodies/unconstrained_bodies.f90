@@ -100,6 +100,8 @@ contains
       integer, intent(in) :: contact_state(:)
       type(free_motion_type), allocatable, intent(out) :: motions(:)
       type(joint_type) :: joints(2*size(contact_state))
+      ! gfortran never frees the components of a function's result within an array constructor.
+      type(joint_type), allocatable :: of_equations(:), of_ties(:)
       integer :: k, n
 
       n = 0
@@ -111,8 +113,9 @@ contains
          n = n + 1
          joints(n) = joint_of(points, k, points%tangent(:, k))
       end do
-      call find_free_motions(model%mesh, held, [joints(:n), joints_of(points%ties), &
-         joints_of(points%equations)], motions)
+      of_ties = joints_of(points%ties)
+      of_equations = joints_of(points%equations)
+      call find_free_motions(model%mesh, held, [joints(:n), of_ties, of_equations], motions)
    end subroutine free_motions
 
    !> What a contact point holds along a direction.

@@ -83,3 +83,18 @@ double memory_limit(char *source, int length)
          length);
    return least;
 }
+
+/* Lets the stack grow to so many bytes, as far as the hard limit allows; returns what it may have.
+ * The system looks at the limit whenever the stack grows. */
+double memory_allow_stack(double bytes)
+{
+   const rlim_t wanted = (rlim_t)bytes;
+   struct rlimit limit;
+
+   if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= wanted)
+      return bytes;
+   limit.rlim_cur = limit.rlim_max < wanted ? limit.rlim_max : wanted;
+   setrlimit(RLIMIT_STACK, &limit);
+   getrlimit(RLIMIT_STACK, &limit);
+   return (double)limit.rlim_cur;
+}

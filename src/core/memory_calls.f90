@@ -6,10 +6,13 @@ module memory_calls
    use text, only: to_text
    implicit none
    private
-   public :: check_memory
+   public :: allow_stack, check_memory
 
    integer, parameter :: source_length = 100
    real(dp), parameter :: megabyte = 1.0e6_dp   !! [byte]
+
+   !> Stack of a run, what Linux gives by default: small decks need about 0.5 MB, long faces more.
+   real(dp), parameter :: stack = 8*1024.0_dp**2   !! [byte]
 
    interface
       !> Least of the limits on resident memory [byte]: of the process (address space, less what of
@@ -20,9 +23,29 @@ module memory_calls
          character(kind=c_char), intent(out) :: source(length)
          real(c_double) :: bytes
       end function c_limit
+
+      !> Lets the stack grow to so many bytes [byte]; returns what it may have.
+      function c_allow_stack(wanted) bind(c, name='memory_allow_stack') result(bytes)
+         import :: c_double
+         real(c_double), value :: wanted
+         real(c_double) :: bytes
+      end function c_allow_stack
    end interface
 
 contains
+
+   !> Raises the soft limit of the stack, which this process and its children have, to what a run
+   !> needs.
+   !> Error: status_internal, when the hard limit is below it.
+   subroutine allow_stack(error)
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: allowed
+
+      allowed = c_allow_stack(stack)
+      if (allowed < stack) call set_error(error, status_internal, 'the stack may have '// &
+         to_text(int(allowed/1024))//' kB and needs '//to_text(int(stack/1024))// &
+         ' kB; raise its hard limit (ulimit -Hs)')
+   end subroutine allow_stack
 
    !> Compares the memory that a run needs with what it may have.
    !> Error: status_internal, when it needs more.

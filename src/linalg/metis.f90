@@ -31,6 +31,8 @@ contains
       integer(c_int), parameter :: metis_ok = 1
 
       allocate (order(graph%row_count), position(graph%row_count))
+      ! METIS divides by the number of vertices.
+      if (graph%row_count == 0) return
       status = metis_nodend(int(graph%row_count, c_int), graph%row_start - 1, graph%column - 1, &
          c_null_ptr, c_null_ptr, order, position)
       position(:) = position + 1

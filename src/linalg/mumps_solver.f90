@@ -2,7 +2,8 @@
 !>
 !> Debian's MUMPS is built without METIS, so METIS's order is computed here and handed over as
 !> PERM_IN. MUMPS factors the leading block and returns its Schur complement; the tail is factored
-!> by Crout, as in the skyline solver.
+!> by Crout, as in the skyline solver. MUMPS refuses a matrix without leading unknowns, which is its
+!> own Schur complement.
 module mumps_solver
    use errors, only: error_type, set_error, status_deck, status_internal
    use kinds, only: dp, long
@@ -79,7 +80,7 @@ contains
          ! What follows works on the factors alone.
          deallocate (id%irn, id%jcn, id%a)
       end associate
-      if (allocated(error)) return
+      if (allocated(error) .or. self%order == tail) return
       self%full_flops = int(self%mumps%rinfog(3), long)
       ! RINFOG(19) is of the matrix as MUMPS has scaled it, rows and columns to about 1.
       if (self%mumps%rinfog(19) > 0.0_dp) self%smallest_pivot = min(1.0_dp, self%mumps%rinfog(19))
@@ -114,8 +115,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: attempt, j, tail
 
-      self%mumps%nnz = size(self%mumps%a, kind=long)
       tail = self%tail
+      if (self%order == tail) then
+         call take_whole_matrix(self)
+         return
+      end if
+      self%mumps%nnz = size(self%mumps%a, kind=long)
       if (tail > 0) call ask_for_schur(self)
       self%mumps%job = job_analyse
       call call_mumps(self%mumps)
@@ -144,6 +149,20 @@ contains
       end do
       deallocate (self%mumps%schur)
    end subroutine analyse_and_factor
+
+   !> The Schur complement of a matrix that is all tail.
+   subroutine take_whole_matrix(self)
+      type(mumps_solver_type), intent(inout) :: self
+      integer :: k
+
+      allocate (self%schur(self%tail, self%tail), source=0.0_dp)
+      associate (schur => self%schur, i => self%mumps%irn, j => self%mumps%jcn)
+         do k = 1, size(i)
+            schur(i(k), j(k)) = schur(i(k), j(k)) + self%mumps%a(k)
+            schur(j(k), i(k)) = schur(i(k), j(k))
+         end do
+      end associate
+   end subroutine take_whole_matrix
 
    !> Version of MUMPS.
    function mumps_version() result(version)
@@ -305,6 +324,10 @@ contains
             id%rhs(:) = 0.0_dp
          end if
          if (self%tail == 0) return
+         if (self%order == self%tail) then
+            id%redrhs(:) = id%rhs
+            return
+         end if
          ! MUMPS skips what a sparse right-hand side does not reach: all of the leading rows.
          id%icntl(20) = merge(0, rhs_is_sparse, present(rhs))
          id%irhs_ptr(:) = [1, (2, k=1, columns)]
@@ -326,7 +349,11 @@ contains
             id%redrhs(self%tail*(k - 1) + 1:self%tail*k) = on_tail(:, k)
          end do
          if (self%tail > 0) id%icntl(26) = 2
-         call call_mumps(id)
+         if (self%order == self%tail) then
+            id%rhs(:) = id%redrhs
+         else
+            call call_mumps(id)
+         end if
          do k = 1, size(solution, 2)
             solution(:, k) = id%rhs(id%n*(k - 1) + 1:id%n*k)
          end do

@@ -182,6 +182,7 @@ contains
       type(deck_outcome_type), intent(inout) :: outcome
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: output_error
+      type(error_estimator_type) :: estimator
       type(increment_record_type) :: record
       logical :: is_written
 
@@ -193,7 +194,8 @@ contains
          call outcome%note_files(output%written())
          call prepare_end(self, end_at_once)
          call self%end%hold(.false.)
-         call solve_increments(self, outcome, record, is_written, error)
+         call solve_increments(self, estimator, outcome, record, is_written, error)
+         call estimator%release()
          ! What is written now is no longer cut short.
          call self%end%hold(.true.)
          call prepare_end(self, end_by_increments)
@@ -229,13 +231,13 @@ contains
 
    !> Solves increment after increment, each with its output.
    !> Errors: as simulation_type's advance and run_output_type's accept; status_interrupted.
-   subroutine solve_increments(self, outcome, record, is_written, error)
+   subroutine solve_increments(self, estimator, outcome, record, is_written, error)
       type(run_type), intent(inout) :: self
+      type(error_estimator_type), intent(inout) :: estimator   !! fresh
       type(deck_outcome_type), intent(inout) :: outcome
       type(increment_record_type), intent(out) :: record    !! the last; empty after a signal
       logical, intent(out) :: is_written                    !! whether the output went well
       type(error_type), allocatable, intent(out) :: error
-      type(error_estimator_type) :: estimator
 
       is_written = .true.
       associate (model => self%model, simulation => self%simulation, output => self%output)
@@ -313,9 +315,12 @@ contains
       type(run_type), intent(in) :: self
       type(deck_outcome_type), intent(inout) :: outcome
       character(:), allocatable :: missed
+      ! gfortran never frees the components of a function's result within an array constructor.
+      type(string_type), allocatable :: failed(:)
 
       associate (output => self%output)
-         outcome%failed_checks = [outcome%failed_checks, output%failed_checks(self%model)]
+         failed = output%failed_checks(self%model)
+         outcome%failed_checks = [outcome%failed_checks, failed]
          ! Later rounds tell the verdicts of the first one, unless they end early.
          outcome%verify_passed = max(outcome%verify_passed, output%run%verify_passed)
          outcome%verify_failed = max(outcome%verify_failed, output%run%verify_failed)

@@ -167,6 +167,16 @@ def test_the_temperature_of_a_table_is_the_mean_of_the_faces(tmp_path):
     follows(tmp_path, make, 0.01, 0.03)
 
 
+@pytest.mark.parametrize(("method", "pairing"), [("NEWTON", "NODES"), ("ZAITSEV", "SURFACES")])
+def test_heat_follows_a_table_by_temperature_across_a_gap(tmp_path, method, pairing):
+    """The conductance is T - 200 at all gaps, T = 600 the mean of the faces: it falls with half the
+    temperature, so that conductance and temperature have to be found together."""
+    table = ["*GAP CONDUCTANCE, CLEARANCE", "100., 0., 300.", "100., 1., 300.",
+             "1100., 0., 1300.", "1100., 1., 1300."]
+    solve(write(tmp_path / "deck.inp", slabs(table, (700.0, 500.0), 400.0 * 200.0, method=method,
+                                             pairing=pairing)))
+
+
 def test_radiation_below_absolute_zero_is_an_error(tmp_path):
     law, _, _ = gas_law("helium", emissivity=0.8)
     deck = write(tmp_path / "slabs.inp", slabs(law, (100.0, -50.0), 1.0))

@@ -108,6 +108,21 @@ def test_a_later_step_divides_the_elements_that_err_at_its_end(tmp_path):
             assert both[name][1] == pytest.approx(bound, rel=1e-6), name
 
 
+@pytest.mark.parametrize("steps", [1, 2])
+def test_bounds_are_uncertain_at_the_end_of_every_step_where_the_finer_mesh_does_not_match(tmp_path, steps):
+    """A midside node of the base is moved along it: what the finer mesh adds is not opposite each
+    other any more."""
+    deck = bare(CYLINDER, tmp_path, "moved.inp", ["*REFINE, LEVELS=1, SURFACE=CURVED"],
+                {"1008, 3.1, 0": "1008, 3.25, 0", "\n20., 900.": "\n450., 900."})
+    step = deck.read_text()[deck.read_text().index("*STEP"):]
+    deck.write_text(deck.read_text() + step * (steps - 1))
+    result = solve(deck)
+    with h5py.File(result) as file:
+        assert np.isnan(file["errors/FACE/normal_force"][:, 1]).tolist() == [True] * steps
+    assert result.with_suffix(".lst").read_text().count(
+        "the errors of the mesh cannot be estimated: contact pair FACE: slave node") == steps
+
+
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
 def test_the_summary_says_that_a_peak_at_an_end_may_have_no_limit(tmp_path, pairing):
     """Two blocks of different materials that end together, stuck under a rigid plate: not two of the same

@@ -4,9 +4,11 @@ import csv
 import os
 import re
 import resource
+import shutil
 import subprocess
 
 import pytest
+from blocks import block, solid, without_unused_surfaces, write
 from deck_runs import COUPLED, CYLINDER, INPUT, PROGRAM, copy_deck, run
 
 MEGABYTE = 1e6
@@ -118,3 +120,77 @@ def test_a_limit_of_the_control_group_counts(tmp_path):
         os.rmdir(folder)
     assert process.returncode == 3, process.stderr
     assert f"may use 100 MB ({found[1]})" in process.stderr
+
+
+@pytest.mark.parametrize("kilobytes", [256, 512])
+@pytest.mark.parametrize("arguments", [["run", "--quiet"], ["run", "--quiet", "--jobs", 1], ["check"]])
+def test_a_soft_limit_of_the_stack_is_raised(tmp_path, arguments, kilobytes):
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*REFINE, LEVELS=1"])
+    limits = 1024 * kilobytes, resource.getrlimit(resource.RLIMIT_STACK)[1]
+    process = subprocess.run(
+        [PROGRAM, *map(str, arguments), deck], cwd=tmp_path, capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, limits), check=False)
+    assert process.returncode == 0, process.stderr
+
+
+@pytest.mark.parametrize("kilobytes", [256, 8191])
+@pytest.mark.parametrize("arguments", [["run"], ["run", "--jobs", 1], ["check"], ["trade"]])
+def test_a_hard_limit_of_the_stack_is_told_with_what_to_do(tmp_path, arguments, kilobytes):
+    limit = 1024 * kilobytes
+    process = subprocess.run(
+        [PROGRAM, *map(str, arguments), CYLINDER], cwd=tmp_path, capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, (limit, limit)), check=False)
+    assert process.returncode == 3
+    assert process.stderr == (f"thercon: error: the stack may have {kilobytes} kB and needs 8192 kB; "
+                              "raise its hard limit (ulimit -Hs)\n")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("solver", ["SKYLINE", "MUMPS"])
+def test_the_estimate_covers_a_plain_run(tmp_path, solver):
+    """Without bounds of errors, which take most of the memory: what is left is the solver's."""
+    deck = without_checks(CYLINDER, tmp_path, [
+        "*REFINE, LEVELS=3", "*OPTIONS, ERRORS=NO", f"*SOLVER, TYPE={solver}"])
+    deck.write_text(deck.read_text().replace("\n20., 900.", "\n300., 900."))
+    assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
+
+
+FAILED_CHECKS = ['*VERIFY, KIND=ANALYTIC, SOURCE="none: these fail"', "normal_force, P, LAST, 3., 1.E-12",
+                 "pressure, MAX, LAST, 3., 1.E-12", "NT, MAX, LAST, 3., 1.E-12"]
+
+
+def three_blocks(path, *cards, solver="SKYLINE", pairing="NODES", ramp=""):
+    """Write a deck of a block on another with a third one tied to it, in two steps."""
+    lines = [0.0, 1.0, 2.0]
+    steps = [card for load in (10.0, 20.0) for card in (
+        "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.5, 1.",
+        f"*BOUNDARY{ramp}", f"C.TOP, 11, 11, {load!r}", f"*DSLOAD{ramp}", f"C.TOP, P, {load!r}",
+        "*END STEP")]
+    return write(path, without_unused_surfaces([
+        *block("A", lines, [1.0, 2.0]), *block("B", lines, [0.0, 1.0], first=101),
+        *block("C", [0.0, 0.9, 2.0], [2.0, 3.0], first=201),
+        *(card for name in "ABC" for card in solid(name, 1000.0, 0.3, 1e-5)),
+        "*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.3", "*GAP LAW, TYPE=GAS", "2.E-3, 5.E-3",
+        "*GAP LAW, TYPE=POWER", "1., 0.1, 1.",
+        f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}", "A.BOTTOM, B.TOP",
+        "*TIE, NAME=T", "C.BOTTOM, A.TOP", "*AMPLITUDE, NAME=R", "0., 0., 0.5, 1., 1., 0.5",
+        "*BOUNDARY", "B.BOTTOM, 1, 2", "B.BOTTOM, 11", "A.LEFT, 1", "C.LEFT, 1",
+        f"*SOLVER, TYPE={solver}", *steps, *cards]))
+
+
+@pytest.mark.skipif(not shutil.which("valgrind"), reason="needs valgrind")
+@pytest.mark.parametrize(("status", "cards", "options"), [
+    (0, [], {}),
+    (0, [], {"ramp": ", AMPLITUDE=R"}),
+    (4, FAILED_CHECKS, {}),
+    (0, [], {"solver": "MUMPS", "pairing": "SURFACES"}),
+    (1, ["*CONTACT PAIR, INTERACTION=NONE, NAME=Q", "A.TOP, C.BOTTOM"], {}),
+], ids=["tie", "amplitude", "failed checks", "finer mesh with MUMPS", "refused"])
+def test_no_memory_is_lost(tmp_path, status, cards, options):
+    """MUMPS reads what it has not set yet; all else is checked by the tests of the preset `debug`."""
+    deck = three_blocks(tmp_path / "deck.inp", *cards, **options)
+    process = subprocess.run(
+        ["valgrind", "--quiet", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect",
+         "--undef-value-errors=no", "--error-exitcode=9",
+         PROGRAM, "run", "--quiet", deck, "--out", tmp_path], capture_output=True, text=True, check=False)
+    assert process.returncode == status, process.stderr
