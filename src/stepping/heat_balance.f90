@@ -14,7 +14,8 @@ module heat_balance
    private
    public :: balance_heat, warn_of_heat, sound_imbalance
 
-   !> Part of K T below which a rate is no scale to measure by: only rounding is left of it.
+   !> Part of K T below which a rate is no scale to measure by: only rounding is left of it. The sum
+   !> over a body collects that of all nodes, for which the norm of T is.
    real(dp), parameter :: noise = 1.0e-6_dp
 
    !> Largest imbalance at the end of an increment of which nothing is said.
@@ -44,7 +45,7 @@ contains
          body => model%mesh%node_body)
          scale = max(record%heat_in, record%heat_out, abs(sum(contact_heat)), &
             maxval(abs(residual), mask=held), maxval(abs(heat)), &
-            noise*bodies%thermal%largest_entry*maxval(abs(next%temperature)), &
+            noise*bodies%thermal%largest_entry*norm2(next%temperature), &
             tiny(1.0_dp))
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + heat

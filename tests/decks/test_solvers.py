@@ -145,8 +145,12 @@ def test_fields_without_inner_unknowns_have_one_solution_with_both_solvers(tmp_p
     assert len(skyline) > 3
     for key, values in skyline.items():
         scale = max(np.nanmax(np.abs(values), initial=0.0), 1e-3)   # below that all is rounding
-        # Which of elements that err alike the finer mesh divides follows rounding.
-        part = 1e-2 if key.startswith("errors/") else 1e-10
+        part = 1e-10
+        if key.startswith("errors/"):
+            # Which of elements that err alike the finer mesh divides follows rounding, and with it
+            # the bound of a shear that is zero, which is measured by the normal force.
+            part = 1e-2
+            scale = max(scale, np.abs(skyline.get("contact/P/normal_force", scale)).max())
         for solver in ("MUMPS", "default"):
             np.testing.assert_allclose(found[solver][key], values, rtol=0.0, atol=part * scale,
                                        err_msg=f"{solver}: {key}")
