@@ -165,7 +165,7 @@ contains
       turns = 0
       away = 0
       wanted = controls%tolerance
-      allocate (passes(0))
+      allocate (passes(64))
       call begin_passes(bodies, data, next%omega, workspace)
       call make_accelerator(controls, size(next%omega), accelerator)
       associate (pass => workspace%pass, record => workspace%record)
@@ -181,10 +181,11 @@ contains
             if (workspace%cuts_hats) workspace%cut = cut_hats_at(workspace%edge_hats, &
                bodies%points%weight, pass%omega)
             call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
-            passes = [passes, iteration_record_type(increment=record%increment, &
-               iteration=before + i, residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
+            if (i > size(passes)) call double(passes)
+            passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
+               residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
                g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
-               pairs_changed=count(next%contact%contact_state /= good%contact_state))]
+               pairs_changed=count(next%contact%contact_state /= good%contact_state))
             pass%found = .not. allocated(error)
             if (.not. pass%found) then
                if (accelerator%retreats) call accelerator%next(pass)
@@ -261,12 +262,12 @@ contains
    subroutine close_passes(record, passes, last, wanted, error)
       type(solution_report_type), intent(inout) :: record
       type(iteration_record_type), intent(in) :: passes(:)
-      integer, intent(in) :: last   !! at which the loop ended, with an error or beyond all passes
+      integer, intent(in) :: last   !! the loop's, beyond the last pass where that was not enough
       real(dp), intent(in) :: wanted
       type(error_type), allocatable, intent(inout) :: error
       integer :: n
 
-      n = size(passes)
+      n = min(last, count(passes%iteration > 0))
       if (allocated(error)) n = last - 1
       record%iterations = [record%iterations, passes(:n)]
       if (allocated(error) .or. n == 0) return
@@ -275,6 +276,16 @@ contains
          counted(n, 'iteration')//'; last residual '//to_text(passes(n)%residual)//', required '// &
          to_text(wanted))
    end subroutine close_passes
+
+   !> Makes room for as many passes again.
+   pure subroutine double(passes)
+      type(iteration_record_type), allocatable, intent(inout) :: passes(:)
+      type(iteration_record_type), allocatable :: longer(:)
+
+      allocate (longer(2*size(passes)))
+      longer(:size(passes)) = passes
+      call move_alloc(longer, passes)
+   end subroutine double
 
    !> The next omega*, from the derivative of the pass where the accelerator asks for it.
    subroutine take_step(bodies, data, next, accelerator, workspace)

@@ -190,12 +190,9 @@ def test_a_signal_ends_an_increment_without_an_end_and_keeps_those_before(tmp_pa
         "METHOD=NEWTON": "METHOD=PICARD, MAXITER=100000"})
     process = subprocess.Popen([PROGRAM, "run", str(deck), "--out", str(tmp_path)], text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    count, since = 0, 0.0
-    while count == 0 or cpu_seconds(process) < since + 1.0:   # until no increment ends any more
+    while cpu_seconds(process) < 1.0:   # the increments that end take some hundredths
         assert process.poll() is None
         time.sleep(0.05)
-        if len(lines_of(tmp_path / "long.sta")) != count:
-            count, since = len(lines_of(tmp_path / "long.sta")), cpu_seconds(process)
     assert end_by_signal(process) < AT_MOST
     _, messages = process.communicate()
     count = len(lines_of(tmp_path / "long.sta"))
