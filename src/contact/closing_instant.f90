@@ -171,7 +171,7 @@ contains
       if (.not. any(way%is_open)) return
       call find_compliance(system, held, way)
       do while (any(way%is_open))
-         call go_to_event(state, way, laws)
+         call go_to_event(way, laws)
       end do
    end subroutine find_laws
 
@@ -262,8 +262,7 @@ contains
    end subroutine find_compliance
 
    !> Goes on until the next contact points close, which have their laws then.
-   pure subroutine go_to_event(state, way, laws)
-      type(contact_state_type), intent(in) :: state
+   pure subroutine go_to_event(way, laws)
       type(way_type), intent(inout) :: way
       type(closing_law_type), intent(inout) :: laws(:)
       real(dp) :: ends(size(way%y)), slope(size(way%y)), part, trial
