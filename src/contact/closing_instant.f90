@@ -13,9 +13,9 @@
 !>
 !>    y := (1 - phi) y - phi C_R lambda,   1 - f := (1 - phi) (1 - f),
 !>
-!> and slip = -y_t = (1 - f) (d_t - d_t,i) + a.lambda is linear once f and the row a of A are frozen,
-!> A := (1 - phi) A + phi C_R. Both are computed anew from each solution, until they stay. They
-!> follow the load alone where all closed contact points stick, whatever their friction.
+!> and slip = -y_t = (1 - f) (d_t - d_t,i) + a.lambda is linear once f and the row a of A are
+!> frozen, A := (1 - phi) A + phi C_R. Both are computed anew from each solution, until they stay.
+!> They follow the load alone where all closed contact points stick, whatever their friction.
 !>
 !> A body that nothing else holds goes straight to where it touches, in no time: f = 0, and d_t,i is
 !> where it then is.
