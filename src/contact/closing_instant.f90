@@ -1,31 +1,35 @@
-!> The instant at which a contact point closes within an increment, from which its slip counts.
+!> The instants at which contact points close within an increment, from which their slip counts.
 !>
-!> A contact point that was open at gap gamma_i and is closed at the end would, alone relieved of
-!> its contact forces, end at the gap gamma* < 0 and the tangential position d_t*. It closes at the
-!> fraction f = gamma_i/(gamma_i - gamma*) of the increment, and its slip counts from the position
-!> that lies there between d_t,i and d_t*:
+!> Let all contact points that close in the increment be relieved of their forces, and all others
+!> that are closed hold their positions. Along the straight way from the start of the increment to
+!> where they then would end, one closes first: there its slip starts to count. From there on it
+!> holds its position; the others go on the straight way to where they would end now; and so on,
+!> until all have closed. Contact points that reach the other face together close together: so a
+!> face that closes as a whole does not tilt about one of its points.
 !>
-!>    slip = d_t - d_t,i - f (d_t* - d_t,i).
+!> Let y be the positions d less those at the end of the increment, C_R the compliance of the
+!> contact points that are still open, and phi the part of the remaining way after which the next
+!> one closes. They would end at y = -C_R lambda, so that at each event
 !>
-!> With C the compliance of the contact point while all other closed contact points hold their
-!> positions, gamma* = C_n.lambda and d_t* = d_t - C_t.lambda, so that
+!>    y := (1 - phi) y - phi C_R lambda,   1 - f := (1 - phi) (1 - f),
 !>
-!>    slip = (1 - f) (d_t - d_t,i) + f C_t.lambda.
+!> and slip = -y_t = (1 - f) (d_t - d_t,i) + a.lambda is linear once f and the row a of A are
+!> frozen, A := (1 - phi) A + phi C_R. Both are computed anew from each solution, until they stay.
+!> They follow the load alone where all closed contact points stick, whatever their friction.
 !>
-!> The contact system is solved with C and f frozen; both are then computed anew, until they stay.
-!> Were the others to keep their conditions instead, C would jump when a neighbour turns from stick
-!> to slip, and each value could call for the other condition: then there is no solution. C still
-!> jumps where another contact point closes or opens. Where that goes round and round, every contact
-!> point that was closed on the way counts as one that holds. Then C stays, and only f can go on
-!> swinging, with much friction; of each change half is made in the end.
+!> A body that nothing else holds goes straight to where it touches, in no time: f = 0, and d_t,i is
+!> where it then is.
+!>
+!> Where the contact points that hold go on changing, every one that was closed on the way counts as
+!> one that holds. Then C stays, and only f can go on swinging; of each change half is made in the
+!> end.
 module closing_instant
    use active_set, only: solve_contact
    use contact_states, only: closing_law_type, contact_state_type, contact_open, contact_stick
    use contact_system, only: contact_system_type
-   use contact_workspace, only: contact_workspace_type, relief_type
+   use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp
-   use unconstrained_motions, only: free_motions
    implicit none
    private
    public :: solve_increment
@@ -36,9 +40,23 @@ module closing_instant
    integer, parameter :: plain_passes = 60 !! of these, going all the way to the new laws
    real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
    real(dp), parameter :: rounding = 1.0e-10_dp   !! the same where it does not come down to that
-   !> Determinant of a contact point's stiffness, over that of the contact point alone on held
-   !> bodies, that is none.
-   real(dp), parameter :: nothing = 1.0e-12_dp
+   real(dp), parameter :: nothing = 1.0e-12_dp !! part of a compliance or of a motion that is none
+   real(dp), parameter :: undriven = 1.0e-10_dp !! part of the forces that drives no motion
+   real(dp), parameter :: together = 1.0e-12_dp !! part of the largest gap that is none at an event
+
+   !> Contact points on their way through the increment, 2n rows: n normal, then n tangential ones.
+   type :: way_type
+      integer, allocatable :: point(:)       !! (n) the contact points
+      logical, allocatable :: is_open(:)     !! (n) whether it has not closed so far
+      real(dp) :: least_gap = 0.0_dp         !! a gap that is none [length]
+      real(dp) :: left = 1.0_dp              !! 1 - f
+      real(dp), allocatable :: y(:)          !! (2n) position less that at the end [length]
+      real(dp), allocatable :: lambda(:)     !! (2n) forces at the end [force]
+      real(dp), allocatable :: compliance(:, :) !! (2n, 2n) C_R [length/force]
+      real(dp), allocatable :: own(:)        !! (2n) diagonal of the first C_R [length/force]
+      real(dp), allocatable :: law(:, :)     !! (2n, 2n) A [length/force]
+      real(dp), allocatable :: rate(:, :)    !! (2n, 2n) dy/dlambda through all phi [length/force]
+   end type way_type
 
 contains
 
@@ -89,9 +107,14 @@ contains
          laws = work%closing
          call find_laws(system, previous, state, holds, held, laws, error)
          if (allocated(error)) return
-         change = maxval([0.0_dp, law_change(work%closing, laws)])
-         if (pass > plain_passes) where (work%closing%acts .and. laws%acts) &
-            laws%fraction = 0.5_dp*(laws%fraction + work%closing%fraction)
+         change = maxval([0.0_dp, law_change(work%closing, laws, system%alone)])
+         if (pass > plain_passes) then
+            do k = 1, size(laws)
+               if (.not. (work%closing(k)%acts .and. laws(k)%acts)) cycle
+               laws(k)%fraction = 0.5_dp*(laws(k)%fraction + work%closing(k)%fraction)
+               laws(k)%compliance = 0.5_dp*(laws(k)%compliance + work%closing(k)%compliance)
+            end do
+         end if
          ! Laws that stay keep the factors.
          if (change > settled) work%closing = laws
          if (change <= merge(settled, rounding, pass <= free_passes)) then
@@ -122,109 +145,195 @@ contains
       type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: held_state
-      type(relief_type) :: relief
+      type(way_type) :: way
       logical :: closes(size(state%contact_state))
       integer :: k
 
-      closes = previous%contact_state == contact_open .and. state%contact_state /= &
-         contact_open .and. system%tangent > 0
-      if (.not. any(closes)) return
+      closes = previous%contact_state == contact_open .and. state%contact_state /= contact_open
+      if (.not. any(closes .and. system%tangent > 0)) return
       held_state = state
-      held_state%contact_state = merge(contact_stick, contact_open, holds)
-      call held%factor_set(system, held_state, error)
+      held_state%contact_state = merge(contact_stick, contact_open, holds .and. &
+         previous%contact_state /= contact_open)
+      way%point = pack([(k, k=1, size(closes))], closes)
+      allocate (way%is_open(size(way%point)), source=.true.)
+      way%y = [-max(previous%gap(way%point), 0.0_dp), &
+         previous%tangential(way%point) - state%tangential(way%point)]
+      way%lambda = [-state%force(way%point), state%shear_force(way%point)]
+      way%least_gap = together*maxval(previous%gap(way%point)) + system%least_length
+      do k = 1, size(way%point)
+         associate (law => laws(way%point(k)))
+            law = closing_law_type(acts=.true., start=previous%tangential(way%point(k)))
+            allocate (law%compliance(2, size(closes)), law%rate(2, size(closes)), source=0.0_dp)
+         end associate
+      end do
+      call go_freely(system, held, held_state, way, laws, error)
       if (allocated(error)) return
-      if (.not. allocated(held%relief)) allocate (held%relief(size(closes)))
-      do k = 1, size(closes)
-         if (.not. closes(k)) cycle
-         if (.not. held%relief(k)%is_known) then
-            call find_compliance(system, held, held_state, k, relief, error)
-            if (allocated(error)) return
-            held%relief(k) = relief
-            held%reliefs = held%reliefs + 1
-         end if
-         call make_law(held%relief(k)%compliance, previous, state, k, laws(k))
-         if (held%relief(k)%alone) laws(k)%fraction = 0.0_dp
+      if (.not. any(way%is_open)) return
+      call find_compliance(system, held, way)
+      do while (any(way%is_open))
+         call go_to_event(way, laws)
       end do
    end subroutine find_laws
 
-   !> Relative change from one law to another.
-   elemental function law_change(old, new) result(change)
+   !> Bodies that nothing holds go where their forces drive them, until they touch, in no time.
+   !> Error: a singular system.
+   subroutine go_freely(system, held, held_state, way, laws, error)
+      type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(inout) :: held  !! factors at the end of the way out
+      type(contact_state_type), intent(inout) :: held_state
+      type(way_type), intent(inout) :: way
+      type(closing_law_type), intent(inout) :: laws(:)
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: forces(2, size(laws)), on_tail(size(system%schur, 1))
+      real(dp) :: motion(size(way%y)), length
+      real(dp), allocatable :: drive(:)
+      integer :: i, n
+
+      n = size(way%point)
+      do
+         call held%factor_set(system, held_state, error)
+         if (allocated(error)) return
+         if (size(held%unconstrained, 2) == 0 .or. .not. any(way%is_open)) return
+         forces = 0.0_dp
+         forces(1, way%point) = way%lambda(:n)
+         forces(2, way%point) = way%lambda(n + 1:)
+         on_tail = system%on_tail(forces)
+         associate (free => held%rows%free, unheld => held%unconstrained)
+            drive = matmul(on_tail(free), unheld)
+            if (norm2(drive) <= undriven*norm2(on_tail)) return
+            on_tail = 0.0_dp
+            on_tail(free) = -matmul(unheld, drive)/norm2(drive)
+         end associate
+         motion(:n) = on_tail(system%normal(way%point))
+         motion(n + 1:) = 0.0_dp
+         do i = 1, n
+            if (system%tangent(way%point(i)) > 0) motion(n + i) = &
+               on_tail(system%tangent(way%point(i)))
+         end do
+         associate (reaches => way%is_open .and. motion(:n) > nothing)
+            if (.not. any(reaches)) return
+            length = max(minval(-way%y(:n)/motion(:n), mask=reaches), 0.0_dp)
+         end associate
+         way%y = way%y + length*motion
+         do i = 1, n
+            if (.not. way%is_open(i)) cycle
+            laws(way%point(i))%start = laws(way%point(i))%start + length*motion(n + i)
+            if (-way%y(i) > way%least_gap) cycle
+            way%is_open(i) = .false.
+            held_state%contact_state(way%point(i)) = contact_stick
+         end do
+      end do
+   end subroutine go_freely
+
+   !> What the contact points on their way give way to each other's forces, while all others that
+   !> are closed hold their positions.
+   pure subroutine find_compliance(system, held, way)
+      type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(inout) :: held   !! factors
+      type(way_type), intent(inout) :: way
+      integer :: i, j, n, rows(2, size(way%point))
+      real(dp) :: response(size(system%schur, 1), 2)
+
+      n = size(way%point)
+      rows(1, :) = system%normal(way%point)
+      rows(2, :) = system%tangent(way%point)
+      allocate (way%compliance(2*n, 2*n), way%law(2*n, 2*n), way%rate(2*n, 2*n), source=0.0_dp)
+      if (.not. allocated(held%relief)) allocate (held%relief(size(system%normal)))
+      do j = 1, n
+         if (.not. way%is_open(j)) cycle
+         associate (relief => held%relief(way%point(j)))
+            if (.not. allocated(relief%response)) then
+               response = 0.0_dp
+               response(rows(1, j), 1) = 1.0_dp
+               if (rows(2, j) > 0) response(rows(2, j), 2) = 1.0_dp
+               call held%solve_free(response)
+               relief%response = response
+               held%reliefs = held%reliefs + 1
+            end if
+            do i = 1, n
+               if (.not. way%is_open(i)) cycle
+               way%compliance(i, [j, n + j]) = relief%response(rows(1, i), :)
+               if (rows(2, i) > 0) way%compliance(n + i, [j, n + j]) = &
+                  relief%response(rows(2, i), :)
+            end do
+         end associate
+      end do
+      way%own = [(way%compliance(i, i), i=1, 2*n)]
+   end subroutine find_compliance
+
+   !> Goes on until the next contact points close, which have their laws then.
+   pure subroutine go_to_event(way, laws)
+      type(way_type), intent(inout) :: way
+      type(closing_law_type), intent(inout) :: laws(:)
+      real(dp) :: ends(size(way%y)), slope(size(way%y)), part, trial
+      integer :: first, i, n
+
+      n = size(way%point)
+      ends = -matmul(way%compliance, way%lambda)
+      first = 0
+      part = 1.0_dp
+      do i = 1, n
+         if (.not. way%is_open(i) .or. ends(i) <= 0.0_dp) cycle
+         trial = max(-way%y(i), 0.0_dp)/(max(-way%y(i), 0.0_dp) + ends(i))
+         if (trial >= part) cycle
+         part = trial
+         first = i
+      end do
+      slope = 0.0_dp
+      if (first > 0) slope = (part*way%compliance(first, :) + (1.0_dp - part)* &
+         (way%law(first, :) - way%rate(first, :)))/(ends(first) - way%y(first))
+      do i = 1, 2*n
+         way%rate(:, i) = (1.0_dp - part)*way%rate(:, i) + (ends - way%y)*slope(i)
+      end do
+      way%law = (1.0_dp - part)*way%law + part*way%compliance
+      way%y = (1.0_dp - part)*way%y + part*ends
+      way%left = (1.0_dp - part)*way%left
+      do i = 1, n
+         if (.not. way%is_open(i)) cycle
+         if (first > 0 .and. i /= first .and. -way%y(i) > way%least_gap) cycle
+         associate (law => laws(way%point(i)))
+            law%fraction = 1.0_dp - way%left
+            law%compliance(1, way%point) = way%law(n + i, :n)
+            law%compliance(2, way%point) = way%law(n + i, n + 1:)
+            law%rate(1, way%point) = -way%rate(n + i, :n)
+            law%rate(2, way%point) = -way%rate(n + i, n + 1:)
+         end associate
+         way%is_open(i) = .false.
+         call hold(way, i)
+         call hold(way, n + i)
+      end do
+   end subroutine go_to_event
+
+   !> Holds a row where it is. One that the others hold has no compliance left.
+   pure subroutine hold(way, row)
+      type(way_type), intent(inout) :: way
+      integer, intent(in) :: row
+      real(dp) :: column(size(way%y)), line(size(way%y))
+      integer :: j
+
+      column = way%compliance(:, row)
+      line = way%compliance(row, :)
+      if (column(row) > nothing*way%own(row)) then
+         do j = 1, size(line)
+            if (abs(line(j)) > 0.0_dp) way%compliance(:, j) = way%compliance(:, j) - &
+               column*(line(j)/column(row))
+         end do
+      end if
+      way%compliance(:, row) = 0.0_dp
+      way%compliance(row, :) = 0.0_dp
+   end subroutine hold
+
+   !> Change from one law to another; of compliances beside that of the contact point alone.
+   elemental function law_change(old, new, alone) result(change)
       type(closing_law_type), intent(in) :: old, new
+      real(dp), intent(in) :: alone      !! stiffness of the contact point [force/length]
       real(dp) :: change
 
       change = 0.0_dp
       if (old%acts .neqv. new%acts) change = 1.0_dp
       if (.not. (old%acts .and. new%acts)) return
       change = max(abs(new%fraction - old%fraction), &
-         maxval(abs(new%compliance - old%compliance))/ &
-         max(maxval(abs(new%compliance)), tiny(1.0_dp)))
+         alone*maxval(abs(new%compliance - old%compliance)))
    end function law_change
-
-   !> Compliance of one contact point while all other closed contact points hold their positions. A
-   !> contact point of a cycle may have none along a direction in which the others hold it, so it is
-   !> opened there. Where only this contact point holds a body, relieved it would go without end: it
-   !> closes at once, for which a normal compliance of zero and the start of the increment are. The
-   !> rows that hold the body tell, since its determinant, zero then, may be any rounding.
-   !> Error: a singular system.
-   subroutine find_compliance(system, held, held_state, k, relief, error)
-      type(contact_system_type), intent(in) :: system
-      type(contact_workspace_type), intent(in) :: held
-      type(contact_state_type), intent(in) :: held_state
-      integer, intent(in) :: k
-      type(relief_type), intent(out) :: relief
-      type(error_type), allocatable, intent(out) :: error
-      type(contact_workspace_type) :: opened
-      type(contact_state_type) :: opened_state
-      real(dp) :: response(size(system%schur, 1), 2), stiffness(2, 2), determinant
-      integer :: tail_rows(2)
-
-      tail_rows = [system%normal(k), system%tangent(k)]
-      if (system%compliance(k) > 0.0_dp) then
-         opened = held%another()
-         opened_state = held_state
-         opened_state%contact_state(k) = contact_open
-         call opened%factor_set(system, opened_state, error)
-         if (allocated(error)) return
-         response = 0.0_dp
-         response(tail_rows(1), 1) = 1.0_dp
-         response(tail_rows(2), 2) = 1.0_dp
-         call opened%solve_free(response)
-         relief%compliance = response(tail_rows, :)
-         relief%alone = size(opened%unconstrained, 2) > size(held%unconstrained, 2)
-      else
-         stiffness = held%stiffness(system, tail_rows)
-         determinant = stiffness(1, 1)*stiffness(2, 2) - stiffness(1, 2)*stiffness(2, 1)
-         associate (unheld => free_motions(system%motion, [held%rows%free, tail_rows], &
-            held%rows%spring, system%schur))
-            relief%alone = size(unheld, 2) > size(held%unconstrained, 2) .or. determinant <= &
-               nothing*system%schur(tail_rows(1), tail_rows(1))* &
-               system%schur(tail_rows(2), tail_rows(2))
-         end associate
-         if (.not. relief%alone) relief%compliance = reshape([stiffness(2, 2), -stiffness(2, 1), &
-            -stiffness(1, 2), stiffness(1, 1)], [2, 2])/determinant
-      end if
-      relief%is_known = .true.
-      if (relief%alone) relief%compliance = reshape([0.0_dp, 0.0_dp, 0.0_dp, &
-         1.0_dp/system%alone(k)], [2, 2])
-   end subroutine find_compliance
-
-   !> The closing law of one contact point.
-   pure subroutine make_law(compliance, previous, state, k, law)
-      real(dp), intent(in) :: compliance(2, 2)
-      type(contact_state_type), intent(in) :: previous
-      type(contact_state_type), intent(in) :: state
-      integer, intent(in) :: k
-      type(closing_law_type), intent(out) :: law
-      real(dp) :: overlap
-
-      overlap = dot_product(compliance(1, :), [state%force(k), -state%shear_force(k)])
-      law%acts = .true.
-      law%start = previous%tangential(k)
-      law%compliance = compliance(2, :)
-      if (previous%gap(k) > 0.0_dp) then
-         law%fraction = previous%gap(k)/(previous%gap(k) + max(overlap, 0.0_dp))
-         if (overlap > 0.0_dp) law%rate = compliance(1, :)*law%fraction/(previous%gap(k) + overlap)
-      end if
-   end subroutine make_law
 
 end module closing_instant

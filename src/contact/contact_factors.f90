@@ -73,7 +73,7 @@ contains
       logical, intent(out) :: singular
       real(dp) :: matrix(size(rows%free) + size(unconstrained, 2), size(rows%free) + &
          size(unconstrained, 2))
-      real(dp) :: column(size(system%schur, 1), 1)
+      real(dp), allocatable :: columns(:, :)
       integer :: i, j
 
       self%full = self%full + 1
@@ -83,12 +83,12 @@ contains
       self%entering = [integer ::]
       if (allocated(self%difference)) deallocate (self%difference)
       associate (f => size(rows%free), free => rows%free)
+         columns = system%schur(:, free)
+         if (hold > 0.0_dp) columns = columns + &
+            hold*matmul(system%motion, transpose(system%motion(free, :)))
+         columns = rows%combine(columns)
          do j = 1, f
-            column(:, 1) = system%schur(:, free(j))
-            if (hold > 0.0_dp) column(:, 1) = column(:, 1) + &
-               hold*matmul(system%motion, system%motion(free(j), :))
-            column = rows%combine(column)
-            matrix(:f, j) = column(free, 1)
+            matrix(:f, j) = columns(free, j)
             matrix(f + 1:, j) = 0.0_dp
             matrix(j, j) = matrix(j, j) + rows%spring(free(j))
          end do
@@ -161,9 +161,21 @@ contains
    pure function differ(a, b)
       type(contact_rows_type), intent(in) :: a, b
       logical :: differ(size(a%own))
+      integer :: i, j
 
       differ = a%partner /= b%partner .or. abs(a%share - b%share) > 0.0_dp .or. &
          abs(a%own - b%own) > 0.0_dp .or. abs(a%spring - b%spring) > 0.0_dp
+      do i = 1, size(a%closing)
+         j = findloc(b%closing, a%closing(i), dim=1)
+         if (j == 0) then
+            differ(a%closing(i)) = .true.
+         else if (any(abs(a%arm(i, :) - b%arm(j, :)) > 0.0_dp)) then
+            differ(a%closing(i)) = .true.
+         end if
+      end do
+      do j = 1, size(b%closing)
+         if (all(a%closing /= b%closing(j))) differ(b%closing(j)) = .true.
+      end do
    end function differ
 
    !> A row of M, in a column.
@@ -173,11 +185,14 @@ contains
       integer, intent(in) :: i
       logical, intent(in) :: is_free(:)
       real(dp) :: row(size(is_free))
+      integer :: c
 
       row = 0.0_dp
       if (is_free(i)) then
          row = rows%own(i)*system%schur(:, i)
          if (rows%partner(i) > 0) row = row + rows%share(i)*system%schur(:, rows%partner(i))
+         c = findloc(rows%closing, i, dim=1)
+         if (c > 0) row = row + matmul(system%schur, rows%arm(c, :))
          row(i) = row(i) + rows%spring(i)
       else
          row(i) = system%schur(i, i)

@@ -30,13 +30,15 @@ module contact_states
    end type contact_state_type
 
    !> Where a contact point that closes within the increment sticks: at the reference d_t - slip,
-   !> where slip is the left-hand side of the condition in contact_system.
+   !> where slip is the left-hand side of the condition in contact_system. Forces are lambda_n and
+   !> lambda_t of the contact points that close in the increment; of others the factors are zero.
    type :: closing_law_type
       logical :: acts = .false.                !! whether the contact point closes in this increment
       real(dp) :: start = 0.0_dp               !! d_t,i [length]
       real(dp) :: fraction = 0.0_dp            !! f, the instant of closing
-      real(dp) :: compliance(2) = 0.0_dp       !! c_n, c_t [length/force]
-      real(dp) :: rate(2) = 0.0_dp             !! derivative of f by lambda_n, lambda_t [1/force]
+      real(dp), allocatable :: compliance(:, :) !! (2, m) a, factors of the forces [length/force]
+      !> (2, m) derivative of the slip by the forces through the instants [length/force]
+      real(dp), allocatable :: rate(:, :)
    end type closing_law_type
 
 contains

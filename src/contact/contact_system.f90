@@ -11,9 +11,11 @@
 !>    capped d_n = h                                 lambda_t = direction times the largest shear
 !>
 !> A contact point that closes within the increment sticks where it closed, a position that depends
-!> on its forces (closing_instant):
+!> on forces (closing_instant):
 !>
-!>    stick  d_n = h           (1 - f) (d_t - d_t,i) + f (c_n lambda_n + c_t lambda_t) = 0
+!>    stick  d_n = h           (1 - f) (d_t - d_t,i) + a.lambda = 0,
+!>
+!> lambda being the forces of all contact points that close in the increment.
 !>
 !> Contact points that form cycles have the forces of their links (linear_constraints) among the
 !> unknowns, on which nothing else acts; where such a contact point sticks it has a small
@@ -27,12 +29,13 @@
 !> The rows of an active set say which of d are sought, and what forces and displacements enter the
 !> row of each. A slipping contact point's tangential row is lambda_t + share lambda_n = 0, or
 !> without a share the largest friction for 0; that of a contact point which closes and sticks,
-!> divided by f c_t, own lambda_t + share lambda_n + spring d_t = 0.
+!> times a stiffness, own lambda_t + arm.lambda + spring d_t = 0.
 !>
 !> What is solved with it, and what of it changes, is in contact_workspace.
 module contact_system
    use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type, &
-      is_capped
+      contact_stick, is_capped
+   use dense, only: product_of
    use kinds, only: dp
    implicit none
    private
@@ -54,6 +57,8 @@ module contact_system
       real(dp), allocatable :: rigid(:, :)  !! (tail, q) unsupported rigid motions
       real(dp), allocatable :: motion(:, :) !! (tail, q) the same, orthonormal
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
+   contains
+      procedure :: on_tail
    end type contact_system_type
 
    !> Rows of an active set.
@@ -63,6 +68,8 @@ module contact_system
       real(dp), allocatable :: share(:)      !! (tail) factor of that force
       real(dp), allocatable :: own(:)        !! (tail) factor of the row's own force
       real(dp), allocatable :: spring(:)     !! (tail) factor of the row's displacement
+      integer, allocatable :: closing(:)     !! (c) rows of contact points that close and stick
+      real(dp), allocatable :: arm(:, :)     !! (c, tail) factors of all forces in them
    contains
       procedure :: combine
    end type contact_rows_type
@@ -76,7 +83,7 @@ contains
       type(closing_law_type), intent(in) :: closing(:)    !! (m) laws of closing contact points
       type(contact_rows_type) :: rows
       logical :: sought(2, size(state%contact_state))
-      integer :: k, tail
+      integer :: c, k, tail
 
       tail = size(system%schur, 1)
       allocate (rows%partner(tail), source=0)
@@ -84,6 +91,10 @@ contains
       allocate (rows%own(tail), source=1.0_dp)
       sought(1, :) = state%contact_state == contact_open
       sought(2, :) = system%tangent > 0
+      rows%closing = pack(system%tangent, system%tangent > 0 .and. closing%acts .and. &
+         state%contact_state == contact_stick)
+      allocate (rows%arm(size(rows%closing), tail))
+      c = 0
       do k = 1, size(state%contact_state)
          if (system%tangent(k) == 0) cycle
          associate (row => system%tangent(k), law => closing(k), compliance => system%compliance(k))
@@ -94,12 +105,10 @@ contains
                rows%partner(row) = system%normal(k)
                rows%share(row) = state%direction(k)*system%friction(k)
             else if (law%acts) then
-               rows%partner(row) = system%normal(k)
-               associate (scale => law%compliance(2) + compliance)
-                  rows%own(row) = (law%fraction*law%compliance(2) + compliance)/scale
-                  rows%share(row) = law%fraction*law%compliance(1)/scale
-                  rows%spring(row) = (1.0_dp - law%fraction)/scale
-               end associate
+               c = c + 1
+               rows%own(row) = system%alone(k)*compliance
+               rows%spring(row) = system%alone(k)*(1.0_dp - law%fraction)
+               rows%arm(c, :) = system%alone(k)*system%on_tail(law%compliance)
             else if (compliance > 0.0_dp) then
                rows%spring(row) = 1.0_dp/compliance
             else
@@ -110,6 +119,20 @@ contains
       rows%free = [pack(reshape([(system%normal(k), system%tangent(k), k=1, &
          size(state%contact_state))], shape(sought)), sought), system%link]
    end function rows_of
+
+   !> Values for normal and tangent of the contact points, on the tail; 0 elsewhere.
+   pure function on_tail(self, values)
+      class(contact_system_type), intent(in) :: self
+      real(dp), intent(in) :: values(:, :)            !! (2, m)
+      real(dp) :: on_tail(size(self%schur, 1))        !! (tail)
+      integer :: k
+
+      on_tail = 0.0_dp
+      do k = 1, size(values, 2)
+         on_tail(self%normal(k)) = values(1, k)
+         if (self%tangent(k) > 0) on_tail(self%tangent(k)) = values(2, k)
+      end do
+   end function on_tail
 
    !> Forces, or columns of S, as they enter the rows.
    pure function combine(self, columns) result(rows)
@@ -125,6 +148,8 @@ contains
                self%share(i)*columns(self%partner(i), j)
          end do
       end do
+      if (size(self%closing) > 0) rows(self%closing, :) = rows(self%closing, :) + &
+         product_of(self%arm, columns)
    end function combine
 
 end module contact_system

@@ -1,9 +1,10 @@
 !> How the contact state follows its load while all contact points keep their conditions: the
-!> derivative of the partial solution of (2.4). The instants of closing follow too: with f =
-!> f(lambda) the row of a contact point that closes and sticks, r = (1 - f) (d_t - d_t,i) + f
-!> c.lambda, has
+!> derivative of the partial solution of (2.4). The instants of closing follow too: the row of a
+!> contact point that closes and sticks, r = (1 - f) (d_t - d_t,i) + a.lambda, has
 !>
-!>    dr = (1 - f) dd_t + (f c + (c.lambda - d_t + d_t,i) df/dlambda).dlambda.
+!>    dr = (1 - f) dd_t + (a + b).dlambda,
+!>
+!> with b the derivative of r by lambda through f(lambda) and a(lambda).
 module contact_tangent
    use contact_states, only: contact_state_type, contact_open, contact_stick
    use contact_system, only: contact_system_type
@@ -63,8 +64,7 @@ contains
       type(contact_workspace_type), intent(out) :: tangent
       logical, intent(out) :: sound                   !! whether the derivative exists
       logical :: moves(size(state%contact_state)), singular
-      real(dp) :: arm
-      integer :: k
+      integer :: c, k
 
       tangent = work
       sound = .true.
@@ -72,12 +72,9 @@ contains
       if (.not. any(moves)) return
       do k = 1, size(moves)
          if (.not. moves(k)) cycle
-         associate (law => work%closing(k), row => system%tangent(k))
-            arm = (dot_product(law%compliance, [-state%force(k), state%shear_force(k)]) - &
-               (state%tangential(k) - law%start))/(law%compliance(2) + system%compliance(k))
-            tangent%rows%share(row) = tangent%rows%share(row) + arm*law%rate(1)
-            tangent%rows%own(row) = tangent%rows%own(row) + arm*law%rate(2)
-         end associate
+         c = findloc(tangent%rows%closing, system%tangent(k), dim=1)
+         tangent%rows%arm(c, :) = tangent%rows%arm(c, :) + system%alone(k)*system%on_tail( &
+            work%closing(k)%rate)
       end do
       call tangent%factor_rows(system, singular)
       sound = .not. singular

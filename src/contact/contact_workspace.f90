@@ -19,11 +19,10 @@ module contact_workspace
    !> remainder of loads that were taken off.
    real(dp), parameter :: unresolved = 1.0e-3_dp
 
-   !> What a contact point gives way to its own forces, the others keeping their conditions.
+   !> What forces on one contact point move.
    type :: relief_type
-      logical :: is_known = .false.               !! whether it was found
-      logical :: alone = .false.                  !! whether nothing else holds a body
-      real(dp) :: compliance(2, 2) = 0.0_dp       !! of d_n, d_t to forces along them [length/force]
+      !> (tail, 2) motion by forces along d_n and d_t, unallocated until it is sought [length/force]
+      real(dp), allocatable :: response(:, :)
    end type relief_type
 
    !> Data of the increment, and the factors for the active set of the last solution.
@@ -107,8 +106,9 @@ contains
 
       associate (law => self%closing(k))
          if (law%acts) then
-            slip = (1.0_dp - law%fraction)*(state%tangential(k) - law%start) + law%fraction* &
-               dot_product(law%compliance, [-state%force(k), state%shear_force(k)])
+            slip = (1.0_dp - law%fraction)*(state%tangential(k) - law%start) - dot_product( &
+               law%compliance(1, :), state%force) + dot_product(law%compliance(2, :), &
+               state%shear_force)
          else
             slip = state%tangential(k) - state%reference(k)
          end if

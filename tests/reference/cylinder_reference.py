@@ -227,32 +227,41 @@ class Contact:
                 fraction, yielding = closing.get(k, (0.0, 0.0))
                 share[m + k] = 1 - fraction
                 rows[m + k] = share[m + k] * self.by_traction[m + k]
-                rows[m + k, [k, m + k]] += fraction * yielding
+                rows[m + k] += yielding
         return rows, share
 
     def slips(self, p, t, l, before, closing):
         """Tangential motion in the increment since friction acts: for a pair that closes in it, since that instant."""
         slip = l - before.l
         for k, (fraction, yielding) in closing.items():
-            slip[k] = (1 - fraction) * slip[k] + fraction * (yielding @ [p[k], t[k]])
+            slip[k] = (1 - fraction) * slip[k] + yielding @ np.r_[p, t]
         return slip
 
     def closing_laws(self, status, before, p, t):
-        """Pairs that close in the increment: instant (fraction of it) and own tangential flexibility under (p, t).
+        """Pairs that close in the increment: instant (fraction of it), and what the tractions of all of them add to slip.
 
-        Relieved of its own tractions alone, a pair would end at the gap g* and at l*, less by its own flexibility times
-        (p, t); all other closed pairs hold their places. It closes at the fraction
-        g_i/(g_i - g*), at the place that lies there between l_i and l*."""
-        fresh = [k for k in np.flatnonzero((status != OPEN) & (before.status == OPEN)) if k > 0]
+        Relieved of the tractions of all that still are open, they go straight to where they would end, all other closed
+        pairs holding their places, until the next one closes; it holds its place from there on."""
+        m, traction = self.count, np.r_[p, t]
+        still_open = [k for k in np.flatnonzero((status != OPEN) & (before.status == OPEN))]
         laws, held = {}, status.copy()
         held[status != OPEN] = STICK
         all_rows = self.conditions(held, {})[0]
-        for k in fresh:
-            pair, rows = [k, self.count + k], all_rows.copy()
-            rows[pair] = np.eye(2 * self.count)[pair]
-            yielding = (self.by_traction @ np.linalg.solve(rows, np.eye(2 * self.count)[:, pair]))[pair]
-            overlap = max(yielding[0] @ [p[k], t[k]], 0.0)
-            laws[k] = (before.g[k] / (before.g[k] + overlap) if before.g[k] > 0 else 0.0), yielding[1]
+        gap, left, yielded = np.maximum(before.g, 0), 1.0, np.zeros((2 * m, 2 * m))
+        none = 1e-12 * gap.max()
+        while still_open:
+            rows = all_rows.copy()
+            relieved = still_open + [m + k for k in still_open if k > 0]
+            rows[relieved] = np.eye(2 * m)[relieved]
+            yielding = np.zeros((2 * m, 2 * m))
+            yielding[:, relieved] = self.by_traction @ np.linalg.solve(rows, np.eye(2 * m)[:, relieved])
+            end = -(yielding @ traction)[:m]
+            part = min([1.0] + [gap[k] / (gap[k] - end[k]) for k in still_open if end[k] < 0])
+            gap, left = (1 - part) * gap + part * end, (1 - part) * left
+            yielded = (1 - part) * yielded + part * yielding
+            closing = [k for k in still_open if gap[k] <= none or part == 1]
+            laws.update({k: (1 - left, yielded[m + k].copy()) for k in closing if k > 0})
+            still_open = [k for k in still_open if k not in closing]
         return laws
 
     def mechanics(self, status, before, free):
