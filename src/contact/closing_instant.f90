@@ -48,6 +48,7 @@ module closing_instant
    type :: way_type
       integer, allocatable :: point(:)       !! (n) the contact points
       logical, allocatable :: is_open(:)     !! (n) whether it has not closed so far
+      real(dp), allocatable :: last_gap(:)   !! (n) gap at the end of the increment [length]
       real(dp) :: least_gap = 0.0_dp         !! a gap that is none [length]
       real(dp) :: left = 1.0_dp              !! 1 - f
       real(dp), allocatable :: y(:)          !! (2n) position less that at the end [length]
@@ -149,14 +150,16 @@ contains
       logical :: closes(size(state%contact_state))
       integer :: k
 
-      closes = previous%contact_state == contact_open .and. state%contact_state /= contact_open
+      closes = previous%contact_state == contact_open .and. holds
       if (.not. any(closes .and. system%tangent > 0)) return
       held_state = state
       held_state%contact_state = merge(contact_stick, contact_open, holds .and. &
          previous%contact_state /= contact_open)
       way%point = pack([(k, k=1, size(closes))], closes)
       allocate (way%is_open(size(way%point)), source=.true.)
-      way%y = [-max(previous%gap(way%point), 0.0_dp), &
+      way%last_gap = merge(max(state%gap(way%point), 0.0_dp), 0.0_dp, &
+         state%contact_state(way%point) == contact_open)
+      way%y = [way%last_gap - max(previous%gap(way%point), 0.0_dp), &
          previous%tangential(way%point) - state%tangential(way%point)]
       way%lambda = [-state%force(way%point), state%shear_force(way%point)]
       way%least_gap = together*maxval(previous%gap(way%point)) + system%least_length
@@ -212,13 +215,13 @@ contains
          end do
          associate (reaches => way%is_open .and. motion(:n) > nothing)
             if (.not. any(reaches)) return
-            length = max(minval(-way%y(:n)/motion(:n), mask=reaches), 0.0_dp)
+            length = max(minval((way%last_gap - way%y(:n))/motion(:n), mask=reaches), 0.0_dp)
          end associate
          way%y = way%y + length*motion
          do i = 1, n
             if (.not. way%is_open(i)) cycle
             laws(way%point(i))%start = laws(way%point(i))%start + length*motion(n + i)
-            if (-way%y(i) > way%least_gap) cycle
+            if (way%last_gap(i) - way%y(i) > way%least_gap) cycle
             way%is_open(i) = .false.
             held_state%contact_state(way%point(i)) = contact_stick
          end do
@@ -265,16 +268,17 @@ contains
    pure subroutine go_to_event(way, laws)
       type(way_type), intent(inout) :: way
       type(closing_law_type), intent(inout) :: laws(:)
-      real(dp) :: ends(size(way%y)), slope(size(way%y)), part, trial
+      real(dp) :: ends(size(way%y)), slope(size(way%y)), gap(size(way%point)), part, trial
       integer :: first, i, n
 
       n = size(way%point)
       ends = -matmul(way%compliance, way%lambda)
+      gap = max(way%last_gap - way%y(:n), 0.0_dp)
       first = 0
       part = 1.0_dp
       do i = 1, n
-         if (.not. way%is_open(i) .or. ends(i) <= 0.0_dp) cycle
-         trial = max(-way%y(i), 0.0_dp)/(max(-way%y(i), 0.0_dp) + ends(i))
+         if (.not. way%is_open(i) .or. ends(i) <= way%last_gap(i)) cycle
+         trial = gap(i)/(gap(i) + (ends(i) - way%last_gap(i)))
          if (trial >= part) cycle
          part = trial
          first = i
@@ -290,7 +294,7 @@ contains
       way%left = (1.0_dp - part)*way%left
       do i = 1, n
          if (.not. way%is_open(i)) cycle
-         if (first > 0 .and. i /= first .and. -way%y(i) > way%least_gap) cycle
+         if (first > 0 .and. i /= first .and. way%last_gap(i) - way%y(i) > way%least_gap) cycle
          associate (law => laws(way%point(i)))
             law%fraction = 1.0_dp - way%left
             law%compliance(1, way%point) = way%law(n + i, :n)
