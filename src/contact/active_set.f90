@@ -105,11 +105,12 @@ contains
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       integer :: visited(size(state%contact_state), most_sets)
-      integer :: next(2, size(state%contact_state)), k, set
+      integer :: next(2, size(state%contact_state)), k, set, since
       real(dp) :: excess(size(state%contact_state))
       logical :: corrected(size(state%contact_state)), one_at_a_time
 
       one_at_a_time = .false.
+      since = 1
       do set = 1, most_sets
          call work%solve_set(system, load, state, error)
          if (allocated(error)) return
@@ -117,9 +118,14 @@ contains
          corrected = excess > 0.0_dp
          if (.not. any(corrected)) return
          visited(:, set) = state_code(state)
-         do k = 1, set - 1
-            one_at_a_time = one_at_a_time .or. all(visited(:, k) == visited(:, set))
+         do k = since, set - 1
+            if (all(visited(:, k) == visited(:, set))) exit
          end do
+         if (k < set) then
+            if (one_at_a_time) exit   ! it would come back for ever
+            one_at_a_time = .true.
+            since = set
+         end if
          if (one_at_a_time) corrected(:findloc(corrected, .true., dim=1, back=.true.) - 1) = .false.
          where (corrected)
             state%contact_state = next(1, :)
