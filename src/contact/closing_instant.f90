@@ -123,8 +123,8 @@ contains
          ! Laws that stay keep the factors.
          if (pass < most_passes) work%closing = laws
       end do
-      ! Laws that never settle belong to states that call for each other. The last ones are kept, for
-      ! other conductances, too: the fixed point would not find two states that differ in them.
+      ! Laws that never settle belong to states that call for each other. The last ones are kept,
+      ! for other conductances, too: else the fixed point would go from the one to the other.
       work%keeps_laws = work%keeps_laws .or. pass > most_passes
       work%several = work%several .or. work%keeps_laws
       do k = 1, size(state%contact_state)

@@ -37,7 +37,7 @@ module contact_workspace
       !> Stiffness that holds the unsupported motions softly, 0 for none [force/length]
       real(dp) :: hold = 0.0_dp
       type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing contact points
-      logical :: keeps_laws = .false.             !! these do not settle in this increment: they stay
+      logical :: keeps_laws = .false.             !! they do not settle in this increment: they stay
       !> (tail) relative displacements that unconstrained motions are least from
       real(dp), allocatable :: anchor(:)
       type(contact_rows_type) :: rows             !! rows of the active set
