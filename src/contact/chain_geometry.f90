@@ -7,7 +7,7 @@ module chain_geometry
    implicit none
    private
    public :: arc_lengths, edge_lengths, tributary_lengths, swept_areas, chain_tangents
-   public :: at_tips, length_between, side_positions, side_total, two_pi
+   public :: at_tips, length_between, side_positions, side_total, turns_back, two_pi
 
    !> Angle of a full turn [rad].
    real(dp), parameter :: two_pi = 6.283185307179586477_dp
@@ -142,6 +142,17 @@ contains
          end do
       end do
    end function at_tips
+
+   !> Whether a side runs back at one of its nodes, as with a midside node beyond a quarter point.
+   pure logical function turns_back(x)
+      real(dp), intent(in) :: x(:, :)      !! (2, nodes) the side [length]
+      integer :: node
+
+      associate (chord => x(:, size(x, 2)) - x(:, 1))
+         turns_back = any([(dot_product(slope_at(x, node), chord) < -no_slope* &
+            dot_product(chord, chord), node=1, size(x, 2))])
+      end associate
+   end function turns_back
 
    !> Whether a side has no slope at one of its nodes: the end next to a quarter point.
    pure logical function is_tip(x, node)

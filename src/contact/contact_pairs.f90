@@ -8,8 +8,8 @@ module contact_pairs
    use element_kinds, only: axisymmetric
    use errors, only: error_type, set_error, status_deck
    use face_ends, only: one_goes_on
-   use interface_checks, only: blame_corner, check_corner, check_covered, check_opposite, &
-      check_shared, check_sides, check_weights, compare_lines
+   use interface_checks, only: blame_corner, check_corner, check_covered, check_folds, &
+      check_opposite, check_shared, check_sides, check_weights, compare_lines
    use interface_warnings, only: mismatch_of_pairs
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -169,6 +169,10 @@ contains
          points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
       end associate
       call check_shared(mesh, definition, slave, master, error)
+      if (allocated(error)) return
+      call check_folds(mesh, definition%title(), slave, error)
+      if (allocated(error)) return
+      call check_folds(mesh, definition%title(), master, error)
       if (allocated(error)) return
       call find_points(mesh, definition, slave, master, thickness, points, error)
       if (allocated(error)) return

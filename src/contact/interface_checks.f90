@@ -1,6 +1,6 @@
 !> Whether two lines of nodes can be matched, and how it is said where they cannot.
 module interface_checks
-   use chain_geometry, only: chain_tangents
+   use chain_geometry, only: chain_tangents, side_positions, side_total, turns_back
    use contact_definitions, only: contact_definition_type
    use contact_points, only: contact_points_type
    use errors, only: error_type, set_error, status_deck
@@ -10,7 +10,7 @@ module interface_checks
    use text, only: to_text
    implicit none
    private
-   public :: check_shared, compare_lines, check_sides, check_weights, check_opposite
+   public :: check_folds, check_shared, compare_lines, check_sides, check_weights, check_opposite
    public :: check_corner, check_covered, blame_corner
 
    !> Cosine between outward normals from which on faces look the same way: curved faces that part
@@ -45,6 +45,27 @@ contains
       if (len(message) > 0) call set_error(error, status_deck, &
          definition%title()//': '//message)
    end subroutine check_shared
+
+   !> Refuses a line whose side runs back: it has no normal there.
+   subroutine check_folds(mesh, title, chain, error)
+      type(mesh_type), intent(in) :: mesh
+      character(*), intent(in) :: title                    !! of the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: chain        !! line of the slave or of the master
+      type(error_type), allocatable, intent(out) :: error  !! the midside node
+      integer :: position(chain%side_nodes), side
+
+      do side = 1, side_total(size(chain%nodes), chain%side_nodes, chain%closed)
+         position = side_positions(side, chain%side_nodes, size(chain%nodes))
+         associate (nodes => chain%nodes(position))
+            if (.not. turns_back(mesh%coordinates(:, nodes))) cycle
+            call set_error(error, status_deck, title//': the side from node '// &
+               to_text(mesh%node_number(nodes(1)))//' to node '// &
+               to_text(mesh%node_number(nodes(size(nodes))))//' runs back behind node '// &
+               to_text(mesh%node_number(nodes(2)))//': move that node to the middle of the side')
+            return
+         end associate
+      end do
+   end subroutine check_folds
 
    !> Says how two lines are not of one kind or have different numbers of nodes, and what to do for
    !> node pairs.

@@ -260,6 +260,10 @@ contains
          return
       case (-10, -40)
          call set_error(error, status_deck, unheld)
+      case (-8, -9)
+         call set_error(error, status_deck, 'MUMPS finds no sequence of pivots: entries of the '// &
+            'matrix are too many orders of magnitude apart; check the values and units of '// &
+            'materials and loads')
       case default
          call set_error(error, status_internal, 'MUMPS failed in its '//phase// &
             ' with INFOG(1) = '//to_text(self%mumps%infog(1))// &
