@@ -34,10 +34,12 @@ module closing_instant
    private
    public :: solve_increment
 
-   integer, parameter :: most_passes = 60 !! passes over the closing laws
+   integer, parameter :: most_passes = 60  !! passes over the closing laws
    !> of these, with the contact points holding that are closed
    integer, parameter :: free_passes = 10
    integer, parameter :: plain_passes = 15 !! of these, going all the way to the new laws
+   integer, parameter :: few_halves = 8    !! halves of changes after which it shows if they end
+   real(dp), parameter :: lasting = 0.1_dp !! part of the changes that is left then if they do not
    real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
    real(dp), parameter :: rounding = 1.0e-10_dp   !! the same where it does not come down to that
    real(dp), parameter :: nothing = 1.0e-12_dp !! part of a compliance or of a motion that is none
@@ -93,7 +95,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(closing_law_type) :: laws(size(state%contact_state))
       logical :: holds(size(state%contact_state))
-      real(dp) :: change
+      real(dp) :: change, swing   ! of the last pass, of the last one before changes are halved
       integer :: k, pass
 
       if (.not. allocated(held%closing)) then
@@ -120,12 +122,14 @@ contains
             end do
          end if
          if (change <= merge(settled, rounding, pass <= free_passes)) exit
-         ! Laws that stay keep the factors.
-         if (pass < most_passes) work%closing = laws
+         if (pass == plain_passes) swing = change
+         work%keeps_laws = pass == plain_passes + few_halves .and. change > lasting*swing .or. &
+            pass == most_passes
+         if (work%keeps_laws) exit
+         work%closing = laws   ! laws that stay keep the factors
       end do
       ! Laws that never settle belong to states that call for each other. The last ones are kept,
       ! for other conductances, too: else the fixed point would go from the one to the other.
-      work%keeps_laws = work%keeps_laws .or. pass > most_passes
       work%several = work%several .or. work%keeps_laws
       do k = 1, size(state%contact_state)
          if (work%closing(k)%acts .and. state%contact_state(k) /= contact_open) then

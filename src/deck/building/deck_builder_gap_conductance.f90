@@ -100,7 +100,7 @@ contains
       if (report%error_count() == errors) call check_zero(card, name, table, report)
       if (allocated(table%temperature)) then
          call note_ends('*GAP CONDUCTANCE', name, 'mean temperatures', table%temperature, context)
-         allocate (law%by_temperature)
+         if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
          call move_alloc(table%temperature, law%by_temperature%closed_temperature)
          call move_alloc(table%columns, law%by_temperature%closed_columns)
       end if
