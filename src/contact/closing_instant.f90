@@ -103,6 +103,7 @@ contains
          held%closing = closing_law_type()
       end if
       holds = .false.
+      swing = 0.0_dp
       do pass = 1, most_passes
          state%gap = previous%gap
          state%tangential = previous%tangential
