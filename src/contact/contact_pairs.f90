@@ -170,10 +170,6 @@ contains
       end associate
       call check_shared(mesh, definition, slave, master, error)
       if (allocated(error)) return
-      call check_folds(mesh, definition%title(), slave, error)
-      if (allocated(error)) return
-      call check_folds(mesh, definition%title(), master, error)
-      if (allocated(error)) return
       call find_points(mesh, definition, slave, master, thickness, points, error)
       if (allocated(error)) return
       if (definition%adjusts) call close_gaps(mesh, definition, points)
@@ -232,6 +228,10 @@ contains
          end if
          points%mismatch = mismatch
       end if
+      call check_folds(mesh, definition%title(), slave, error)
+      if (allocated(error)) return
+      call check_folds(mesh, definition%title(), master, error)
+      if (allocated(error)) return
       call check_corner(mesh, definition, slave, error)
       if (allocated(error)) return
       call set_mortar_points(mesh, slave, master, thickness, points)
