@@ -2,8 +2,8 @@
 module companion_steps
    use controls, only: implicit_scheme, start_type
    use errors, only: error_type
-   use increment_data, only: increment_workspace_type
-   use increment_solution, only: recover_fields, solve_points
+   use increment_data, only: increment_data_type, increment_workspace_type
+   use increment_solution, only: begin_increment, recover_fields, solve_points
    use increments, only: simulation_type
    use kinds, only: dp
    use model, only: model_type
@@ -46,16 +46,18 @@ contains
       type(solution_state_type), intent(in) :: previous      !! at the start of the increment
       type(solution_state_type), intent(inout) :: state      !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
+      type(increment_data_type) :: data
       type(increment_workspace_type) :: workspace
 
       if (solves_heat(step%analysis)) then
-         call simulation%bodies%set_film(state%film, model, error)
+         call simulation%bodies%set_film(state%sources%film, model, error)
          if (allocated(error)) return
       end if
-      call solve_points(simulation%bodies, simulation%loads, step, previous, workspace, state, &
+      call begin_increment(simulation%bodies, step, previous, state, data)
+      call solve_points(simulation%bodies, simulation%loads, previous, data, workspace, state, &
          error)
       if (allocated(error)) return
-      call recover_fields(simulation%bodies, simulation%loads, step, workspace, previous, state)
+      call recover_fields(simulation%bodies, simulation%loads, data, workspace, previous, state)
    end subroutine implicit_state
 
 end module companion_steps

@@ -96,17 +96,17 @@ contains
       before = prolonged(self, simulation%bodies%points, previous)
       next = before
       next%increment_size = simulation%state%increment_size
-      next%heat_load = self%run%loads%heat_load()
-      next%film = self%run%loads%film_matrix()
+      next%sources%load = self%run%loads%heat_load()
+      next%sources%film = self%run%loads%film_matrix()
       next%force_load = self%run%loads%nodal_forces()
       step = implicit_step(model%steps(self%run%control%step))
       call implicit_state(self%run, self%model, step, before, next, error)
       if (allocated(error)) return
-      call quantities_of_state(self%run%bodies, next, step%scheme, change)
+      call quantities_of_state(self%run%bodies, next, change)
       next = simulation%state
       call implicit_state(simulation, model, step, previous, next, error)
       if (allocated(error)) return
-      call quantities_of_state(simulation%bodies, next, step%scheme, values)
+      call quantities_of_state(simulation%bodies, next, values)
       change = change - values
    end subroutine find_change
 

@@ -5,9 +5,8 @@ module doubled_increments
    use companion_steps, only: companion_step
    use contact_changes, only: brings_friction
    use errors, only: error_type
-   use films, only: left_films
-   use increment_data, only: increment_workspace_type
-   use increment_solution, only: recover_fields, solve_points
+   use increment_data, only: increment_data_type, increment_workspace_type
+   use increment_solution, only: begin_increment, recover_fields, solve_points
    use increments, only: accept_increment
    use kinds, only: dp
    use known_loads, only: known_loads_type
@@ -15,9 +14,9 @@ module doubled_increments
    use model, only: model_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
-   use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
    use steps, only: planned_increments, solves_heat, solves_mechanics, step_type
+   use thermal_matrix, only: heat_equation_type
    implicit none
    private
    public :: doubled_increments_type
@@ -48,13 +47,15 @@ contains
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies    !! the bodies, matched
       type(solution_state_type), intent(in) :: state             !! state before the first increment
+      type(heat_equation_type) :: equation
       integer :: s
 
       self%is_led = any(model%interactions%friction%coefficient > 0.0_dp)
       do s = 1, size(model%steps)
          self%is_led = self%is_led .or. brings_friction(model%steps(s)%changes)
+         equation = heat_equation_type(model%steps(s)%scheme)
          self%is_led = self%is_led .or. (solves_heat(model%steps(s)%analysis) .and. &
-            has_memory(model%steps(s)%scheme) .and. size(bodies%points%slave) > 0)
+            .not. equation%is_steady() .and. size(bodies%points%slave) > 0)
       end do
       if (self%is_led) self%state = state
    end subroutine start
@@ -71,7 +72,9 @@ contains
       type(error_type), allocatable :: error
       type(solution_state_type) :: before, next
       type(step_type) :: step
+      type(increment_data_type) :: data
       type(increment_workspace_type) :: workspace
+      type(heat_equation_type) :: equation
 
       if (.not. self%is_led .or. self%is_lost) return
       if (record%step /= self%step) self%waiting = &
@@ -86,27 +89,27 @@ contains
       before = self%state
       next%contact = accepted%contact
       next%contact%tangential = self%state%contact%tangential
-      if (.not. has_memory(step%scheme)) then
+      equation = heat_equation_type(step%scheme)
+      if (equation%is_steady()) then
          ! The run's solution is a guess that is nearly right, and nothing else is taken of omega.
          before%omega = accepted%omega
          before%omega_before = accepted%omega
       end if
       next%increment_size = record%time - self%time
-      next%heat_load = accepted%heat_load
-      next%film = accepted%film
+      next%sources = accepted%sources
       next%force_load = accepted%force_load
+      call begin_increment(bodies, step, before, next, data)
       if (solves_heat(step%analysis)) then
-         call bodies%set_film(left_films(step%scheme, self%state%film, next%film), model, &
-            error)
+         call bodies%set_film(data%equation%left_film(), model, error)
       end if
       call move_alloc(self%known, workspace%known)
-      if (.not. allocated(error)) call solve_points(bodies, loads, step, before, &
+      if (.not. allocated(error)) call solve_points(bodies, loads, before, data, &
          workspace, next, error)
       call move_alloc(workspace%known, self%known)
       self%is_lost = allocated(error)
       if (self%is_lost) return
-      if (has_memory(step%scheme) .or. .not. solves_mechanics(step%analysis)) then
-         call recover_fields(bodies, loads, step, workspace, self%state, next)
+      if (.not. equation%is_steady() .or. .not. solves_mechanics(step%analysis)) then
+         call recover_fields(bodies, loads, data, workspace, self%state, next)
       end if
       call accept_increment(next, model, self%state)
       self%time = record%time

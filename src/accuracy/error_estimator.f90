@@ -134,7 +134,7 @@ contains
       if (no_mesh /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
          'estimated: '//no_mesh)
       courses(record%step) = self%courses
-      call bound_increments(self, model, simulation, record%errors)
+      call bound_increments(self, simulation, record%errors)
       call bound_iteration(record)
       do i = 1, size(record%errors)
          associate (errors => record%errors(i))
@@ -264,9 +264,8 @@ contains
    end function energy_error
 
    !> Bounds of the errors of the increments, from those of twice the size.
-   subroutine bound_increments(self, model, simulation, errors)
+   subroutine bound_increments(self, simulation, errors)
       type(error_estimator_type), intent(in) :: self
-      type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(interface_errors_type), intent(inout) :: errors(:)
       real(dp) :: doubled(size(estimated), size(errors))
@@ -276,8 +275,7 @@ contains
       if (.not. self%doubled%is_led) return
       doubled = ieee_value(1.0_dp, ieee_quiet_nan)
       if (self%doubled%has_doubled .and. .not. self%doubled%is_lost) then
-         call quantities_of_state(simulation%bodies, self%doubled%state, &
-            model%steps(self%step)%scheme, doubled)
+         call quantities_of_state(simulation%bodies, self%doubled%state, doubled)
       end if
       peak = find_quantity(estimated, 'peak_pressure')
       has_friction = simulation%bodies%points%has_friction()

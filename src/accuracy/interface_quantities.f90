@@ -4,14 +4,14 @@ module interface_quantities
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
    use contact_states, only: contact_open
-   use controls, only: thermal_scheme_type
    use increment_records, only: measure_contact
    use friction_laws, only: friction_law_type
    use kinds, only: dp
    use quantity_types, only: quantity_type
    use records, only: contact_record_type
    use reduced_bodies, only: reduced_bodies_type
-   use solution_state, only: carrying_conductance, solution_state_type
+   use solution_state, only: solution_state_type
+   use thermal_matrix, only: heat_across
    implicit none
    private
    public :: closed_length, contact_of, edge_spacing, is_end_of_face, peak_is_at_end, &
@@ -52,15 +52,12 @@ contains
    end function quantities_of
 
    !> The quantities of all interfaces in a state.
-   subroutine quantities_of_state(bodies, state, scheme, values)
+   subroutine quantities_of_state(bodies, state, values)
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: state
-      type(thermal_scheme_type), intent(in) :: scheme           !! by which it was found
       real(dp), intent(out) :: values(:, :)                     !! (quantities, interfaces)
-      real(dp) :: omega(size(state%omega))
       integer :: first, i, last
 
-      omega = carrying_conductance(state, scheme)
       associate (points => bodies%points, contact => state%contact)
          do i = 1, size(values, 2)
             first = points%interface_start(i)
@@ -68,8 +65,8 @@ contains
             values(:, i) = quantities_of(bodies%interfaces(i), contact_of( &
                bodies%interfaces(i), points%friction(first), contact%contact_state(first:last), &
                contact%gap(first:last), contact%force(first:last), &
-               contact%shear_force(first:last), points%weight(first:last)*omega(first:last)* &
-               state%jump(first:last)))
+               contact%shear_force(first:last), heat_across(points%weight(first:last), &
+               state%carrying(first:last), state%jump(first:last))))
          end do
       end associate
    end subroutine quantities_of_state

@@ -14,12 +14,10 @@ module refinement_error
    use contact_operator, only: kept_contact, unstrained_forces
    use contact_quantities, only: estimated
    use contact_states, only: contact_open
-   use controls, only: implicit_scheme
    use cut_hats, only: joined_conductance
    use errors, only: error_type
-   use films, only: net_heat
-   use increment_data, only: increment_workspace_type
-   use increment_solution, only: recover_fields, solve_points
+   use increment_data, only: increment_data_type, increment_workspace_type
+   use increment_solution, only: begin_increment, recover_fields, solve_points
    use increments, only: simulation_type
    use interface_quantities, only: contact_of, quantities_of, quantities_of_state
    use interruption, only: check_overdue
@@ -32,10 +30,10 @@ module refinement_error
    use reduced_bodies, only: reduced_bodies_type
    use refined_model, only: refined_model_type
    use refined_points, only: refined_points_type
-   use scheme_properties, only: has_memory
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: solves_heat, solves_mechanics, step_type
+   use thermal_matrix, only: heat_across, heat_equation_type, heat_sources_type
    implicit none
    private
    public :: find_change_by_refinement
@@ -82,7 +80,7 @@ contains
 
       call begin(refined, simulation, model, previous, fields, error)
       if (allocated(error)) return
-      call quantities_of_state(simulation%bodies, fields%coarse, implicit_scheme, values)
+      call quantities_of_state(simulation%bodies, fields%coarse, values)
       step = implicit_step(model%steps(simulation%control%step))
       before = previous
       found = values
@@ -133,6 +131,7 @@ contains
       type(solution_state_type), intent(in) :: previous
       type(corrected_type), intent(out) :: fields
       type(error_type), allocatable, intent(out) :: error
+      type(heat_equation_type) :: equation
 
       associate (step => model%steps(simulation%control%step), loads => simulation%loads, &
          bodies => simulation%bodies)
@@ -156,9 +155,10 @@ contains
                refined%hangs(1))
             fields%film = refined%loads%film_matrix()
             fields%conduction = refined%conduction_with(fields%film)
-            call bodies%set_film(simulation%state%film, model, error)
+            call bodies%set_film(simulation%state%sources%film, model, error)
             if (allocated(error)) return
-            if (has_memory(step%scheme)) call implicit_state(simulation, model, &
+            equation = heat_equation_type(step%scheme)
+            if (.not. equation%is_steady()) call implicit_state(simulation, model, &
                implicit_step(step), previous, fields%coarse, error)
             if (allocated(error)) return
          end if
@@ -225,21 +225,23 @@ contains
       type(corrected_type), intent(inout) :: fields
       type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: trial
+      type(increment_data_type) :: data
       type(increment_workspace_type) :: workspace
 
       trial = fields%coarse
       associate (u => fields%displacement(:size(trial%displacement)), &
          t => fields%temperature(:size(trial%temperature)))
-         if (solves_heat(step%analysis)) trial%heat_load = refined%restrict( &
+         if (solves_heat(step%analysis)) trial%sources%load = refined%restrict( &
             fields%heat, 1) + heat_taken(bodies, fields%coarse, t)
          ! Contact forces of both meshes do the same work and cancel.
          if (solves_mechanics(step%analysis)) trial%force_load = refined%restrict( &
             mechanical_load(refined, fields) - fields%elastic_force, 2) + &
             bodies%mechanical%matrix%multiply(u) - unstrained_forces(bodies, t)
       end associate
-      call solve_points(bodies, loads, step, previous, workspace, trial, error)
+      call begin_increment(bodies, step, previous, trial, data)
+      call solve_points(bodies, loads, previous, data, workspace, trial, error)
       if (allocated(error)) return
-      call recover_fields(bodies, loads, step, workspace, previous, trial)
+      call recover_fields(bodies, loads, data, workspace, previous, trial)
       fields%displacement = fields%displacement + refined%division%prolong(trial%displacement - &
          fields%displacement(:size(trial%displacement)), 2)
       fields%temperature = fields%temperature + refined%division%prolong(trial%temperature - &
@@ -255,12 +257,15 @@ contains
       real(dp), intent(in) :: temperature(:)
       real(dp) :: heat(size(temperature))
       type(all_contact_points_type) :: points
+      type(heat_sources_type) :: sources
 
       points = coarse%cut%points_crossed(bodies%points)
       associate (t => temperature)
-         heat = heat_residual(bodies%thermal%matrix%multiply(t), net_heat(0.0_dp*t, &
-            coarse%film, t), points, points%weight*joined_conductance(coarse%omega, coarse%cut)* &
-            points%jumps(t))
+         sources%load = 0.0_dp*t
+         sources%film = coarse%sources%film
+         heat = heat_residual(bodies%thermal%matrix%multiply(t), sources%net_heat(t), points, &
+            heat_across(points%weight, joined_conductance(coarse%omega, coarse%cut), &
+            points%jumps(t)))
       end associate
    end function heat_taken
 

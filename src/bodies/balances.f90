@@ -2,13 +2,12 @@
 !> fields, against what the reduced system says crosses the contacts.
 module balances
    use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
-   use controls, only: thermal_scheme_type
    use friction_laws, only: friction_bound
    use kinds, only: dp
    use all_contact_points, only: all_contact_points_type
    implicit none
    private
-   public :: scales_type, heat_residual, scheme_contact_heat, force_residual, imbalance
+   public :: scales_type, heat_residual, force_residual, imbalance
    public :: contact_violation
 
    !> What displacements and forces are measured by.
@@ -31,23 +30,6 @@ contains
       residual = conducted - load
       call points%add_heat(contact_heat, residual)
    end function heat_residual
-
-   !> Heat of the contact points, from slave to master, in (3.4): the terms with G of both sides.
-   pure function scheme_contact_heat(scheme, weight, omega_old, omega_new, jump_old, jump_new) &
-      result(contact_heat)
-      type(thermal_scheme_type), intent(in) :: scheme !! coefficients of (3.4)
-      real(dp), intent(in) :: weight(:)               !! (m) tributary areas [length^2]
-      real(dp), intent(in) :: omega_old(:)            !! (m) omega_i
-      real(dp), intent(in) :: omega_new(:)            !! (m) omega_i+1
-      real(dp), intent(in) :: jump_old(:)             !! (m) theta_i [temperature]
-      real(dp), intent(in) :: jump_new(:)             !! (m) theta_i+1 [temperature]
-      real(dp) :: contact_heat(size(weight))          !! (m) (a1 + b1)*mean heat [power]
-
-      associate (a => scheme%a, b => scheme%b)
-         contact_heat = weight*((a(2)*omega_old + a(3)*omega_new)*jump_new + &
-            (b(2)*omega_old + b(3)*omega_new)*jump_old)
-      end associate
-   end function scheme_contact_heat
 
    !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces
    !> of the reduced system.

@@ -5,7 +5,7 @@ module contact_heat
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use tail_factors, only: tail_flops
-   use thermal_matrix, only: contact_diagonal, contact_history
+   use thermal_matrix, only: heat_across
    implicit none
    private
    public :: jump_derivatives_type, temperature_jumps, jump_derivatives, heat_by_omega
@@ -32,10 +32,10 @@ contains
       real(dp), allocatable :: of_cut(:)
       integer :: k
 
-      associate (tail_index => bodies%jump_index, weight => bodies%points%weight, &
-         solver => bodies%thermal%solver, tail => workspace%tail, work => workspace%record%work)
-         of_point = contact_diagonal(data%scheme, weight, data%omega_old, omega)
-         history = contact_history(data%scheme, weight, data%omega_old, omega, data%jump_old)
+      associate (tail_index => bodies%jump_index, solver => bodies%thermal%solver, &
+         tail => workspace%tail, work => workspace%record%work)
+         of_point = data%equation%contact_diagonal(omega)
+         history = data%equation%contact_history(omega)
          x = workspace%heat%condensed
          diagonal = 0.0_dp
          do k = 1, size(omega)
@@ -85,7 +85,7 @@ contains
       if (.not. allocated(workspace%supported)) workspace%supported = &
          bodies%thermal%map%supported(workspace%heat%given)
       associate (cut => workspace%cut, map => bodies%thermal%map)
-         heat = bodies%points%weight(cut%point)*cut%conductance
+         heat = heat_across(bodies%points%weight(cut%point), cut%conductance, 1.0_dp)
          back = -diagonal(bodies%jump_index(cut%point))
          do i = 1, n
             sums(bodies%jump_index(cut%point(i)), n + i) = 1.0_dp
@@ -136,9 +136,7 @@ contains
       real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
       real(dp) :: heat(size(jump))                            !! (m)
 
-      associate (a => data%scheme%a, b => data%scheme%b)
-         heat = -bodies%points%weight/a(1)*(a(3)*jump + b(3)*data%jump_old)
-      end associate
+      heat = -data%equation%crossing_by_omega(jump)
       if (allocated(workspace%cut%point)) heat(workspace%cut%point) = heat(workspace%cut%point)* &
          workspace%cut%own
       where (bodies%jump_index == 0) heat = 0.0_dp

@@ -16,10 +16,8 @@ module coupled_increment
    use opening_derivatives, only: make_graph, opening_derivative
    use reduced_bodies, only: reduced_bodies_type
    use resting_points, only: contact_scales
-   use scheme_properties, only: has_memory
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
-   use steps, only: step_type
    use text, only: append
    implicit none
    private
@@ -35,9 +33,8 @@ contains
 
    !> Conductances, jumps and contact state of an increment.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies.
-   subroutine solve_coupled(bodies, step, data, workspace, next, error)
+   subroutine solve_coupled(bodies, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(step_type), intent(in) :: step
       type(increment_data_type), intent(inout) :: data           !! receives scales
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
       type(solution_state_type), intent(inout) :: next           !! guess in, solution out
@@ -45,25 +42,25 @@ contains
 
       data%scales = contact_scales(bodies, data)
       workspace%pass%graph = make_graph(bodies, data%scales%length)
-      workspace%cuts_hats = any(bodies%points%cuts_hats) .and. .not. has_memory(data%scheme)
-      next%omega_before = data%omega_old
-      if (step%start%kind == start_both) then
-         call solve_from_both(bodies, step, data, workspace, next, error)
+      workspace%cuts_hats = any(bodies%points%cuts_hats) .and. &
+         .not. data%equation%takes_past_conductance()
+      next%omega_before = data%equation%omega_old
+      if (data%start%kind == start_both) then
+         call solve_from_both(bodies, data, workspace, next, error)
       else
-         next%omega = starting_conductance(bodies, step, step%start%kind, data)
-         call iterate(bodies, step%fixed_point, data, workspace, next, error)
+         next%omega = starting_conductance(bodies, data%start%kind, data)
+         call iterate(bodies, data%fixed_point, data, workspace, next, error)
       end if
-      if (allocated(error) .or. .not. step%fixed_point%finds_gain) return
-      call judge(bodies, data, next, step%fixed_point%method == method_picard, workspace)
+      if (allocated(error) .or. .not. data%fixed_point%finds_gain) return
+      call judge(bodies, data, next, data%fixed_point%method == method_picard, workspace)
    end subroutine solve_coupled
 
    !> omega*^0 of a start.
-   function starting_conductance(bodies, step, kind, data) result(omega)
+   function starting_conductance(bodies, kind, data) result(omega)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(step_type), intent(in) :: step
       integer, intent(in) :: kind
       type(increment_data_type), intent(in) :: data
-      real(dp) :: omega(size(data%omega_old))
+      real(dp) :: omega(size(data%equation%omega_old))
       real(dp), allocatable :: conductor(:)
       integer :: i, k
 
@@ -71,10 +68,10 @@ contains
       case (start_given)
          do i = 1, size(bodies%interfaces)
             omega(bodies%points%interface_start(i):bodies%points%interface_start(i + 1) - 1) = &
-               step%start%conductance(i)
+               data%start%conductance(i)
          end do
       case (start_open, start_closed)
-         omega = data%omega_old
+         omega = data%equation%omega_old
          conductor = bodies%conductors()
          do k = 1, size(omega)
             if (bodies%jump_index(k) == 0 .or. bodies%points%weight(k) <= 0.0_dp) cycle
@@ -82,16 +79,16 @@ contains
                bodies%points%weight(k)
          end do
       case default
-         omega = predicted_conductance(data%omega_old, data%omega_before, data%size_ratio)
+         omega = predicted_conductance(data%equation%omega_old, data%omega_before, &
+            data%size_ratio)
       end select
    end function starting_conductance
 
    !> The increment from the last ones, and from both ends of the conductance: do all lead to one
    !> solution? That of the first start that leads to any is the increment's. It is found last, for
    !> the factors to be its own.
-   subroutine solve_from_both(bodies, step, data, workspace, next, error)
+   subroutine solve_from_both(bodies, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(step_type), intent(in) :: step
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
@@ -121,9 +118,9 @@ contains
          integer, intent(in) :: i
 
          next = guess
-         next%omega = starting_conductance(bodies, step, kinds(i), data)
+         next%omega = starting_conductance(bodies, kinds(i), data)
          workspace = fresh
-         call iterate(bodies, step%fixed_point, data, workspace, next, error)
+         call iterate(bodies, data%fixed_point, data, workspace, next, error)
       end subroutine try_start
    end subroutine solve_from_both
 

@@ -20,6 +20,7 @@ module cut_hats
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type
+   use thermal_matrix, only: heat_rates_type
    use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, turned
    implicit none
    private
@@ -302,19 +303,17 @@ contains
 
    !> Heat that the supports of each node must supply, without the forces of ties: K T - Q plus what
    !> leaves through the contact points, of cut hats where it crosses them.
-   pure function supplied_heat(bodies, cut, conducted, load, contact_heat) result(heat)
+   pure function supplied_heat(bodies, cut, rates) result(heat)
       type(reduced_bodies_type), intent(in) :: bodies
       type(cut_hats_type), intent(in) :: cut
-      real(dp), intent(in) :: conducted(:)      !! (nodes) K T of the bodies alone [power]
-      real(dp), intent(in) :: load(:)           !! (nodes) Q [power]
-      real(dp), intent(in) :: contact_heat(:)   !! (m) heat from slave to master [power]
-      real(dp) :: heat(size(conducted))         !! (nodes) zero where not prescribed [power]
-      real(dp) :: uncut(size(contact_heat))
+      type(heat_rates_type), intent(in) :: rates
+      real(dp), allocatable :: heat(:)          !! (nodes) zero where not prescribed [power]
+      real(dp) :: uncut(size(rates%crossing))
 
-      uncut = contact_heat
+      uncut = rates%crossing
       if (allocated(cut%point)) uncut(cut%point) = 0.0_dp
-      heat = heat_residual(conducted, load, bodies%points, uncut)
-      if (allocated(cut%point)) call cut%jump%add_shares(contact_heat(cut%point), heat)
+      heat = heat_residual(rates%conducted, rates%entering, bodies%points, uncut)
+      if (allocated(cut%point)) call cut%jump%add_shares(rates%crossing(cut%point), heat)
       call bodies%thermal%map%carry_over(heat)
    end function supplied_heat
 

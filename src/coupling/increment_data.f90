@@ -2,7 +2,7 @@
 module increment_data
    use contact_states, only: contact_state_type
    use contact_workspace, only: contact_workspace_type
-   use controls, only: thermal_scheme_type
+   use controls, only: fixed_point_type, start_type
    use cut_hats, only: cut_hat_type, cut_hats_type
    use field_problem, only: field_load_type
    use fixed_point, only: pass_type
@@ -11,6 +11,7 @@ module increment_data
    use solution_report, only: solution_report_type
    use tail_factors, only: tail_factors_type
    use temperature_laws, only: face_temperatures_type
+   use thermal_matrix, only: heat_equation_type
    implicit none
    private
    public :: contact_scales_type, increment_data_type, increment_workspace_type
@@ -23,15 +24,17 @@ module increment_data
 
    !> What stays fixed while the increment is solved.
    type :: increment_data_type
-      type(thermal_scheme_type) :: scheme            !! scheme of (3.4)
+      integer :: analysis = 0                        !! one of the analysis_* constants of steps
+      type(start_type) :: start                      !! where its fixed point starts
+      type(fixed_point_type) :: fixed_point          !! controls of its fixed point
       ! The next five are of the start of the increment, under the laws of its step.
+      type(heat_equation_type) :: equation           !! eq. (3.4)
       type(contact_state_type) :: previous           !! contact state
-      real(dp), allocatable :: omega_old(:)          !! (m) omega_i
       real(dp), allocatable :: omega_before(:)       !! (m) omega_(i-1)
       logical, allocatable :: resting(:)             !! (m) contact points that rest
-      type(cut_hats_type) :: cut          !! hats that an edge cuts; none with a past in (3.4)
+      logical :: kept_imbalance = .false. !! whether the last increment's scheme damped no imbalance
+      type(cut_hats_type) :: cut !! hats that an edge cuts; none where (3.4) takes past conductances
       real(dp) :: size_ratio = 1.0_dp                !! dt_i/dt_(i-1), 1 in the first increment
-      real(dp), allocatable :: jump_old(:)           !! (m) T_xi - T_eta at the start [temperature]
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
       real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
       real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]

@@ -64,7 +64,7 @@ contains
       if (allocated(error) .and. size(workspace%record%iterations) == before) then
          ! Not even the contact zones of the start were found: those of the last increment may be.
          next%contact = start%contact
-         next%omega = data%omega_old
+         next%omega = data%equation%omega_old
          call use_method(bodies, controls, data, workspace, next, error)
       end if
       if (.not. allocated(error)) return

@@ -9,10 +9,9 @@ module increment_solution
    use contact_states, only: contact_state_type, contact_open, contact_slip
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
-   use cut_hats, only: cut_hats_type
+   use cut_hats, only: cut_hats_type, joined_conductance
    use errors, only: error_type, set_error, status_no_convergence
    use field_problem, only: field_load_type
-   use films, only: film_history
    use finite_values, only: check_finite
    use fixed_point, only: pass_type
    use friction_memory, only: remember_slip
@@ -21,18 +20,16 @@ module increment_solution
    use kinds, only: dp
    use loads, only: loads_type
    use reduced_bodies, only: reduced_bodies_type
-   use scheme_properties, only: has_memory, is_explicit
-   use scheme_start, only: warn_of_imbalance
    use solution_report, only: solution_report_type, iteration_record_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use temperature_laws, only: is_below_zero, law_jumps
    use text, only: to_text
-   use thermal_matrix, only: field_history, scheme_load
+   use thermal_matrix, only: heat_equation_type
    use unconstrained_motions, only: balanced_load, least_drive
    implicit none
    private
-   public :: solve_points, recover_fields
+   public :: begin_increment, solve_points, recover_fields
 
    integer, parameter :: of_heat = 1, of_mechanics = 2   !! places of known loads
 
@@ -42,84 +39,100 @@ contains
    !> belong to welded contacts. A field that the step does not solve stays.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies,
    !> loads that overflow.
-   subroutine solve_points(bodies, loads, step, previous, workspace, next, error)
+   subroutine solve_points(bodies, loads, previous, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous          !! state at the start
+      type(increment_data_type), intent(inout) :: data           !! as begun; completed
       type(increment_workspace_type), intent(inout) :: workspace !! a fresh one, but for known loads
       !> guess and loads at the end in, solution out
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
-      type(increment_data_type) :: data
 
       if (.not. allocated(workspace%known)) allocate (workspace%known(2))
-      call begin_data(bodies, step, previous, next%increment_size, data)
       next%cut = data%cut
+      next%keeps_imbalance = solves_heat(data%analysis) .and. data%equation%never_damps()
       call adapt_contact(bodies, next%contact)
-      next%omega_start = data%omega_old
-      next%keeps_imbalance = .false.
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
-      if (solves_heat(step%analysis)) then
-         call load_heat(bodies, loads, previous, data, workspace, next)
+      if (solves_heat(data%analysis)) then
+         call load_heat(bodies, loads, data, workspace, next)
          call check_finite([workspace%heat%condensed, next%temperature], &
             'heat and temperatures', status_no_convergence, error)
          if (allocated(error)) return
-         call warn_of_imbalance(bodies, loads, data, previous, next, workspace%record)
          if (size(next%omega) > 0 .and. .not. bodies%is_coupled) then
             call conduct(bodies, previous, data, workspace, next, error)
             if (.not. allocated(error)) call check_absolute_zero(bodies, workspace, error)
             if (allocated(error)) return
          end if
       end if
-      if (.not. solves_mechanics(step%analysis)) return
+      if (solves_mechanics(data%analysis)) call solve_equilibrium(bodies, loads, previous, data, &
+         workspace, next, error)
+      if (allocated(error)) return
+      next%carrying = data%equation%carrying(joined_conductance(next%omega, next%cut))
+   end subroutine solve_points
+
+   !> Contact and conductance of an increment whose heat is loaded or solved.
+   !> Errors: as solve_points.
+   subroutine solve_equilibrium(bodies, loads, previous, data, workspace, next, error)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(loads_type), intent(in) :: loads
+      type(solution_state_type), intent(in) :: previous
+      type(increment_data_type), intent(inout) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
+      type(solution_state_type), intent(inout) :: next
+      type(error_type), allocatable, intent(out) :: error
+
       data%displacement_scale = maxval(abs(previous%displacement))
       data%expansion = bodies%largest_expansion
       next%contact%reference = previous%contact%tangential
-      if (.not. solves_heat(step%analysis)) call give_temperatures(bodies, loads, previous, next)
+      if (.not. solves_heat(data%analysis)) call give_temperatures(bodies, loads, previous, next)
       call load_mechanics(bodies, loads, next, workspace, data%welded_load)
       call check_finite([workspace%force%rhs(:, 1), data%welded_load], 'forces', &
          status_no_convergence, error)
       if (allocated(error)) return
       if (.not. bodies%is_coupled) then
-         call solve_mechanics(bodies, step, data, workspace, next, error)
-      else if (is_explicit(step%scheme)) then
+         call solve_mechanics(bodies, data, workspace, next, error)
+      else if (data%equation%is_explicit()) then
          call pass_once(bodies, data, workspace, next, error)
       else
-         call solve_coupled(bodies, step, data, workspace, next, error)
+         call solve_coupled(bodies, data, workspace, next, error)
       end if
       if (.not. allocated(error)) call settle_idle_points(bodies, workspace%contact%idle, next)
       next%has_mechanics = .true.
       if (bodies%is_coupled .and. .not. allocated(error)) call check_absolute_zero(bodies, &
          workspace, error)
-   end subroutine solve_points
+   end subroutine solve_equilibrium
 
    !> The start of an increment under the laws of its step: contact points that the step removes or
    !> adds have other conductances.
-   pure subroutine begin_data(bodies, step, previous, increment_size, data)
+   pure subroutine begin_increment(bodies, step, previous, next, data)
       type(reduced_bodies_type), intent(in) :: bodies
       type(step_type), intent(in) :: step
-      type(solution_state_type), intent(in) :: previous
-      real(dp), intent(in) :: increment_size
-      type(increment_data_type), intent(inout) :: data
+      type(solution_state_type), intent(in) :: previous    !! state at the start
+      type(solution_state_type), intent(in) :: next        !! loads and size of the increment
+      type(increment_data_type), intent(out) :: data
       real(dp) :: omega(size(previous%omega))
       logical :: is_new(size(previous%omega))
 
-      data%scheme = step%scheme
-      data%jump_old = previous%jump
+      data%analysis = step%analysis
+      data%start = step%start
+      data%fixed_point = step%fixed_point
       data%previous = previous%contact
       call adapt_contact(bodies, data%previous)
       omega = law_conductance(bodies, bodies%points%laws_of(previous%temperature, previous%jump), &
          kept_contact(data%previous, previous%has_mechanics))
       is_new = bodies%points%removed .or. previous%omega <= 0.0_dp
-      data%omega_old = merge(omega, previous%omega, is_new)
+      data%equation = heat_equation_type(step%scheme, previous%sources, next%sources, &
+         previous%temperature, bodies%points%weight, merge(omega, previous%omega, is_new), &
+         previous%jump)
       data%omega_before = merge(omega, previous%omega_before, is_new)
+      data%kept_imbalance = previous%keeps_imbalance
       data%resting = previous%resting .and. .not. bodies%points%removed
-      if (.not. has_memory(step%scheme)) data%cut = previous%cut%without(bodies%points%removed)
+      if (.not. data%equation%takes_past_conductance()) data%cut = previous%cut%without(bodies%points%removed)
       if (previous%increment_size > 0.0_dp) data%size_ratio = &
-         increment_size/previous%increment_size
-   end subroutine begin_data
+         next%increment_size/previous%increment_size
+   end subroutine begin_increment
 
    !> Contact points that the step removes are open, those without friction slip freely.
    pure subroutine adapt_contact(bodies, contact)
@@ -151,9 +164,8 @@ contains
    end subroutine settle_idle_points
 
    !> Contact of an increment whose temperatures do not depend on it.
-   subroutine solve_mechanics(bodies, step, data, workspace, next, error)
+   subroutine solve_mechanics(bodies, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(step_type), intent(in) :: step
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
@@ -166,7 +178,7 @@ contains
          next%contact)
       next%omega_before = next%omega
       next%resting = .false.
-      if (.not. solves_heat(step%analysis) .or. size(next%omega) == 0) return
+      if (.not. solves_heat(data%analysis) .or. size(next%omega) == 0) return
       ! U is constant, and so are its fixed point and its derivative, zero.
       workspace%record%coupling_gain = 0.0_dp
       workspace%record%coupling_gain_max = 0.0_dp
@@ -202,8 +214,8 @@ contains
 
       next%omega = law_conductance(bodies, bodies%points%laws_of(previous%temperature, &
          previous%jump), kept_contact(data%previous, previous%has_mechanics))
-      where (data%resting) next%omega = data%omega_old
-      data%omega_old = next%omega
+      where (data%resting) next%omega = data%equation%omega_old
+      data%equation%omega_old = next%omega
       workspace%cut = data%cut
       if (bodies%points%vary_with_temperature()) then
          call begin_graphs(bodies, previous, data, next%omega, workspace%pass)
@@ -214,7 +226,6 @@ contains
          call temperature_jumps(bodies, data, next%omega, workspace, next%jump)
       end if
       next%omega_before = next%omega
-      next%omega_start = data%omega_old
       call add_jumps(bodies, workspace, next%temperature)
    end subroutine conduct
 
@@ -266,13 +277,13 @@ contains
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
 
-      workspace%pass%omega = data%omega_old
-      allocate (workspace%pass%graph(size(data%omega_old)))
+      workspace%pass%omega = data%equation%omega_old
+      allocate (workspace%pass%graph(size(workspace%pass%omega)))
       workspace%pass%graph%law = bodies%points%law
       call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
       if (allocated(error)) return
       next%omega = workspace%pass%image
-      next%omega_before = data%omega_old
+      next%omega_before = data%equation%omega_old
       next%resting = .false.
       workspace%record%iterations = [only_pass(workspace%record, data%previous, next%contact)]
    end subroutine pass_once
@@ -288,20 +299,15 @@ contains
    end function only_pass
 
    !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.
-   subroutine load_heat(bodies, loads, previous, data, workspace, next)
+   subroutine load_heat(bodies, loads, data, workspace, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads
-      type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(inout) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
-      real(dp), allocatable :: forces(:)
 
       associate (given => loads%temperature%value)
-         forces = field_history(data%scheme, bodies%thermal%matrix, previous%temperature) + &
-            film_history(data%scheme, previous%film, next%film, previous%temperature) + &
-            scheme_load(data%scheme, previous%heat_load, next%heat_load)
-         workspace%heat = bodies%thermal%load_of(forces, given)
+         workspace%heat = bodies%thermal%load_of(data%equation%history(bodies%thermal%matrix), given)
          call bodies%thermal%condense_load(workspace%heat, workspace%known(of_heat), &
             next%temperature)
          data%held_jump = bodies%points%jumps(given)
@@ -338,10 +344,10 @@ contains
 
    !> Fields of the whole bodies, from the solution on the contact points, and what contact points
    !> remember of it.
-   subroutine recover_fields(bodies, loads, step, workspace, previous, next)
+   subroutine recover_fields(bodies, loads, data, workspace, previous, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(step_type), intent(in) :: step
+      type(increment_data_type), intent(in) :: data              !! as solve_points left it
       type(increment_workspace_type), intent(inout) :: workspace !! of the solution
       type(solution_state_type), intent(in) :: previous          !! state at the start
       type(solution_state_type), intent(inout) :: next           !! as solve_points left it
@@ -349,7 +355,7 @@ contains
       integer :: k
 
       next%smallest_gap = min(previous%smallest_gap, next%contact%gap)
-      if (.not. solves_mechanics(step%analysis)) return
+      if (.not. solves_mechanics(data%analysis)) return
       if (bodies%is_coupled) then
          call add_jumps(bodies, workspace, next%temperature)
          workspace%force = bodies%mechanical%load_of(next%force_load + &

@@ -1,15 +1,13 @@
 !> What changes from increment to increment.
 module solution_state
    use contact_states, only: contact_state_type
-   use controls, only: thermal_scheme_type
-   use cut_hats, only: cut_hats_type, joined_conductance
+   use cut_hats, only: cut_hats_type
    use kinds, only: dp
    use recovered_error, only: error_record_type
-   use scheme_properties, only: is_explicit
-   use sparse_matrix, only: sparse_matrix_type
+   use thermal_matrix, only: heat_sources_type
    implicit none
    private
-   public :: solution_state_type, carrying_conductance
+   public :: solution_state_type
 
    !> State at the end of an increment.
    type :: solution_state_type
@@ -18,7 +16,7 @@ module solution_state
       type(cut_hats_type) :: cut                    !! contact points at the edge of contact
       logical, allocatable :: resting(:)          !! (m) contact points that rest, where a law jumps
       logical, allocatable :: idle(:)               !! (m) closed contact points that carry no force
-      real(dp), allocatable :: omega_start(:)       !! (m) omega_i that (3.4) took last
+      real(dp), allocatable :: carrying(:)          !! (m) conductance by which heat crossed last
       real(dp), allocatable :: omega_before(:)      !! (m) conductance an increment earlier
       real(dp), allocatable :: jump(:)              !! (m) T_xi - T_eta [temperature]
       real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
@@ -30,8 +28,7 @@ module solution_state
       type(error_record_type) :: stress_error       !! likewise
       real(dp), allocatable :: reaction(:, :)       !! (2, nodes) likewise [force]
       real(dp), allocatable :: stress_temperature(:)  !! (nodes) that stress is of [temperature]
-      real(dp), allocatable :: heat_load(:)         !! (nodes) Q of (3.3) [power]
-      type(sparse_matrix_type) :: film !! (nodes, nodes) F, films beside K [power/temperature]
+      type(heat_sources_type) :: sources            !! Q of (3.3) and F of films
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
       real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]
       logical :: has_mechanics = .false.            !! whether mechanics was ever solved
@@ -40,18 +37,5 @@ module solution_state
       !> Whether heat was out of balance at the end of the last increment that solved heat.
       logical :: is_out_of_balance = .false.
    end type solution_state_type
-
-contains
-
-   !> The conductances by which heat crosses in an increment: explicit schemes take those of its
-   !> start.
-   pure function carrying_conductance(state, scheme) result(omega)
-      type(solution_state_type), intent(in) :: state    !! state at the end of the increment
-      type(thermal_scheme_type), intent(in) :: scheme
-      real(dp) :: omega(size(state%omega))              !! (m) [power/(length^2 temperature)]
-
-      omega = joined_conductance(state%omega, state%cut)
-      if (is_explicit(scheme)) omega = state%omega_start
-   end function carrying_conductance
 
 end module solution_state

@@ -11,7 +11,6 @@ module increment_checks
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use text, only: to_text
-   use thermal_matrix, only: contact_diagonal
    use unconstrained_bodies, only: unconstrained_now, undetermined_now
    implicit none
    private
@@ -90,20 +89,16 @@ contains
    !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
    !> place of whatever error followed from it.
    !> Error: there are such bodies.
-   subroutine check_heat(model, bodies, loads, step, next, error)
+   subroutine check_heat(model, bodies, loads, step, carries, error)
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads                       !! loads of the increment
       integer, intent(in) :: step                                 !! the step
-      type(solution_state_type), intent(in) :: next               !! state at its end
+      logical, intent(in) :: carries(:)                           !! (m) whether heat can cross
       type(error_type), allocatable, intent(inout) :: error
       character(:), allocatable :: words
 
-      associate (points => bodies%points)
-         words = undetermined_now(model, points, loads%temperature%active, step, &
-            contact_diagonal(model%steps(step)%scheme, points%weight, next%omega_start, &
-            next%omega) > 0.0_dp)
-      end associate
+      words = undetermined_now(model, bodies%points, loads%temperature%active, step, carries)
       if (len(words) == 0) return
       if (allocated(error)) deallocate (error)
       call set_error(error, status_no_convergence, words)

@@ -10,7 +10,8 @@ module increment_records
    use due_output, only: needs_recovery
    use element_kinds, only: axisymmetric
    use element_points, only: points_of_elements
-   use heat_balance, only: balance_heat, warn_of_heat
+   use heat_balance, only: balance_heat
+   use increment_data, only: increment_data_type
    use friction_laws, only: friction_law_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -19,10 +20,11 @@ module increment_records
    use contact_tractions, only: in_contact, pressures, shears
    use records, only: contact_record_type, increment_record_type
    use reduced_bodies, only: reduced_bodies_type
-   use solution_state, only: carrying_conductance, solution_state_type
+   use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use temperature_laws, only: face_temperatures_type, law_at
    use text, only: to_text
+   use thermal_matrix, only: heat_across
    use zone_edges, only: contact_edges, contact_profile, contact_profile_type, stick_edges
    use transforms, only: on_nodes
    implicit none
@@ -43,25 +45,22 @@ contains
    !> Completes the record of an increment, which has its position in the steps and its passes, with
    !> contact state, fields and balances. What the step does not solve is as the last step that
    !> did left it; stress and flux with their errors are made where needed.
-   pure subroutine complete_record(bodies, model, recovery, loads, previous, next, record)
+   pure subroutine complete_record(bodies, model, recovery, loads, data, next, record)
       type(reduced_bodies_type), intent(in) :: bodies
       type(model_type), intent(in) :: model
       type(recovery_type), intent(in) :: recovery             !! stress and flux with their errors
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
-      type(solution_state_type), intent(in) :: previous       !! state at the start
+      type(increment_data_type), intent(in) :: data           !! its start
       type(solution_state_type), intent(in) :: next           !! state at the end
       type(increment_record_type), intent(inout) :: record
-      real(dp) :: carrying(size(next%omega))
       logical :: recovers
       integer :: i
 
       associate (step => model%steps(record%step))
          recovers = needs_recovery(record, model)
-         carrying = carrying_conductance(next, step%scheme)
          allocate (record%contacts(size(bodies%interfaces)))
          do i = 1, size(bodies%interfaces)
-            record%contacts(i) = contact_record(bodies, solves_heat(step%analysis), i, next, &
-               carrying)
+            record%contacts(i) = contact_record(bodies, solves_heat(step%analysis), i, next)
          end do
          record%fields%temperature = next%temperature
          if (solves_mechanics(step%analysis)) then
@@ -85,8 +84,7 @@ contains
          if (solves_heat(step%analysis)) then
             if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
                record%fields%heat_flux, record%heat_flux_error)
-            call balance_heat(bodies, model, loads, step%scheme, previous, next, record)
-            call warn_of_heat(step%scheme, next, record)
+            call balance_heat(bodies, model, loads, data, next, record)
          else
             record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
             record%heat_out = record%heat_in
@@ -114,12 +112,11 @@ contains
    end subroutine warn_of_floor
 
    !> Contact state of one interface.
-   pure function contact_record(bodies, with_heat, i, next, carrying) result(record)
+   pure function contact_record(bodies, with_heat, i, next) result(record)
       type(reduced_bodies_type), intent(in) :: bodies
       logical, intent(in) :: with_heat
       integer, intent(in) :: i
       type(solution_state_type), intent(in) :: next
-      real(dp), intent(in) :: carrying(:)
       type(contact_record_type) :: record
       type(contact_state_type) :: contact
       type(conductance_law_type) :: law
@@ -155,7 +152,7 @@ contains
             call points%master_mean%add_totals(next%temperature, record%master_temperature)
          end if
          if (.not. with_heat) return
-         record%conductance = carrying(first:last)
+         record%conductance = next%carrying(first:last)
          do k = 1, size(touches)
             if (.not. touches(k)) cycle
             law = law_at(bodies%points%law(first - 1 + k), face_temperatures_type( &
@@ -163,8 +160,10 @@ contains
                next%jump(first - 1 + k)))
             record%conductance(k) = conductance(law, .true., 0.0_dp, record%pressure(k))
          end do
-         record%heat_flux = record%conductance*next%jump(first:last)
-         record%heat_rate = sum(points%weight*record%heat_flux)
+         associate (jump => next%jump(first:last))
+            record%heat_flux = heat_across(1.0_dp, record%conductance, jump)
+            record%heat_rate = sum(heat_across(points%weight, record%conductance, jump))
+         end associate
       end associate
    end function contact_record
 

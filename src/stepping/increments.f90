@@ -3,14 +3,13 @@ module increments
    use clock, only: wall_seconds
    use discretisation_errors, only: recovery_type
    use errors, only: error_type, set_error, status_no_convergence
-   use films, only: left_films
    use heat_balance, only: sound_imbalance
    use increment_checks, only: check_balance, check_heat, check_values, check_violation, &
       warn_of_choices
    use increment_control, only: increment_control_type
-   use increment_data, only: increment_workspace_type
+   use increment_data, only: increment_data_type, increment_workspace_type
    use increment_records, only: complete_record
-   use increment_solution, only: recover_fields, solve_points
+   use increment_solution, only: begin_increment, recover_fields, solve_points
    use initial_state, only: make_initial_state
    use kinds, only: dp
    use known_loads, only: known_loads_type
@@ -25,6 +24,7 @@ module increments
       run_size_type, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: counted, to_text
+   use thermal_matrix, only: heat_equation_type
    use tie_checks, only: check_prescribed_ties
    use unconstrained_bodies, only: unconstrained_now
    implicit none
@@ -110,12 +110,15 @@ contains
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
+      type(heat_equation_type) :: equation
       type(sparse_matrix_type) :: film
 
       associate (step => model%steps(self%control%step))
          if (solves_heat(step%analysis) .and. .not. self%reduction%heat_is_reduced) then
             call self%loads%move_to(self%control%next_instant(model), model)
-            film = left_films(step%scheme, self%state%film, self%loads%film_matrix())
+            equation = heat_equation_type(step%scheme, self%state%sources)
+            equation%new%film = self%loads%film_matrix()
+            film = equation%left_film()
          end if
          call self%reduction%reduce(model, step, film, self%bodies, self%seconds, error)
       end associate
@@ -248,6 +251,7 @@ contains
       type(solution_state_type), intent(out) :: next
       type(increment_record_type), intent(out) :: record
       type(error_type), allocatable, intent(out) :: error
+      type(increment_data_type) :: data
       type(increment_workspace_type) :: workspace
       real(dp) :: since
 
@@ -260,25 +264,26 @@ contains
       next%increment_size = clock%step_time - self%control%step_time
       ! (3.4) asks for them at the start of the next increment, whether this one solves heat or not.
       if (any(solves_heat(model%steps%analysis))) then
-         next%heat_load = self%loads%heat_load()
-         next%film = self%loads%film_matrix()
+         next%sources%load = self%loads%heat_load()
+         next%sources%film = self%loads%film_matrix()
       end if
       next%force_load = self%loads%nodal_forces()
       associate (step => model%steps(self%control%step), bodies => self%bodies)
+         call begin_increment(bodies, step, self%state, next, data)
          if (solves_heat(step%analysis)) then
-            call bodies%set_film(left_films(step%scheme, self%state%film, next%film), model, &
-               error)
+            call bodies%set_film(data%equation%left_film(), model, error)
             if (allocated(error)) return
             call measure_factors(bodies, self%sizes)
          end if
          since = wall_seconds()
          ! An increment that fails leaves nothing behind, not even in the last digits.
          if (allocated(self%known)) workspace%known = self%known
-         call solve_points(bodies, self%loads, step, self%state, workspace, next, error)
+         call solve_points(bodies, self%loads, self%state, data, workspace, next, error)
          record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
-            call check_heat(model, bodies, self%loads, self%control%step, next, error)
+            call check_heat(model, bodies, self%loads, self%control%step, &
+               data%equation%contact_diagonal(next%omega) > 0.0_dp, error)
          end if
          if (allocated(error)) then
             if (workspace%contact%driven) error%message = error%message// &
@@ -289,8 +294,8 @@ contains
          if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &
             workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
-         call recover_fields(bodies, self%loads, step, workspace, self%state, next)
-         call complete_record(bodies, model, self%recovery, self%loads, self%state, next, record)
+         call recover_fields(bodies, self%loads, data, workspace, self%state, next)
+         call complete_record(bodies, model, self%recovery, self%loads, data, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_values(record, error)
          if (allocated(error)) return

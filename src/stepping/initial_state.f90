@@ -32,8 +32,8 @@ contains
          state%omega = law_conductance(bodies, bodies%points%laws_of(model%initial_temperature, &
             state%jump), kept_contact(contact, has_mechanics=.false.))
          state%omega_before = state%omega
-         state%omega_start = state%omega
-         allocate (state%displacement(2*n), state%heat_load(n), source=0.0_dp)
+         state%carrying = state%omega
+         allocate (state%displacement(2*n), state%sources%load(n), source=0.0_dp)
          state%temperature = model%initial_temperature
       end associate
    end function make_initial_state
