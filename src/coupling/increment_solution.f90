@@ -129,7 +129,8 @@ contains
       data%omega_before = merge(omega, previous%omega_before, is_new)
       data%kept_imbalance = previous%keeps_imbalance
       data%resting = previous%resting .and. .not. bodies%points%removed
-      if (.not. data%equation%takes_past_conductance()) data%cut = previous%cut%without(bodies%points%removed)
+      if (.not. data%equation%takes_past_conductance()) data%cut = &
+         previous%cut%without(bodies%points%removed)
       if (previous%increment_size > 0.0_dp) data%size_ratio = &
          next%increment_size/previous%increment_size
    end subroutine begin_increment
@@ -307,7 +308,8 @@ contains
       type(solution_state_type), intent(inout) :: next
 
       associate (given => loads%temperature%value)
-         workspace%heat = bodies%thermal%load_of(data%equation%history(bodies%thermal%matrix), given)
+         workspace%heat = bodies%thermal%load_of( &
+            data%equation%history(bodies%thermal%matrix), given)
          call bodies%thermal%condense_load(workspace%heat, workspace%known(of_heat), &
             next%temperature)
          data%held_jump = bodies%points%jumps(given)

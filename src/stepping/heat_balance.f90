@@ -22,7 +22,8 @@ module heat_balance
    !> Largest imbalance at the end of an increment of which nothing is said.
    real(dp), parameter :: sound_imbalance = 1.0e-2_dp
 
-   real(dp), parameter :: equilibrium = 1.0e-6_dp   !! largest imbalance of a start that counts as none
+   !> Largest imbalance at the start of an increment that counts as none.
+   real(dp), parameter :: equilibrium = 1.0e-6_dp
 
 contains
 
