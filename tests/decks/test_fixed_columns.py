@@ -45,14 +45,13 @@ STYLES = {
     "no points": ("(I4,2F12.8)",
                   lambda n, x, y: f"{n:4d}{round(x * 1e8):12d}{round(y * 1e8):12d}",
                   "(16I4)", lambda e: ["".join(f"{n:4d}" for n in e)]),
-    "exponents": ("(I6,1X,E16.8,D16.8)", lambda n, x, y:
+    "exponents": ("(I6,1X,2E16.8)", lambda n, x, y:
                   f"{n:6d}-{e_format(x, True):>16}{e_format(y, False).replace('E', 'D'):>16}",
                   "(I8)", lambda e: [f"{n:8d}" for n in e]),
-    "labels": ("(5X,I5,T41,G15.8,T11,G15.8,T56,8X)",
-               lambda n, x, y: f"PLATE{n:5d}{y:15.10f}{'':15}{x:15.10f}{n:08d}",
-               "(6X,I5/(4I5,20X))", lambda e: [f"LINEAR{e[0]:5d}"] + [
-                   "".join(f"{n:5d}" for n in e[k:k + 4]) + f"{'CORNERS':>20}"
-                   for k in range(1, len(e), 4)]),
+    "labels": ("(5X,I5,F15.10,5X,E15.8,8X)",
+               lambda n, x, y: f"PLATE{n:5d}{x:15.10f} AND {y:15.10f}{n:08d}",
+               "(6X,4I5,20X)", lambda e: ["LINEAR" + "".join(f"{n:5d}" for n in e[k:k + 4]).ljust(20)
+                                          + f"{'CORNERS':>20}" for k in range(0, len(e), 4)]),
     "third coordinates": ("(I5,3F15.0)", lambda n, x, y: f"{n:5d}{x:15.10f}{y:15.10f}{0:15.1f}",
                           "(I5,4I5)", lambda e: ["".join(f"{n:5d}" for n in e[k:k + 5])
                                                  for k in range(0, len(e), 5)]),

@@ -32,7 +32,7 @@ module deck_builder
    use deck_structure, only: card_count, check_structure
    use errors, only: error_type
    use heat_checks, only: check_heat_paths, check_starts
-   use jacobian_checks, only: check_folds
+   use shape_checks, only: check_folds
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
    use load_checks, only: first_heat
    use kinds, only: dp

@@ -3,7 +3,7 @@ module deck_builder_order
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use mesh, only: mesh_type
-   use jacobian_checks, only: check_corners
+   use shape_checks, only: check_corners
    use model, only: model_type
    use order_reduction, only: reduce_order, side_corners
    use text, only: to_text

@@ -6,13 +6,12 @@ module deck_checks
    use deck_source, only: place_type
    use elasticity, only: equivalent_poisson
    use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
-   use jacobian_checks, only: check_jacobians
+   use shape_checks, only: check_jacobians, check_slenderness
    use kinds, only: dp, long
    use load_checks, only: check_loads
    use mesh, only: mesh_type
    use mesh_checks, only: check_planes, check_sides
    use model, only: model_type
-   use slender_elements, only: check_slenderness
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
@@ -34,16 +33,16 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: uses(4, size(model%mesh%element_number))
-      logical :: misordered(size(model%mesh%element_number))
+      logical :: inverted(size(model%mesh%element_number))
 
       call check_size(context, model%mesh, report)
       call check_sections(context, model, report)
       call check_materials(context, model, report)
       call check_planes(context, model%mesh, report)
       call check_orientations(context, model, report)
-      call check_jacobians(context, model%mesh, misordered, report)
+      call check_jacobians(context, model%mesh, inverted, report)
       call check_slenderness(context, model%mesh, report)
-      call check_sides(context, model%mesh, misordered, uses, report)
+      call check_sides(context, model%mesh, inverted, uses, report)
       call check_loads(context, model, uses, report)
    end subroutine check_model
 

@@ -58,10 +58,10 @@ contains
 
    !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is
    !> free.
-   subroutine check_sides(context, mesh, misordered, uses, report)
+   subroutine check_sides(context, mesh, inverted, uses, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
       type(mesh_type), intent(in) :: mesh
-      logical, intent(in) :: misordered(:)   !! (elements) whether their sides are not as meant
+      logical, intent(in) :: inverted(:)   !! (elements) whether their sides may not be as meant
       !> (4, elements) elements that meet at each side; 0 where an error says that it is wrong
       integer, intent(out) :: uses(:, :)
       type(deck_report_type), intent(inout) :: report      !! receives errors
@@ -69,7 +69,7 @@ contains
       integer, allocatable :: order(:)
       integer :: first, last, n
 
-      call list_sides(context%element_valid .and. .not. misordered, mesh, sides, n)
+      call list_sides(context%element_valid .and. .not. inverted, mesh, sides, n)
       order = sort_order(sides(:n)%high)
       order = order(sort_order(sides(order)%low))
       uses = 0

@@ -9,7 +9,7 @@ module card_lines
    use deck_source, only: place_type
    use element_types, only: element_type_fields
    use field_separators, only: cut_at_blanks
-   use fixed_cards, only: fixed_cards_type
+   use fixed_columns, only: fixed_columns_type
    use keyword_cards, only: is_parameter, make_keyword_card
    use keyword_slips, only: lacks_star, mend_commas
    use keywords, only: built, known_keywords
@@ -34,7 +34,7 @@ module card_lines
       logical, private :: skips_data = .false.              !! its data cards are of no use
       character(:), allocatable, private :: refusal_of_data !! error at its first data card
       integer, private :: element_fields = 0                !! of a complete *ELEMENT data card
-      type(fixed_cards_type), private :: fixed              !! data cards in fixed columns
+      type(fixed_columns_type), private :: fixed              !! data cards in fixed columns
    contains
       procedure :: take_line
       procedure :: finish
