@@ -8,7 +8,7 @@ import pytest
 SOURCES = Path(__file__).resolve().parents[2] / "src"
 # In the order in which data flow; folders of one line know nothing of each other.
 ORDER = (
-    ("core",), ("linalg",), ("model",), ("fem",),
+    ("core",), ("linalg",), ("laws",), ("model",), ("fem",),
     ("deck/reading",), ("deck/checking",), ("deck/building",),
     ("contact",), ("bodies",), ("coupling",), ("records",), ("stepping",), ("accuracy",),
     ("output",), ("run",), ("trade",), ("driver",), (".",),
