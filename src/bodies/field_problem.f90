@@ -48,29 +48,40 @@ module field_problem
 
 contains
 
-   !> Factors the matrix for a numbering of the unknowns; done once for all increments with the same
-   !> supports.
-   !> Errors: the matrix or its factors overflow; as the solver's factor.
+   !> Factors the matrix with what is added to it. Unknowns are ordered and their pattern analysed
+   !> once for a numbering: films lie on sides of elements, whose nodes the matrix joins already.
+   !> Errors: the matrix or its factors overflow; as the solver's analyse and factor.
    subroutine reduce(self, solver_kind, node_rank, error)
       class(field_problem_type), intent(inout) :: self    !! the problem; its matrix and map are set
       integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
       !> (nodes) ranks in nested dissection, where they are known
       integer, allocatable, intent(in) :: node_rank(:)
       type(error_type), allocatable, intent(out) :: error
+      type(sparse_matrix_type) :: lower
 
-      call self%release()
+      if (.not. allocated(self%map%rank)) call self%release()
       self%reduction = self%reduction + 1
-      if (solver_kind == solver_mumps) then
-         allocate (mumps_solver_type :: self%solver)
-      else
-         allocate (skyline_solver_type :: self%solver)
-      end if
       call check_finite(self%matrix%value, 'matrices of the bodies', status_deck, error)
       if (allocated(error)) return
       self%largest_entry = maxval(abs(self%matrix%value))
       call self%map%stiffen_links(self%matrix)
-      if (allocated(node_rank)) self%solver%rank = node_rank(self%leading_nodes())
-      call self%solver%factor(self%matrix_of_unknowns(), self%map%tail, error)
+      lower = self%matrix_of_unknowns()
+      if (.not. allocated(self%solver)) then
+         if (solver_kind == solver_mumps) then
+            allocate (mumps_solver_type :: self%solver)
+         else
+            allocate (skyline_solver_type :: self%solver)
+         end if
+         if (allocated(node_rank) .and. .not. allocated(self%map%rank)) then
+            self%map%rank = node_rank(self%leading_nodes())
+         end if
+         call self%solver%analyse(lower, self%map%tail, self%map%rank, error)
+         if (allocated(error)) then
+            call self%release()
+            return
+         end if
+      end if
+      call self%solver%factor(lower, error)
       if (allocated(error)) return
       call check_finite([self%solver%schur], 'factors of the bodies', status_deck, error)
    end subroutine reduce
@@ -207,7 +218,7 @@ contains
       call self%solver%condense(rhs, condensed)
    end subroutine condense_forces
 
-   !> Frees the factors.
+   !> Frees the factors; the order of the unknowns stays.
    subroutine release(self)
       class(field_problem_type), intent(inout) :: self
 

@@ -54,7 +54,8 @@ contains
       type(field_problem_type), intent(in) :: thermal            !! numbered
       type(field_problem_type), intent(in) :: mechanical         !! numbered
       type(sparse_matrix_type), intent(in) :: thermal_load !! B, forces per nodal temperature
-      integer, allocatable, intent(out) :: node_rank(:)    !! (nodes) in nested dissection
+      !> (nodes) in nested dissection, of both fields as numbered; made where it is not allocated
+      integer, allocatable, intent(inout) :: node_rank(:)
       real(dp), allocatable, intent(out) :: loads(:, :)    !! (mechanical tail, thermal tail)
       type(error_type), allocatable, intent(out) :: error
       type(triplet_list_type) :: entries
@@ -63,8 +64,10 @@ contains
       integer, allocatable :: node(:)
 
       call join_fields(thermal, mechanical, thermal_load, entries, graph, node)
-      call nested_dissection(graph, node_rank, error)
-      if (allocated(error)) return
+      if (.not. allocated(node_rank)) then
+         call nested_dissection(graph, node_rank, error)
+         if (allocated(error)) return
+      end if
       associate (heat => thermal%map%tail, motion => mechanical%map%tail)
          call schur_complement(entries, node_rank(node), heat + motion, schur, error)
          if (allocated(error)) return

@@ -107,6 +107,7 @@ contains
       ! gfortran never frees the components of a function's result within an array constructor.
       type(joint_type), allocatable :: of_equations(:), of_ties(:)
 
+      if (allocated(self%node_rank) .and. (mechanics .or. heat)) deallocate (self%node_rank)
       if (mechanics) then
          call find_held_directions(self%points, held)
          of_ties = joints_of(self%points%ties)

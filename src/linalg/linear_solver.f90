@@ -1,20 +1,23 @@
-!> What the solution asks of a direct solver for a symmetric positive definite matrix whose last
-!> unknowns, the tail, are the contact's: factor the leading block once, after which only the tail
-!> is ever factored again (tail_factors).
+!> Interface of a direct solver for a symmetric positive definite matrix whose last unknowns, the
+!> tail, are the contact's: factor the leading block once, after which only the tail is ever
+!> factored again (tail_factors).
+!>
+!> A solver analyses a pattern once and factors values in that pattern as often as they change. The
+!> order of elimination is a value of its own: several solvers that hold factors of one pattern
+!> share it, and none but the first one makes it.
 module linear_solver
-   use errors, only: error_type
+   use errors, only: error_type, set_error, status_internal
    use kinds, only: dp, long
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
-   public :: linear_solver_type
+   public :: linear_solver_type, check_pattern
 
-   !> A direct solver. After factor, condense, recover and extend change nothing.
+   !> A direct solver and its latest factors, which condense, recover and extend leave as they are.
    type, abstract :: linear_solver_type
       integer :: order = 0               !! unknowns
       integer :: tail = 0                !! tail unknowns, the last ones
-      !> (leading) ranks in nested dissection, those of a node alike, if they are known before.
-      integer, allocatable :: rank(:)
+      integer, allocatable :: row_start(:), column(:)   !! pattern of the lower triangle, by rows
       integer(long) :: full_flops = 0    !! operations of a factorisation of the leading block
       integer(long) :: factor_bytes = 0  !! memory of the factors [byte]
       !> Smallest pivot of the leading block over its diagonal entry, at most 1; MUMPS: over the
@@ -22,6 +25,7 @@ module linear_solver
       real(dp) :: smallest_pivot = 1.0_dp
       real(dp), allocatable :: schur(:, :) !! (tail, tail) Schur complement, both triangles
    contains
+      procedure(analyse_interface), deferred :: analyse
       procedure(factor_interface), deferred :: factor
       procedure(condense_interface), deferred :: condense
       procedure(recover_interface), deferred :: recover
@@ -30,16 +34,28 @@ module linear_solver
    end type linear_solver_type
 
    abstract interface
-      !> Orders the leading unknowns, factors their block and forms its Schur complement on the
-      !> tail.
-      !> Error: the matrix is not positive definite (the message begins with "singular"), or the
-      !> solver failed.
-      subroutine factor_interface(self, lower, tail, error)
+      !> Takes over a pattern, once for all values in it. Orders the leading unknowns, unless the
+      !> caller knows their order.
+      !> Error: the solver failed.
+      subroutine analyse_interface(self, lower, tail, rank, error)
          import :: linear_solver_type, sparse_matrix_type, error_type
-         class(linear_solver_type), intent(inout) :: self
-         type(sparse_matrix_type), intent(in) :: lower      !! lower triangle by rows
+         class(linear_solver_type), intent(inout) :: self   !! fresh or released
+         type(sparse_matrix_type), intent(in) :: lower !! lower triangle by rows; its pattern
          integer, intent(in) :: tail                        !! number of tail unknowns
-         type(error_type), allocatable, intent(out) :: error !! failure
+         !> (leading) order of elimination, those of a node alike; made where it is not allocated
+         integer, allocatable, intent(inout) :: rank(:)
+         type(error_type), allocatable, intent(out) :: error
+      end subroutine analyse_interface
+
+      !> Factors the leading block of a matrix in the pattern that was analysed, and forms its Schur
+      !> complement on the tail. Earlier factors go.
+      !> Error: the matrix is not positive definite (the message begins with "singular"), its
+      !> pattern is another one, or the solver failed.
+      subroutine factor_interface(self, lower, error)
+         import :: linear_solver_type, sparse_matrix_type, error_type
+         class(linear_solver_type), intent(inout) :: self   !! analysed
+         type(sparse_matrix_type), intent(in) :: lower      !! lower triangle by rows
+         type(error_type), allocatable, intent(out) :: error
       end subroutine factor_interface
 
       !> Right-hand sides condensed on the tail: f_tail - K_tail,lead K_lead^-1 f_lead. The
@@ -70,11 +86,29 @@ module linear_solver
          real(dp), intent(out) :: solution(:, :)            !! (order, columns)
       end subroutine extend_interface
 
-      !> Frees what the solver holds outside Fortran.
+      !> Frees the factors and the analysis.
       subroutine release_interface(self)
          import :: linear_solver_type
          class(linear_solver_type), intent(inout) :: self
       end subroutine release_interface
    end interface
+
+contains
+
+   !> Checks that values have the pattern that was analysed.
+   !> Error: they have another one.
+   subroutine check_pattern(solver, lower, error)
+      class(linear_solver_type), intent(in) :: solver
+      type(sparse_matrix_type), intent(in) :: lower
+      type(error_type), allocatable, intent(out) :: error
+      logical :: same
+
+      same = size(lower%row_start) == size(solver%row_start) .and. &
+         size(lower%column) == size(solver%column)
+      if (same) same = all(lower%row_start == solver%row_start) .and. &
+         all(lower%column == solver%column)
+      if (.not. same) call set_error(error, status_internal, &
+         'the pattern of a matrix differs from that analysed')
+   end subroutine check_pattern
 
 end module linear_solver

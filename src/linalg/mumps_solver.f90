@@ -7,9 +7,9 @@
 module mumps_solver
    use errors, only: error_type, set_error, status_deck, status_internal
    use kinds, only: dp, long
-   use linear_solver, only: linear_solver_type
+   use linear_solver, only: check_pattern, linear_solver_type
    use metis, only: nested_dissection
-   use ordering, only: adjacency, alike_unknowns, ungrouped
+   use ordering, only: adjacency, alike_unknowns, positions_by_rank
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use system_processes, only: c_end_without_memory
    use text, only: to_text
@@ -42,6 +42,7 @@ module mumps_solver
       private
       type(dmumps_struc), pointer :: mumps => null()   !! MUMPS's own data
    contains
+      procedure :: analyse
       procedure :: factor
       procedure :: condense
       procedure :: recover
@@ -51,41 +52,62 @@ module mumps_solver
 
 contains
 
-   !> As factor_interface of linear_solver says.
-   subroutine factor(self, lower, tail, error)
+   !> As analyse_interface of linear_solver says.
+   subroutine analyse(self, lower, tail, rank, error)
       class(mumps_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       integer, intent(in) :: tail
+      integer, allocatable, intent(inout) :: rank(:)
       type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: group(:), position(:)
-      integer :: i
 
       call start(self, lower%row_count, tail)
-      if (allocated(self%rank)) then
-         call hand_over_order(self, self%rank)
-      else
+      self%row_start = lower%row_start
+      self%column = lower%column
+      if (.not. allocated(rank)) then
          group = alike_unknowns(lower, self%order - tail)
          call nested_dissection(adjacency(lower, group), position, error)
          if (allocated(error)) return
-         call hand_over_order(self, position(group))
+         rank = position(group)
       end if
-      associate (id => self%mumps)
-         allocate (id%irn(size(lower%value)), id%jcn(size(lower%value)), id%a(size(lower%value)))
-         do i = 1, lower%row_count
-            id%irn(lower%row_start(i):lower%row_start(i + 1) - 1) = i
-         end do
-         id%jcn(:) = lower%column
-         id%a(:) = lower%value
-         call analyse_and_factor(self, error)
-         ! What follows works on the factors alone.
-         deallocate (id%irn, id%jcn, id%a)
-      end associate
-      if (allocated(error) .or. self%order == tail) return
+      call set_positions(self%mumps, lower)
+      call analyse_positions(self, rank, error)
+      deallocate (self%mumps%irn, self%mumps%jcn)
+   end subroutine analyse
+
+   !> As factor_interface of linear_solver says.
+   subroutine factor(self, lower, error)
+      class(mumps_solver_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: lower
+      type(error_type), allocatable, intent(out) :: error
+
+      call check_pattern(self, lower, error)
+      if (allocated(error)) return
+      call set_positions(self%mumps, lower)
+      allocate (self%mumps%a(size(lower%value)))
+      self%mumps%a(:) = lower%value
+      call factor_values(self, error)
+      ! What follows works on the factors alone.
+      deallocate (self%mumps%irn, self%mumps%jcn, self%mumps%a)
+      if (allocated(error) .or. self%order == self%tail) return
       self%full_flops = int(self%mumps%rinfog(3), long)
       ! RINFOG(19) is of the matrix as MUMPS has scaled it, rows and columns to about 1.
       if (self%mumps%rinfog(19) > 0.0_dp) self%smallest_pivot = min(1.0_dp, self%mumps%rinfog(19))
       self%factor_bytes = factor_entries(self%mumps%infog(9))*storage_size(1.0_dp)/8
    end subroutine factor
+
+   !> Rows and columns of the entries, which MUMPS reads anew with each set of values.
+   subroutine set_positions(id, lower)
+      type(dmumps_struc), intent(inout) :: id
+      type(sparse_matrix_type), intent(in) :: lower
+      integer :: i
+
+      allocate (id%irn(size(lower%value)), id%jcn(size(lower%value)))
+      do i = 1, lower%row_count
+         id%irn(lower%row_start(i):lower%row_start(i + 1) - 1) = i
+      end do
+      id%jcn(:) = lower%column
+   end subroutine set_positions
 
    !> Schur complement of a matrix on its tail, without factors to solve with.
    !> Errors: the matrix is not positive definite, MUMPS failed.
@@ -99,37 +121,50 @@ contains
 
       call start(solver, size(rank) + tail, tail)
       solver%mumps%icntl(31) = factors_are_dropped
-      call hand_over_order(solver, rank)
       solver%mumps%irn => entries%row
       solver%mumps%jcn => entries%column
       solver%mumps%a => entries%value
-      call analyse_and_factor(solver, error)
+      call analyse_positions(solver, rank, error)
+      if (.not. allocated(error)) call factor_values(solver, error)
       nullify (solver%mumps%irn, solver%mumps%jcn, solver%mumps%a)
       call solver%release()
       if (.not. allocated(error)) call move_alloc(solver%schur, schur)
    end subroutine schur_complement
 
-   !> Factors the matrix that is in place and takes its Schur complement over.
-   subroutine analyse_and_factor(self, error)
+   !> Analyses the pattern that is in place: the leading block by ranks, the tail behind it, of
+   !> which MUMPS is to return the Schur complement.
+   subroutine analyse_positions(self, rank, error)
+      type(mumps_solver_type), intent(inout) :: self
+      integer, intent(in) :: rank(:)                  !! (leading)
+      type(error_type), allocatable, intent(out) :: error
+
+      if (self%order == self%tail) return
+      self%mumps%nnz = size(self%mumps%irn, kind=long)
+      allocate (self%mumps%perm_in(self%order))
+      self%mumps%perm_in(:) = positions_by_rank(rank, self%order)
+      self%mumps%icntl(7) = order_given
+      if (self%tail > 0) call ask_for_schur(self)
+      self%mumps%job = job_analyse
+      call call_mumps(self%mumps)
+      call check(self, 'analysis', error)
+      if (allocated(error)) return
+      if (self%mumps%infog(7) /= order_given) call set_error(error, status_internal, &
+         'MUMPS did not take the order of METIS')
+   end subroutine analyse_positions
+
+   !> Factors the values that are in place and takes their Schur complement over.
+   subroutine factor_values(self, error)
       type(mumps_solver_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
       integer :: attempt, j, tail
 
       tail = self%tail
+      if (allocated(self%schur)) deallocate (self%schur)
       if (self%order == tail) then
          call take_whole_matrix(self)
          return
       end if
-      self%mumps%nnz = size(self%mumps%a, kind=long)
-      if (tail > 0) call ask_for_schur(self)
-      self%mumps%job = job_analyse
-      call call_mumps(self%mumps)
-      call check(self, 'analysis', error)
-      if (allocated(error)) return
-      if (self%mumps%infog(7) /= order_given) then
-         call set_error(error, status_internal, 'MUMPS did not take the order of METIS')
-         return
-      end if
+      if (.not. associated(self%mumps%schur)) allocate (self%mumps%schur(tail**2))
       self%mumps%job = job_factor
       do attempt = 1, workspace_tries
          call call_mumps(self%mumps)
@@ -148,7 +183,7 @@ contains
          self%schur(j, :j) = self%schur(:j, j)
       end do
       deallocate (self%mumps%schur)
-   end subroutine analyse_and_factor
+   end subroutine factor_values
 
    !> The Schur complement of a matrix that is all tail.
    subroutine take_whole_matrix(self)
@@ -219,21 +254,8 @@ contains
          id%icntl(4) = 0
          id%icntl(24) = 1
          id%n = order
-         allocate (id%schur(tail**2))
       end associate
    end subroutine start
-
-   !> The order for the leading block, by ranks, and the tail behind it.
-   subroutine hand_over_order(self, rank)
-      type(mumps_solver_type), intent(inout) :: self
-      integer, intent(in) :: rank(:)                  !! (leading)
-      integer :: i
-
-      allocate (self%mumps%perm_in(self%order))
-      self%mumps%perm_in(:size(rank)) = ungrouped(rank, [(i, i=1, maxval([0, rank]))])
-      self%mumps%perm_in(size(rank) + 1:) = [(i, i=size(rank) + 1, self%order)]
-      self%mumps%icntl(7) = order_given
-   end subroutine hand_over_order
 
    !> Asks for the Schur complement of the tail: its lower triangle by rows, our upper triangle by
    !> columns.

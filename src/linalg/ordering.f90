@@ -7,7 +7,8 @@ module ordering
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: adjacency, alike_unknowns, ungrouped, profile_order, permuted_lower, profile_length
+   public :: adjacency, alike_unknowns, positions_by_rank, profile_order, permuted_lower, &
+      profile_length
 
 contains
 
@@ -66,29 +67,27 @@ contains
       graph = list%compress(maxval([0, group]), maxval([0, group]))
    end function adjacency
 
-   !> Positions of unknowns from those of their groups.
-   pure function ungrouped(group, position_of_group) result(position)
-      integer, intent(in) :: group(:)               !! (unknowns) ascending
-      integer, intent(in) :: position_of_group(:)   !! (groups)
-      integer :: position(size(group))              !! (unknowns)
-      integer :: before(size(position_of_group) + 1), i
+   !> Positions of all unknowns in the order of elimination: the leading ones by rank, those of one
+   !> rank in their own order, and the tail behind them.
+   pure function positions_by_rank(rank, order) result(position)
+      integer, intent(in) :: rank(:)                !! (leading) 1 or more, several may be the same
+      integer, intent(in) :: order                  !! number of unknowns
+      integer :: position(order)
+      integer :: before(maxval([0, rank]) + 1), i
 
       before = 0
-      do i = 1, size(group)
-         associate (next => before(position_of_group(group(i)) + 1))
-            next = next + 1
-         end associate
+      do i = 1, size(rank)
+         before(rank(i) + 1) = before(rank(i) + 1) + 1
       end do
       do i = 2, size(before)
          before(i) = before(i) + before(i - 1)
       end do
-      do i = 1, size(group)
-         associate (last => before(position_of_group(group(i))))
-            last = last + 1
-            position(i) = last
-         end associate
+      do i = 1, size(rank)
+         before(rank(i)) = before(rank(i)) + 1
+         position(i) = before(rank(i))
       end do
-   end function ungrouped
+      position(size(rank) + 1:) = [(i, i=size(rank) + 1, order)]
+   end function positions_by_rank
 
    !> Order that keeps the profile short: reverse Cuthill-McKee, each connected part from a
    !> pseudo-peripheral vertex.

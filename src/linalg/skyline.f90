@@ -23,7 +23,8 @@ module skyline
       integer(long) :: leading_flops = 0 !! operations of Crout's method on the columns as they are
       real(dp) :: smallest_pivot = 1.0_dp         !! of factor_leading, over its diagonal entry
    contains
-      procedure :: set_matrix
+      procedure :: set_pattern
+      procedure :: set_values
       procedure :: factor_leading
       procedure :: condense
       procedure :: recover
@@ -31,8 +32,8 @@ module skyline
 
 contains
 
-   !> Takes over a symmetric matrix in another order.
-   pure subroutine set_matrix(self, lower, position, tail)
+   !> Lays out columns for the pattern of a symmetric matrix in another order.
+   pure subroutine set_pattern(self, lower, position, tail)
       class(skyline_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower  !! lower triangle by rows
       integer, intent(in) :: position(:)             !! (rows) new position of each row
@@ -50,7 +51,19 @@ contains
          end do
       end do
       call self%columns%set_profile(self%first_row, self%leading)
-      allocate (self%schur(tail, tail), source=0.0_dp)
+      self%leading_flops = crout_flops(self%first_row, self%leading)
+   end subroutine set_pattern
+
+   !> Takes over the values of a matrix in that pattern.
+   pure subroutine set_values(self, lower, position)
+      class(skyline_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: lower  !! lower triangle by rows
+      integer, intent(in) :: position(:)             !! (rows) as set_pattern
+      integer :: i, j, k, row
+
+      self%columns%value = 0.0_dp
+      if (allocated(self%schur)) deallocate (self%schur)
+      allocate (self%schur(self%order - self%leading, self%order - self%leading), source=0.0_dp)
       do row = 1, self%order
          do k = lower%row_start(row), lower%row_start(row + 1) - 1
             i = min(position(row), position(lower%column(k)))
@@ -62,7 +75,7 @@ contains
             end if
          end do
       end do
-   end subroutine set_matrix
+   end subroutine set_values
 
    !> Factors the leading block and forms its Schur complement on the tail.
    pure subroutine factor_leading(self, bad_column)
@@ -72,7 +85,6 @@ contains
 
       call self%columns%factor(1, lost, self%smallest_pivot, bad_column)
       if (bad_column > 0) return
-      self%leading_flops = crout_flops(self%first_row, self%leading)
       call self%columns%form_schur(size(self%schur, 1), self%schur)
       do j = 1, size(self%schur, 1)
          self%schur(j, :j) = self%schur(:j, j)

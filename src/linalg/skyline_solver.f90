@@ -2,8 +2,8 @@
 module skyline_solver
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp, long
-   use linear_solver, only: linear_solver_type
-   use ordering, only: adjacency, alike_unknowns, profile_order, ungrouped
+   use linear_solver, only: check_pattern, linear_solver_type
+   use ordering, only: adjacency, alike_unknowns, positions_by_rank, profile_order
    use skyline, only: skyline_type
    use sparse_matrix, only: sparse_matrix_type
    implicit none
@@ -16,6 +16,7 @@ module skyline_solver
       integer, allocatable :: position(:)   !! (order) new position of each unknown
       type(skyline_type) :: skyline         !! the factors
    contains
+      procedure :: analyse
       procedure :: factor
       procedure :: condense
       procedure :: recover
@@ -25,28 +26,43 @@ module skyline_solver
 
 contains
 
-   !> As factor_interface of linear_solver says; nested dissection would ruin the profile.
-   subroutine factor(self, lower, tail, error)
+   !> As analyse_interface of linear_solver says.
+   subroutine analyse(self, lower, tail, rank, error)
       class(skyline_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       integer, intent(in) :: tail
-      type(error_type), allocatable, intent(out) :: error
-      integer :: bad_column, i, leading
-      integer, allocatable :: group(:)
+      integer, allocatable, intent(inout) :: rank(:)
+      type(error_type), allocatable, intent(out) :: error   ! never
+      integer, allocatable :: group(:), position(:)
 
-      leading = lower%row_count - tail
       self%order = lower%row_count
       self%tail = tail
-      allocate (self%position(self%order))
-      group = alike_unknowns(lower, leading)
-      self%position(:leading) = ungrouped(group, profile_order(adjacency(lower, group)))
-      self%position(leading + 1:) = [(i, i=leading + 1, self%order)]
-      call self%skyline%set_matrix(lower, self%position, tail)
-      call self%skyline%factor_leading(bad_column)
+      self%row_start = lower%row_start
+      self%column = lower%column
+      if (.not. allocated(rank)) then
+         group = alike_unknowns(lower, self%order - tail)
+         position = profile_order(adjacency(lower, group))
+         rank = position(group)
+      end if
+      self%position = positions_by_rank(rank, self%order)
+      call self%skyline%set_pattern(lower, self%position, tail)
       self%full_flops = self%skyline%leading_flops
-      self%smallest_pivot = self%skyline%smallest_pivot
       self%factor_bytes = storage_size(1.0_dp)/8*(size(self%skyline%columns%value, kind=long) + &
          int(tail, long)*(tail + 1)/2)
+   end subroutine analyse
+
+   !> As factor_interface of linear_solver says.
+   subroutine factor(self, lower, error)
+      class(skyline_solver_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: lower
+      type(error_type), allocatable, intent(out) :: error
+      integer :: bad_column
+
+      call check_pattern(self, lower, error)
+      if (allocated(error)) return
+      call self%skyline%set_values(lower, self%position)
+      call self%skyline%factor_leading(bad_column)
+      self%smallest_pivot = self%skyline%smallest_pivot
       call move_alloc(self%skyline%schur, self%schur)
       if (bad_column > 0) call set_error(error, status_deck, &
          'singular matrix: a body is not held by its supports and contacts, or far too weakly')
