@@ -2,20 +2,16 @@
 !> with their quantities at every increment, so that they are drawn and exported by themselves.
 module contact_grid
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, geometry_values
-   use errors, only: error_type
-   use grid_steps, only: grid_steps_type
-   use growing_datasets, only: bytes_in, flush_sets, growing_dataset, growing_dataset_type
-   use hdf5, only: hid_t
-   use hdf5_attributes, only: describe
-   use hdf5_helpers, only: as_integer, as_real, create_group, write_array
+   use contact_quantities, only: contact_values
+   use growing_datasets, only: bytes_in, flush_sets, growing_dataset_type, quantity_dataset
+   use hdf5_writer, only: as_integer, hdf5_writer_type
    use kinds, only: dp, long
    use model, only: unit_labels_type
    use quantity_types, only: of_contact_points, quantity_type
    use records, only: increment_record_type
-   use reported_quantities, only: datasets, quantities
-   use result_mesh, only: cell_group, point_group, write_grid
-   use unit_labels, only: unit_in_words
+   use reported_quantities, only: datasets, geometry
+   use result_tables, only: storage_of, write_geometry
+   use vtk_grids, only: cell_group, grid_steps_type, point_group, write_grid
    implicit none
    private
    public :: contact_grid_type
@@ -58,12 +54,8 @@ contains
       end do
       allocate (self%sets(size(self%quantities)))
       do i = 1, size(self%sets)
-         associate (quantity => self%quantities(i))
-            self%sets(i) = growing_dataset(point_group//trim(quantity%name), merge(as_integer, &
-               as_real, quantity%is_integer), 0, self%points, expected)
-            call self%sets(i)%describe_as(trim(quantity%description), &
-               unit_in_words(quantity%unit, labels), '')
-         end associate
+         self%sets(i) = quantity_dataset(point_group, self%quantities(i), labels, &
+            storage_of(self%quantities(i)), 0, self%points, expected)
       end do
       call self%steps%start(trim(self%quantities(1)%name), '', expected)
    end subroutine start
@@ -92,14 +84,12 @@ contains
       bytes = bytes_in(self%sets)
    end function waiting_bytes
 
-   !> Writes what does not change: lines, numbers of nodes, arc lengths, weights.
-   !> Error: status_internal, when HDF5 refuses.
-   subroutine write_head(self, file, interfaces, node_number, error)
+   !> Writes the data that do not change: lines, numbers of nodes, arc lengths, weights.
+   subroutine write_head(self, file, interfaces, node_number)
       class(contact_grid_type), intent(in) :: self
-      integer(hid_t), intent(in) :: file                  !! the open file
+      type(hdf5_writer_type), intent(inout) :: file       !! the open file
       type(contact_points_type), intent(in) :: interfaces(:)
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
-      type(error_type), allocatable, intent(out) :: error
       real(dp) :: points(3, self%points)
       integer, allocatable :: ends(:), interface_of(:)
       integer :: first, i, k, m
@@ -115,76 +105,28 @@ contains
          first = first + m
       end do
       call write_grid(file, points, ends, [(2*k, k=0, size(interface_of))], &
-         [(vtk_line, k=1, size(interface_of))], self%labels, error)
-      if (allocated(error)) return
-      call write_geometry(self, file, interfaces, node_number, error)
-      if (allocated(error)) return
-      call create_group(file, cell_group, error)
-      if (allocated(error)) return
-      call write_array(file, cell_group//interface_set, interface_of, as_integer, error)
-      if (allocated(error)) return
-      call describe(file, cell_group//interface_set, 'number of the *CONTACT PAIR, from 1', '-', &
-         error)
-      if (allocated(error)) return
-      call self%steps%create_groups(file, error)
+         [(vtk_line, k=1, size(interface_of))], self%labels)
+      call file%create_group(point_group)
+      call write_geometry(file, point_group, interfaces, node_number, self%labels)
+      call file%create_group(cell_group)
+      call file%write(cell_group//interface_set, interface_of, as_integer, &
+         'number of the *CONTACT PAIR, from 1')
+      call self%steps%create_groups(file)
    end subroutine write_head
 
-   subroutine write_geometry(self, file, interfaces, node_number, error)
-      class(contact_grid_type), intent(in) :: self
-      integer(hid_t), intent(in) :: file
-      type(contact_points_type), intent(in) :: interfaces(:)
-      integer, intent(in) :: node_number(:)
-      type(error_type), allocatable, intent(out) :: error
-      type(quantity_type), allocatable :: given(:)
-      real(dp), allocatable :: values(:)
-      integer :: i, k
-
-      call create_group(file, point_group, error)
-      if (allocated(error)) return
-      given = pack(quantities, quantities%is_geometry)
-      do k = 1, size(given)
-         allocate (values(0))
-         do i = 1, size(interfaces)
-            values = [values, geometry_values(given(k)%name, interfaces(i), node_number)]
-         end do
-         if (given(k)%is_integer) then
-            call write_array(file, point_group//trim(given(k)%name), nint(values), as_integer, &
-               error)
-         else
-            call write_array(file, point_group//trim(given(k)%name), values, error)
-         end if
-         if (allocated(error)) return
-         call describe(file, point_group//trim(given(k)%name), given(k)%description, &
-            unit_in_words(given(k)%unit, self%labels), error)
-         if (allocated(error)) return
-         deallocate (values)
-      end do
-   end subroutine write_geometry
-
    !> Writes the waiting rows.
-   !> Error: status_internal, when HDF5 refuses.
-   subroutine flush_grid(self, file, is_new, error)
+   subroutine flush_grid(self, file, is_new)
       class(contact_grid_type), intent(inout) :: self
-      integer(hid_t), intent(in) :: file                  !! the open file, with its head
+      type(hdf5_writer_type), intent(inout) :: file       !! the open file, with its head
       logical, intent(in) :: is_new                       !! whether these are its first rows
-      type(error_type), allocatable, intent(out) :: error
-      type(quantity_type), allocatable :: given(:)
-      character(len(given%name) + 1), allocatable :: names(:)
-      integer :: i
+      character(len(geometry%name) + 1) :: names(size(geometry) + size(self%quantities))
 
-      call flush_sets(self%sets, file, error)
-      if (allocated(error)) return
-      call flush_sets(self%steps%sets, file, error)
-      if (allocated(error)) return
-      call self%steps%write_count(file, error)
-      if (allocated(error) .or. .not. is_new) return
-      given = pack(quantities, quantities%is_geometry)
-      allocate (names(size(given) + size(self%quantities)))
-      do i = 1, size(given)
-         names(i) = ' '//given(i)%name
-      end do
-      names(size(given) + 1:) = self%quantities%name
-      call self%steps%write_links(file, names, [' '//interface_set], error)
+      call flush_sets(self%sets, file)
+      call self%steps%flush(file)
+      if (.not. is_new) return
+      names(:size(geometry)) = ' '//geometry%name
+      names(size(geometry) + 1:) = self%quantities%name
+      call self%steps%write_links(file, names, [' '//interface_set])
    end subroutine flush_grid
 
 end module contact_grid

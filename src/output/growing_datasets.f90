@@ -1,17 +1,18 @@
 !> Datasets that grow row by row: rows gather in memory and go to the file as one block.
 module growing_datasets
    use, intrinsic :: iso_c_binding, only: c_loc
-   use errors, only: error_type
    use hdf5, only: hid_t, hsize_t, h5dcreate_f, h5dopen_f, h5dclose_f, h5dset_extent_f, &
       h5dget_space_f, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5p_dataset_create_f, &
       h5screate_simple_f, h5sclose_f, h5sselect_hyperslab_f, h5s_select_set_f, h5s_unlimited_f, &
       h5t_native_double
-   use hdf5_attributes, only: describe_open
-   use hdf5_helpers, only: check_status, stored_type, write_values
+   use hdf5_writer, only: hdf5_writer_type, stored_type, write_values
    use kinds, only: dp, long
+   use model, only: unit_labels_type
+   use quantity_types, only: quantity_type
+   use unit_labels, only: unit_in_words
    implicit none
    private
-   public :: growing_dataset_type, growing_dataset, bytes_in, flush_sets
+   public :: growing_dataset_type, growing_dataset, quantity_dataset, bytes_in, flush_sets
 
    integer, parameter :: chunk_bytes = 32768   !! bytes of a chunk, unless one append is larger
 
@@ -59,6 +60,20 @@ contains
       allocate(dataset%buffer(max(width, 1)*rows_at_once))
    end function growing_dataset
 
+   !> A dataset of a quantity, described by its entry.
+   pure function quantity_dataset(group, quantity, labels, storage, width, rows_at_once, times) &
+      result(dataset)
+      character(*), intent(in) :: group            !! path of its group, with a slash at the end
+      type(quantity_type), intent(in) :: quantity
+      type(unit_labels_type), intent(in) :: labels !! units of the deck
+      integer, intent(in) :: storage, width, rows_at_once, times   !! as for growing_dataset
+      type(growing_dataset_type) :: dataset
+
+      dataset = growing_dataset(group//trim(quantity%name), storage, width, rows_at_once, times)
+      call dataset%describe_as(trim(quantity%description), unit_in_words(quantity%unit, labels), &
+         trim(quantity%components))
+   end function quantity_dataset
+
    !> Says what the dataset is.
    pure subroutine describe_as(self, description, unit, components)
       class(growing_dataset_type), intent(inout) :: self
@@ -95,29 +110,25 @@ contains
    end function bytes_in
 
    !> Writes the waiting rows of all datasets.
-   !> Error: status_internal, when they cannot be written.
-   subroutine flush_sets(datasets, file, error)
+   subroutine flush_sets(datasets, file)
       type(growing_dataset_type), intent(inout) :: datasets(:)
-      integer(hid_t), intent(in) :: file                       !! the open file
-      type(error_type), allocatable, intent(out) :: error      !! what went wrong
+      type(hdf5_writer_type), intent(inout) :: file            !! the open file
       integer :: i
 
       do i = 1, size(datasets)
-         call datasets(i)%flush(file, error)
-         if (allocated(error)) return
+         call datasets(i)%flush(file)
       end do
    end subroutine flush_sets
 
    !> Writes the waiting rows behind those in the file; creates the dataset the first time.
-   !> Error: status_internal, when they cannot be written.
-   subroutine flush_rows(self, file, error)
+   subroutine flush_rows(self, file)
       class(growing_dataset_type), target, intent(inout) :: self
-      integer(hid_t), intent(in) :: file                         !! the open file
-      type(error_type), allocatable, intent(out) :: error        !! what went wrong
+      type(hdf5_writer_type), intent(inout) :: file              !! the open file
       integer(hsize_t) :: offset(2), extent(2), whole(2)
       integer(hid_t) :: dataset, memory, space
       integer :: rank, status(9)
 
+      if (file%has_failed()) return
       if (self%used == 0 .and. self%in_file) return
       status = 0
       rank = merge(1, 2, self%width == 0)
@@ -125,9 +136,9 @@ contains
       offset = [0_hsize_t, self%rows_in_file]
       whole = [extent(1), offset(2) + extent(2)]
       if (.not. self%in_file) then
-         call create(self, file, whole, dataset, status(1))
+         call create(self, file%id, whole, dataset, status(1))
       else
-         call h5dopen_f(file, self%path, dataset, status(1))
+         call h5dopen_f(file%id, self%path, dataset, status(1))
          call h5dset_extent_f(dataset, whole(3 - rank:), status(2))
       end if
       if (extent(2) > 0) then
@@ -139,10 +150,10 @@ contains
          call h5sclose_f(memory, status(7))
          call h5sclose_f(space, status(8))
       end if
-      if (.not. self%in_file) call describe_open(dataset, self%description, self%unit, status(9), &
+      if (status(1) >= 0) call h5dclose_f(dataset, status(9))
+      call file%note(status, 'cannot write dataset '//self%path)
+      if (.not. self%in_file) call file%describe(self%path, self%description, self%unit, &
          self%components)
-      if (status(1) >= 0) call h5dclose_f(dataset, status(1))
-      call check_status(status, 'cannot write dataset '//self%path, error)
       self%in_file = .true.
       self%rows_in_file = whole(2)
       self%used = 0

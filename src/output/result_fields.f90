@@ -6,19 +6,15 @@ module result_fields
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
    use element_kinds, only: axisymmetric
-   use errors, only: error_type
    use field_quantities, only: element_values, point_values
-   use grid_steps, only: grid_steps_type
-   use growing_datasets, only: growing_dataset, growing_dataset_type
-   use hdf5, only: hid_t
-   use hdf5_helpers, only: as_real
+   use growing_datasets, only: flush_sets, growing_dataset_type, quantity_dataset
+   use hdf5_writer, only: as_real, hdf5_writer_type
    use kinds, only: dp
    use model, only: model_type
    use quantity_types, only: of_elements, of_contact_points, of_points, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets
-   use result_mesh, only: cell_data_names, cell_group, point_group
-   use unit_labels, only: unit_in_words
+   use vtk_grids, only: cell_data_names, cell_group, grid_steps_type, point_group
    implicit none
    private
    public :: field_results_type
@@ -43,7 +39,7 @@ module result_fields
    contains
       procedure :: start
       procedure :: append
-      procedure :: write_links
+      procedure :: flush => flush_fields
    end type field_results_type
 
 contains
@@ -56,41 +52,28 @@ contains
       integer, intent(in) :: point_node(:)               !! (points) node index of each point
       logical, intent(in) :: has(0:)                     !! what the deck solves, by needs_*
       integer, intent(in) :: expected                    !! increments that are expected
-      integer :: cells, i, width
+      integer :: i, width
 
       self%point_node = point_node
-      cells = size(model%mesh%element_kind)
+      self%cells = size(model%mesh%element_kind)
       if (all(model%mesh%element_plane /= axisymmetric)) self%radial = &
          directions(model%mesh%coordinates(:, point_node))
       call find_faces(self, interfaces)
       self%point_data = datasets(of_points, has)
       if (size(interfaces) > 0) self%point_data = [self%point_data, &
          on_faces(datasets(of_contact_points, has))]
-      self%cells = cells
       self%cell_data = datasets(of_elements, has)
       allocate(self%sets(size(self%point_data) + size(self%cell_data)))
       call self%steps%start(trim(self%point_data(1)%name), trim(self%cell_data(1)%name), expected)
       do i = 1, size(self%point_data)
-         width = self%point_data(i)%values
-         if (width == 1) width = 0
-         self%sets(i) = field_set(point_group, self%point_data(i), width, &
-            size(point_node))
+         width = merge(self%point_data(i)%values, 0, self%point_data(i)%values > 1)
+         self%sets(i) = quantity_dataset(point_group, self%point_data(i), model%units, as_real, &
+            width, size(point_node), expected)
       end do
       do i = 1, size(self%cell_data)
-         self%sets(size(self%point_data) + i) = field_set(cell_group, &
-            self%cell_data(i), 0, cells)
+         self%sets(size(self%point_data) + i) = quantity_dataset(cell_group, self%cell_data(i), &
+            model%units, as_real, 0, self%cells, expected)
       end do
-   contains
-      function field_set(group, quantity, values, rows) result(set)
-         character(*), intent(in) :: group
-         type(quantity_type), intent(in) :: quantity
-         integer, intent(in) :: values, rows
-         type(growing_dataset_type) :: set
-
-         set = growing_dataset(group//trim(quantity%name), as_real, values, rows, expected)
-         call set%describe_as(trim(quantity%description), unit_in_words(quantity%unit, &
-            model%units), trim(quantity%components))
-      end function field_set
    end subroutine start
 
    !> Unit vectors from the origin to points; along x at the origin itself.
@@ -124,22 +107,24 @@ contains
       end do
    end subroutine append
 
-   !> Gives the offsets of Steps all their names, once their datasets are in the file.
-   !> Error: status_internal, when HDF5 refuses.
-   subroutine write_links(self, file, error)
-      class(field_results_type), intent(in) :: self
-      integer(hid_t), intent(in) :: file                  !! the open file
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
+   !> Writes the waiting rows; the first time then gives the offsets of Steps all their names.
+   subroutine flush_fields(self, file, is_new)
+      class(field_results_type), intent(inout) :: self
+      type(hdf5_writer_type), intent(inout) :: file       !! the open file, with its head
+      logical, intent(in) :: is_new                       !! whether these are its first rows
       character(len(self%point_data%name) + 1) :: points(1 + size(self%point_data))
       character(len(self%cell_data%name) + 1) :: cells(size(cell_data_names) + &
          size(self%cell_data))
 
+      call flush_sets(self%sets, file)
+      call self%steps%flush(file)
+      if (.not. is_new) return
       points(1) = ' node_id'
       points(2:) = self%point_data%name
       cells(:size(cell_data_names)) = ' '//cell_data_names
       cells(size(cell_data_names) + 1:) = self%cell_data%name
-      call self%steps%write_links(file, points, cells, error)
-   end subroutine write_links
+      call self%steps%write_links(file, points, cells)
+   end subroutine flush_fields
 
    !> The quantities of contact points that are fields too, by their names as such.
    pure function on_faces(of_interface) result(fields)

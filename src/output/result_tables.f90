@@ -1,26 +1,21 @@
 !> Groups `/history`, `/convergence`, `/contact/<name>` and `/errors` of the result file.
 module result_tables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use contact_definitions, only: pairing_name
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, geometry_values
-   use errors, only: error_type
-   use growing_datasets, only: growing_dataset, growing_dataset_type
-   use hdf5, only: hid_t
-   use hdf5_attributes, only: describe, write_attribute
-   use hdf5_helpers, only: as_integer, as_real, create_group, write_array
+   use growing_datasets, only: growing_dataset, growing_dataset_type, quantity_dataset
+   use hdf5_writer, only: as_integer, as_real, hdf5_writer_type
    use increment_quantities, only: body_values, history_value, pass_value
    use kinds, only: dp
    use model, only: model_type, unit_labels_type
    use quantity_types, only: of_bodies, of_contact_points, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
-   use reported_quantities, only: quantities
-   use run_summaries, only: or_blank
+   use reported_quantities, only: geometry
    use solution_report, only: iteration_record_type
-   use unit_labels, only: load_unit, unit_in_words
+   use unit_labels, only: unit_in_words
    implicit none
    private
-   public :: result_table_type, error_results_type, write_contact_points, write_load_label
+   public :: result_table_type, error_results_type, storage_of, write_geometry
 
    !> A group with one dataset for each quantity: `/history` and `/contact/<name>` with one row an
    !> increment, `/convergence` with one row a pass.
@@ -48,6 +43,13 @@ module result_tables
 
 contains
 
+   !> Type of a quantity in the file.
+   pure integer function storage_of(quantity)
+      type(quantity_type), intent(in) :: quantity
+
+      storage_of = merge(as_integer, as_real, quantity%is_integer)
+   end function storage_of
+
    !> Prepares the datasets of a group.
    subroutine start_table(self, group, reported, places, expected, labels)
       class(result_table_type), intent(inout) :: self
@@ -61,14 +63,10 @@ contains
       self%quantities = reported
       allocate(self%sets(size(reported)))
       do i = 1, size(reported)
-         associate (quantity => reported(i), set => self%sets(i))
-            width = merge(quantity%values, 0, quantity%values > 1)
-            if (any(quantity%kind == [of_bodies, of_contact_points])) width = places
-            set = growing_dataset(group//trim(quantity%name), merge(as_integer, as_real, &
-               quantity%is_integer), width, 1, expected)
-            call set%describe_as(trim(quantity%description), unit_in_words(quantity%unit, &
-               labels), trim(quantity%components))
-         end associate
+         width = merge(reported(i)%values, 0, reported(i)%values > 1)
+         if (any(reported(i)%kind == [of_bodies, of_contact_points])) width = places
+         self%sets(i) = quantity_dataset(group, reported(i), labels, storage_of(reported(i)), &
+            width, 1, expected)
       end do
    end subroutine start_table
 
@@ -114,55 +112,32 @@ contains
       end do
    end subroutine append_contact
 
-   !> Labels the load axis.
-   !> Error: status_internal, when HDF5 refuses.
-   subroutine write_load_label(file, model, error)
-      integer(hid_t), intent(in) :: file                  !! the open file
-      type(model_type), intent(in) :: model               !! load axis and units of the deck
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
-      character(*), parameter :: path = '/history/load'
-
-      call write_attribute(file, path, 'label', or_blank(model%load_label), error)
-      if (allocated(error)) return
-      call write_attribute(file, path, 'unit', unit_in_words(load_unit(model%load_dof), &
-         model%units), error)
-   end subroutine write_load_label
-
-   !> Creates the group, with the geometry of the contact points.
-   !> Error: status_internal, when HDF5 refuses.
-   subroutine write_contact_points(file, points, node_number, friction, labels, error)
-      integer(hid_t), intent(in) :: file                  !! the open file
-      type(contact_points_type), intent(in) :: points     !! contact points of the interface
+   !> Writes the geometry of contact points, those of some interfaces one behind the other.
+   subroutine write_geometry(file, group, interfaces, node_number, labels)
+      type(hdf5_writer_type), intent(inout) :: file       !! the open file
+      character(*), intent(in) :: group                   !! its path, with a slash at the end
+      type(contact_points_type), intent(in) :: interfaces(:)
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
-      real(dp), intent(in) :: friction                    !! coefficient of friction [-]
       type(unit_labels_type), intent(in) :: labels        !! units of the deck
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
-      character(:), allocatable :: group, path
+      type(quantity_type) :: quantity
       real(dp), allocatable :: values(:)
-      integer :: i
+      integer :: i, k
 
-      group = '/contact/'//points%name
-      call create_group(file, group, error)
-      if (allocated(error)) return
-      call write_attribute(file, group, 'friction', friction, error)
-      if (allocated(error)) return
-      call write_attribute(file, group, 'pairing', pairing_name(points%pairing), error)
-      if (allocated(error)) return
-      do i = 1, size(quantities)
-         if (.not. quantities(i)%is_geometry) cycle
-         path = group//'/'//trim(quantities(i)%name)
-         values = geometry_values(quantities(i)%name, points, node_number)
-         if (quantities(i)%is_integer) then
-            call write_array(file, path, nint(values), as_integer, error)
+      do k = 1, size(geometry)
+         quantity = geometry(k)
+         values = [real(dp) ::]
+         do i = 1, size(interfaces)
+            values = [values, geometry_values(quantity%name, interfaces(i), node_number)]
+         end do
+         if (quantity%is_integer) then
+            call file%write(group//trim(quantity%name), nint(values), as_integer, &
+               quantity%description)
          else
-            call write_array(file, path, values, error)
+            call file%write(group//trim(quantity%name), values, quantity%description, &
+               unit_in_words(quantity%unit, labels))
          end if
-         if (allocated(error)) return
-         call describe(file, path, quantities(i)%description, &
-            unit_in_words(quantities(i)%unit, labels), error)
-         if (allocated(error)) return
       end do
-   end subroutine write_contact_points
+   end subroutine write_geometry
 
    !> Prepares the datasets; none without an interface or without estimates.
    subroutine start_errors(self, has_estimates, interfaces, steps, labels)
@@ -211,20 +186,16 @@ contains
    end subroutine append_errors
 
    !> Creates the groups.
-   !> Error: status_internal, when HDF5 refuses.
-   subroutine create_error_groups(self, file, interfaces, error)
+   subroutine create_error_groups(self, file, interfaces)
       class(error_results_type), intent(in) :: self       !! the group, started
-      integer(hid_t), intent(in) :: file                  !! the open file
+      type(hdf5_writer_type), intent(inout) :: file       !! the open file
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
 
       if (size(self%sets) == 0) return
-      call create_group(file, '/errors', error)
-      if (allocated(error)) return
+      call file%create_group('/errors')
       do i = 1, size(interfaces)
-         call create_group(file, '/errors/'//interfaces(i)%name, error)
-         if (allocated(error)) return
+         call file%create_group('/errors/'//interfaces(i)%name)
       end do
    end subroutine create_error_groups
 

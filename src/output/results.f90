@@ -6,13 +6,13 @@
 !> end, and in between whenever that costs less than a tenth of the time, or an increment was long.
 !> The first publishing replaces the files of an earlier run. A draft publishes its end only.
 module results
+   use contact_definitions, only: pairing_name
    use contact_grid, only: contact_grid_type
    use contact_points, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
    use growing_datasets, only: bytes_in, flush_sets
-   use hdf5_attributes, only: describe
-   use hdf5_helpers, only: close_hdf5, create_group, open_hdf5, write_strings
+   use hdf5_writer, only: end_hdf5, start_hdf5
    use kinds, only: dp, long
    use model, only: model_type
    use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, needs_nothing, &
@@ -21,16 +21,16 @@ module results
    use reported_quantities, only: datasets
    use result_accuracy, only: write_accuracy
    use result_fields, only: field_results_type
-   use result_mesh, only: write_result_mesh
    use result_run, only: write_run
-   use result_tables, only: error_results_type, result_table_type, write_contact_points, &
-      write_load_label
-   use run_summaries, only: run_summary_type
+   use result_tables, only: error_results_type, result_table_type, write_geometry
+   use run_summaries, only: or_blank, run_summary_type
    use solution_report, only: iteration_record_type
    use status_files, only: status_file_type
    use steps, only: planned_increments, solves_heat, solves_mechanics
    use clock, only: wall_seconds
    use text, only: string_type
+   use unit_labels, only: load_unit, unit_in_words
+   use vtk_grids, only: write_result_mesh
    use working_files, only: working_file_type
    implicit none
    private
@@ -104,7 +104,7 @@ contains
       logical :: has(0:needs_coupling)
       integer :: i, expected
 
-      call open_hdf5(error)
+      call start_hdf5(error)
       if (allocated(error)) return
       self%element_points = element_points
       self%cards = cards
@@ -159,11 +159,11 @@ contains
       if ((record%last_of_step .or. is_due) .and. .not. (ends_run .or. self%is_draft)) then
          call publish(self, model, interfaces, run, error, ends_run)
       else if (waiting_bytes(self) > memory_limit) then
-         call flush_all(self, model, interfaces, error)
-         call self%file%explain(error)
+         call flush_all(self, model, interfaces)
+         call self%file%check(error)
          if (self%has_contact .and. .not. allocated(error)) then
-            call flush_contact(self, model, interfaces, error)
-            call self%contact_file%explain(error)
+            call flush_contact(self, model, interfaces)
+            call self%contact_file%check(error)
          end if
          call self%file%charge(since, ended=.false.)
       end if
@@ -195,7 +195,7 @@ contains
       else
          call self%increments%close()
          call self%passes%close()
-         call close_hdf5()
+         call end_hdf5()
       end if
    end subroutine finish
 
@@ -262,13 +262,10 @@ contains
 
       since = wall_seconds()
       is_first = .not. self%file%in_place
-      call flush_all(self, model, interfaces, error)
-      if (.not. allocated(error)) call write_run(self%file%id, run, model, &
-         wall_seconds() - since, error)
-      if (.not. allocated(error) .and. ends_run) call write_accuracy(self%file%id, run%accuracy, &
-         interfaces, model%units, error)
-      if (.not. allocated(error)) call self%file%close(error)
-      call self%file%explain(error)
+      call flush_all(self, model, interfaces)
+      call write_run(self%file%content, run, model, wall_seconds() - since)
+      if (ends_run) call write_accuracy(self%file%content, run%accuracy, interfaces, model%units)
+      call self%file%close(error)
       if (allocated(error)) return
       call publish_contact(self, model, interfaces, error)
       if (allocated(error)) return
@@ -298,90 +295,73 @@ contains
          call self%contact_file%remove()
          return
       end if
-      call flush_contact(self, model, interfaces, error)
-      if (.not. allocated(error)) call self%contact_file%close(error)
-      call self%contact_file%explain(error)
+      call flush_contact(self, model, interfaces)
+      call self%contact_file%close(error)
       if (.not. allocated(error)) call self%contact_file%put_in_place(error)
    end subroutine publish_contact
 
-   subroutine flush_contact(self, model, interfaces, error)
+   subroutine flush_contact(self, model, interfaces)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
-      type(error_type), allocatable, intent(out) :: error
       logical :: is_new
 
-      call self%contact_file%open(is_new, error)
-      if (allocated(error)) return
-      if (is_new) call self%contact_grid%write_head(self%contact_file%id, interfaces, &
-         model%mesh%node_number, error)
-      if (.not. allocated(error)) call self%contact_grid%flush(self%contact_file%id, is_new, error)
+      call self%contact_file%open(is_new)
+      if (is_new) call self%contact_grid%write_head(self%contact_file%content, interfaces, &
+         model%mesh%node_number)
+      call self%contact_grid%flush(self%contact_file%content, is_new)
    end subroutine flush_contact
 
-   subroutine flush_all(self, model, interfaces, error)
+   subroutine flush_all(self, model, interfaces)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
-      type(error_type), allocatable, intent(out) :: error
       logical :: is_new
       integer :: i
 
-      call self%file%open(is_new, error)
-      if (allocated(error)) return
-      if (is_new) call write_heads(self, model, interfaces, error)
-      if (allocated(error)) return
-      call flush_sets(self%fields%sets, self%file%id, error)
-      if (allocated(error)) return
-      call flush_sets(self%fields%steps%sets, self%file%id, error)
-      if (allocated(error)) return
-      call self%fields%steps%write_count(self%file%id, error)
-      if (allocated(error)) return
-      call flush_sets(self%history%sets, self%file%id, error)
-      if (allocated(error)) return
-      call flush_sets(self%convergence%sets, self%file%id, error)
-      if (allocated(error)) return
-      call flush_sets(self%errors%sets, self%file%id, error)
-      if (allocated(error)) return
-      do i = 1, size(self%contacts)
-         call flush_sets(self%contacts(i)%sets, self%file%id, error)
-         if (allocated(error)) return
-      end do
-      if (is_new) call self%fields%write_links(self%file%id, error)
-      if (allocated(error)) return
-      if (is_new) call write_load_label(self%file%id, model, error)
+      call self%file%open(is_new)
+      associate (file => self%file%content)
+         if (is_new) call write_heads(self, model, interfaces)
+         call self%fields%flush(file, is_new)
+         call flush_sets(self%history%sets, file)
+         call flush_sets(self%convergence%sets, file)
+         call flush_sets(self%errors%sets, file)
+         do i = 1, size(self%contacts)
+            call flush_sets(self%contacts(i)%sets, file)
+         end do
+         if (.not. is_new) return
+         call file%set('/history/load', 'label', or_blank(model%load_label))
+         call file%set('/history/load', 'unit', unit_in_words(load_unit(model%load_dof), &
+            model%units))
+      end associate
    end subroutine flush_all
 
-   subroutine write_heads(self, model, interfaces, error)
-      class(results_type), intent(in) :: self
+   subroutine write_heads(self, model, interfaces)
+      class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
-      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: group
       integer :: i
 
-      call write_result_mesh(self%file%id, model, self%fields%point_node, self%element_points, &
-         error)
-      if (allocated(error)) return
-      call self%fields%steps%create_groups(self%file%id, error)
-      if (allocated(error)) return
-      call create_group(self%file%id, '/history', error)
-      if (allocated(error)) return
-      call create_group(self%file%id, '/convergence', error)
-      if (allocated(error)) return
-      call create_group(self%file%id, '/contact', error)
-      if (allocated(error)) return
-      call self%errors%create_groups(self%file%id, interfaces, error)
-      if (allocated(error)) return
-      do i = 1, size(interfaces)
-         call write_contact_points(self%file%id, interfaces(i), model%mesh%node_number, &
-            model%interactions(model%contacts(i)%interaction)%friction%coefficient, &
-            model%units, error)
-         if (allocated(error)) return
-      end do
-      call create_group(self%file%id, '/run', error)
-      if (allocated(error)) return
-      call write_strings(self%file%id, '/deck', self%cards, error)
-      if (allocated(error)) return
-      call describe(self%file%id, '/deck', 'card images as read', '-', error)
+      associate (file => self%file%content)
+         call write_result_mesh(file, model, self%fields%point_node, self%element_points)
+         call self%fields%steps%create_groups(file)
+         call file%create_group('/history')
+         call file%create_group('/convergence')
+         call file%create_group('/contact')
+         call self%errors%create_groups(file, interfaces)
+         do i = 1, size(interfaces)
+            group = '/contact/'//interfaces(i)%name
+            call file%create_group(group)
+            call file%set(group, 'friction', &
+               model%interactions(model%contacts(i)%interaction)%friction%coefficient)
+            call file%set(group, 'pairing', pairing_name(interfaces(i)%pairing))
+            call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number, &
+               model%units)
+         end do
+         call file%create_group('/run')
+         call file%write('/deck', self%cards, 'card images as read')
+      end associate
    end subroutine write_heads
 
 end module results

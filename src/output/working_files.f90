@@ -5,8 +5,7 @@ module working_files
    use errors, only: error_type, set_error, status_internal
    use file_calls, only: cannot_write, copy_file, create_working_file, remove_file, &
       remove_working_files, rename_file, try_file, try_growth
-   use hdf5, only: hid_t
-   use hdf5_helpers, only: close_file, create_file, open_file
+   use hdf5_writer, only: hdf5_writer_type
    use kinds, only: dp
    implicit none
    private
@@ -25,8 +24,7 @@ module working_files
       private
       character(:), allocatable :: path          !! path of the file in place
       character(:), allocatable, public :: working_path !! path of the working copy, if there is one
-      integer(hid_t), public :: id = -1          !! HDF5's handle while the working copy is open
-      logical :: is_open = .false.               !! whether the working copy is open
+      type(hdf5_writer_type), public :: content  !! writes the working copy while it is open
       logical, public :: in_place = .false.      !! whether this run's file is in place
       real(dp) :: cost = 0.0_dp                  !! what the present publishing has cost so far [s]
       real(dp) :: last_cost = usual_cost         !! what the last one cost [s]
@@ -40,7 +38,7 @@ module working_files
       procedure :: put_in_place
       procedure :: is_due
       procedure :: charge
-      procedure :: explain
+      procedure :: check
       procedure :: discard
       procedure :: remove
    end type working_file_type
@@ -76,35 +74,44 @@ contains
    end subroutine reserve
 
    !> Opens the working copy: a new one at first, later a copy of the file in place.
-   !> Error: status_internal, when it cannot be written.
-   subroutine open_working(self, is_new, error)
+   !> Error kept by `content`: status_internal, when it cannot be written.
+   subroutine open_working(self, is_new)
       class(working_file_type), intent(inout) :: self
       logical, intent(out) :: is_new                      !! whether it is empty
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      type(error_type), allocatable :: error
 
       is_new = .false.
-      if (self%is_open) return
+      if (self%content%id >= 0) return
       call create_working_file(self%path, self%working_path, error)
-      if (allocated(error)) return
-      if (self%in_place) then
-         call copy_file(self%path, self%working_path, error)
-         if (allocated(error)) return
-         call open_file(self%working_path, self%id, error)
+      is_new = .not. self%in_place
+      if (self%in_place .and. .not. allocated(error)) call copy_file(self%path, &
+         self%working_path, error)
+      if (allocated(error)) then
+         call self%content%fail(error)
+      else if (is_new) then
+         call self%content%create(self%working_path)
       else
-         is_new = .true.
-         call create_file(self%working_path, self%id, error)
+         call self%content%open(self%working_path)
       end if
-      self%is_open = .not. allocated(error)
    end subroutine open_working
 
+   !> Error: the first one since the working copy was opened.
+   subroutine check(self, error)
+      class(working_file_type), intent(in) :: self
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+
+      call self%content%check(error)
+      call explain(self, error)
+   end subroutine check
+
    !> Closes the working copy.
-   !> Error: status_internal, when the rest cannot be written.
+   !> Error: the first one since it was opened; status_internal, when the rest cannot be written.
    subroutine close_working(self, error)
       class(working_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
-      self%is_open = .false.
-      call close_file(self%id, error)
+      call self%content%close(error)
+      call explain(self, error)
    end subroutine close_working
 
    !> Renames the closed working copy over the file in place.
@@ -178,7 +185,7 @@ contains
       class(working_file_type), intent(inout) :: self
       type(error_type), allocatable :: ignored
 
-      if (self%is_open) call self%close(ignored)
+      call self%content%close(ignored)
       if (.not. allocated(self%working_path)) return
       call remove_file(self%working_path)
       deallocate (self%working_path)

@@ -7,7 +7,7 @@ module reported_quantities
    use quantity_types, only: of_history, of_interface, of_nodes, of_contact_points, quantity_type
    implicit none
    private
-   public :: quantities, verifiable, traded, datasets
+   public :: quantities, verifiable, geometry, traded, datasets
 
    type(quantity_type), parameter :: quantities(*) = [increment_table, contact_table, field_table]
 
@@ -15,6 +15,9 @@ module reported_quantities
    type(quantity_type), parameter :: verifiable(*) = pack(quantities, quantities%is_published &
       .and. (quantities%kind == of_history .or. quantities%kind == of_interface .or. &
       quantities%kind == of_contact_points .or. quantities%kind == of_nodes))
+
+   !> Those of contact points before deformation.
+   type(quantity_type), parameter :: geometry(*) = pack(quantities, quantities%is_geometry)
 
    !> Those that rows of a trade are judged by: of an interface, then of points.
    type(quantity_type), parameter :: traded(*) = pack(quantities, quantities%is_traded)

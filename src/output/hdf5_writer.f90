@@ -1,0 +1,453 @@
+!> A file that HDF5 writes: groups, whole datasets, attributes. Shapes are Fortran's; C and h5py show
+!> the dimensions in reverse order.
+!>
+!> The writer keeps its first error, and writes nothing after it: its user checks once, at the end.
+module hdf5_writer
+   use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_ptr
+   use errors, only: error_type, set_error, status_internal
+   use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5close_f, h5dont_atexit_f, h5eset_auto_f, &
+      h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, h5f_acc_rdwr_f, &
+      h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5p_file_access_f, &
+      h5pset_buffer_f, h5p_dataset_xfer_f, &
+      h5f_libver_v18_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5lcreate_hard_f, &
+      h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f, h5dcreate_f, h5dwrite_f, &
+      h5dclose_f, h5oopen_f, h5oclose_f, h5aopen_f, h5acreate_f, h5aexists_f, h5awrite_f, &
+      h5aclose_f, h5tcopy_f, h5tclose_f, h5tset_cset_f, h5tset_size_f, h5t_cset_utf8_f, &
+      h5t_string, h5t_native_character, h5t_native_double, h5t_native_integer, h5kind_to_type, &
+      h5_integer_kind, h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5t_ieee_f64le
+   use kinds, only: dp, long
+   use text, only: string_type
+   implicit none
+   private
+   public :: hdf5_writer_type, start_hdf5, end_hdf5, write_values
+   public :: stored_type, as_real, as_integer, as_long, as_byte
+
+   integer, parameter :: as_real = 1      !! stored as 64-bit real
+   integer, parameter :: as_integer = 2   !! stored as 32-bit integer
+   integer, parameter :: as_long = 3      !! stored as 64-bit integer
+   integer, parameter :: as_byte = 4      !! stored as unsigned byte
+
+   !> Bytes of the buffer in which HDF5 converts types; its own default, 1 MB, is cleared each time.
+   integer(hsize_t), parameter :: conversion_bytes = 16384_hsize_t
+
+   !> A file that is being written.
+   type :: hdf5_writer_type
+      integer(hid_t) :: id = -1                          !! HDF5's handle while the file is open
+      type(error_type), allocatable, private :: error    !! the first one since it was opened
+   contains
+      procedure :: create => create_file
+      procedure :: open => open_file
+      procedure :: close => close_file
+      procedure :: fail
+      procedure :: note
+      procedure :: check
+      procedure :: has_failed
+      procedure :: create_group
+      procedure :: link => link_dataset
+      generic :: write => write_integers, write_reals, write_real_table, write_strings
+      generic :: set => set_attribute, set_integers
+      procedure :: set_fixed_text
+      procedure :: describe
+      procedure, private :: write_integers, write_reals, write_real_table, write_strings
+      procedure, private :: set_attribute, set_integers
+   end type hdf5_writer_type
+
+   !> A value in memory, and its types.
+   type :: stored_value_type
+      integer(hid_t) :: memory_type = -1
+      integer(hid_t) :: file_type = -1
+      type(c_ptr) :: address
+      integer :: extent = 0                    !! numbers in it; 0 for a scalar
+   end type stored_value_type
+
+contains
+
+   !> Starts HDF5 and silences its own messages: ours go through `error`.
+   !> Error: status_internal, when the library does not start.
+   subroutine start_hdf5(error)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: ignored, status(2)
+
+      ! HDF5 1.10 crashes at exit when a file could not be closed for want of space.
+      call h5dont_atexit_f(ignored)
+      call h5open_f(status(1))
+      call h5eset_auto_f(0, status(2))
+      if (any(status < 0)) call set_error(error, status_internal, 'cannot start HDF5')
+   end subroutine start_hdf5
+
+   !> Ends HDF5 and frees its memory.
+   subroutine end_hdf5()
+      integer :: status
+
+      call h5close_f(status)
+   end subroutine end_hdf5
+
+   !> Creates a file, over one that is there. Format 1.8 keeps it readable everywhere.
+   !> Error kept: status_internal, when it cannot be written.
+   subroutine create_file(self, path)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      integer(hid_t) :: access
+      integer :: status(4)
+
+      call h5pcreate_f(h5p_file_access_f, access, status(1))
+      call h5pset_libver_bounds_f(access, h5f_libver_v18_f, h5f_libver_latest_f, status(2))
+      call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status(3), access_prp=access)
+      call h5pclose_f(access, status(4))
+      call self%note(status, 'cannot write "'//path//'"')
+   end subroutine create_file
+
+   !> Opens a file to extend it.
+   !> Error kept: status_internal, when it is not there or is no HDF5 file.
+   subroutine open_file(self, path)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      integer :: status
+
+      call h5fopen_f(path, h5f_acc_rdwr_f, self%id, status)
+      call self%note([status], 'cannot open "'//path//'"')
+   end subroutine open_file
+
+   !> Closes the file, which is then complete unless there was an error; the writer can be used again.
+   !> Error: the first one since it was opened; status_internal, when the rest cannot be written.
+   subroutine close_file(self, error)
+      class(hdf5_writer_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      integer :: status
+
+      if (self%id >= 0) then
+         call h5fclose_f(self%id, status)
+         call self%note([status], 'cannot finish the result file')
+      end if
+      self%id = -1
+      call move_alloc(self%error, error)
+   end subroutine close_file
+
+   !> Keeps an error, unless there was one before.
+   subroutine fail(self, error)
+      class(hdf5_writer_type), intent(inout) :: self
+      type(error_type), intent(in) :: error
+
+      if (.not. allocated(self%error)) self%error = error
+   end subroutine fail
+
+   !> Keeps an error of status_internal where a call of HDF5 failed.
+   subroutine note(self, status, message)
+      class(hdf5_writer_type), intent(inout) :: self
+      integer, intent(in) :: status(:)                    !! returned by the calls
+      character(*), intent(in) :: message                 !! what failed, in plain words
+
+      if (allocated(self%error)) return
+      if (any(status < 0)) call set_error(self%error, status_internal, message)
+   end subroutine note
+
+   !> Error: the first one so far.
+   subroutine check(self, error)
+      class(hdf5_writer_type), intent(in) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      if (allocated(self%error)) error = self%error
+   end subroutine check
+
+   !> Whether there was an error, so that nothing more is written.
+   pure logical function has_failed(self)
+      class(hdf5_writer_type), intent(in) :: self
+
+      has_failed = allocated(self%error)
+   end function has_failed
+
+   !> Creates a group; its parent exists.
+   subroutine create_group(self, path)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      integer(hid_t) :: group
+      integer :: status(2)
+
+      if (self%has_failed()) return
+      call h5gcreate_f(self%id, path, group, status(1))
+      call h5gclose_f(group, status(2))
+      call self%note(status, 'cannot create group '//path)
+   end subroutine create_group
+
+   !> Gives a dataset a second name.
+   subroutine link_dataset(self, path, second_path)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path, second_path
+      integer :: status
+
+      if (self%has_failed()) return
+      call h5lcreate_hard_f(self%id, path, self%id, second_path, status)
+      call self%note([status], 'cannot link '//second_path)
+   end subroutine link_dataset
+
+   !> The type that numbers have in the file.
+   function stored_type(storage) result(type)
+      integer, intent(in) :: storage   !! as_real, as_integer, as_long or as_byte
+      integer(hid_t) :: type           !! HDF5's type, not to be closed
+
+      select case (storage)
+      case (as_integer)
+         type = h5t_std_i32le
+      case (as_long)
+         type = h5t_std_i64le
+      case (as_byte)
+         type = h5t_std_u8le
+      case default
+         type = h5t_ieee_f64le
+      end select
+   end function stored_type
+
+   !> The type of text of any length, which h5py shows as str; to be closed by the caller.
+   subroutine make_text_type(type, status)
+      integer(hid_t), intent(out) :: type
+      integer, intent(out) :: status        !! negative for failure
+
+      call h5tcopy_f(h5t_string, type, status)
+      if (status >= 0) call h5tset_cset_f(type, h5t_cset_utf8_f, status)
+   end subroutine make_text_type
+
+   !> Writes a dataset of strings of any length.
+   subroutine write_strings(self, path, strings, description)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      type(string_type), intent(in) :: strings(:)
+      character(*), intent(in) :: description
+      character(kind=c_char), allocatable, target :: characters(:)
+      type(c_ptr), allocatable, target :: starts(:)
+      integer(hid_t) :: type
+      integer :: i, k, position, status
+
+      position = 0
+      do i = 1, size(strings)
+         position = position + len(strings(i)%value) + 1
+      end do
+      allocate(characters(position), starts(size(strings)))
+      position = 0
+      do i = 1, size(strings)
+         starts(i) = c_loc(characters(position + 1))
+         do k = 1, len(strings(i)%value)
+            characters(position + k) = strings(i)%value(k:k)
+         end do
+         position = position + len(strings(i)%value) + 1
+         characters(position) = c_null_char
+      end do
+      call make_text_type(type, status)
+      call write_whole(self, path, shape(starts, kind=hsize_t), stored_value_type(type, type, &
+         c_loc(starts)))
+      call h5tclose_f(type, status)
+      call self%describe(path, description, '-')
+   end subroutine write_strings
+
+   !> Writes a dataset of integers, numbers without a unit.
+   subroutine write_integers(self, path, values, storage, description)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      integer, intent(in) :: values(:)
+      integer, intent(in) :: storage                      !! as_integer, as_long or as_byte
+      character(*), intent(in) :: description
+      integer, allocatable, target :: copy(:)
+
+      allocate(copy, source=values)
+      call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
+         h5t_native_integer, stored_type(storage), c_loc(copy)))
+      call self%describe(path, description, '-')
+   end subroutine write_integers
+
+   !> Writes a dataset of reals.
+   subroutine write_reals(self, path, values, description, unit)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      real(dp), intent(in) :: values(:)
+      character(*), intent(in) :: description, unit       !! as for describe
+      real(dp), allocatable, target :: copy(:)
+
+      allocate(copy, source=values)
+      call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
+         h5t_native_double, stored_type(as_real), c_loc(copy)))
+      call self%describe(path, description, unit)
+   end subroutine write_reals
+
+   !> Writes a dataset of rows of reals.
+   subroutine write_real_table(self, path, values, description, unit, components)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      real(dp), intent(in) :: values(:, :)
+      character(*), intent(in) :: description, unit       !! as for describe
+      character(*), intent(in), optional :: components    !! as for describe
+      real(dp), allocatable, target :: copy(:, :)
+
+      allocate(copy, source=values)
+      call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
+         h5t_native_double, stored_type(as_real), c_loc(copy)))
+      call self%describe(path, description, unit, components)
+   end subroutine write_real_table
+
+   subroutine write_whole(self, path, dimensions, value)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      integer(hsize_t), intent(in) :: dimensions(:)
+      type(stored_value_type), intent(in) :: value
+      integer(hid_t) :: space, dataset
+      integer :: status(5)
+
+      if (self%has_failed()) return
+      call h5screate_simple_f(size(dimensions), dimensions, space, status(1))
+      call h5dcreate_f(self%id, path, value%file_type, space, dataset, status(2))
+      call write_values(dataset, value%memory_type, value%address, status(3))
+      call h5dclose_f(dataset, status(4))
+      call h5sclose_f(space, status(5))
+      call self%note(status, 'cannot write dataset '//path)
+   end subroutine write_whole
+
+   !> Writes values into an open dataset: all of it, or what the selections name.
+   subroutine write_values(dataset, memory_type, address, status, memory, space)
+      integer(hid_t), intent(in) :: dataset
+      integer(hid_t), intent(in) :: memory_type        !! type of the values
+      type(c_ptr), intent(in) :: address               !! the values
+      integer, intent(out) :: status                   !! negative for failure
+      integer(hid_t), intent(in), optional :: memory   !! selection in memory
+      integer(hid_t), intent(in), optional :: space    !! selection in the dataset
+      integer(hid_t) :: transfer
+      integer :: results(4)
+
+      call h5pcreate_f(h5p_dataset_xfer_f, transfer, results(1))
+      call h5pset_buffer_f(transfer, conversion_bytes, results(2))
+      call h5dwrite_f(dataset, memory_type, address, results(3), memory, space, transfer)
+      call h5pclose_f(transfer, results(4))
+      status = minval(results)
+   end subroutine write_values
+
+   !> Says what a dataset is: `description`, `unit`, and `components` where there are such.
+   subroutine describe(self, path, description, unit, components)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      character(*), intent(in) :: description
+      character(*), intent(in) :: unit                    !! '-' for a pure number
+      character(*), intent(in), optional :: components    !! their names; empty or absent: none
+      integer(hid_t) :: object
+      integer :: status(5)
+
+      if (self%has_failed()) return
+      status = 0
+      call h5oopen_f(self%id, path, object, status(1))
+      call set_text(object, 'description', trim(description), status(2))
+      call set_text(object, 'unit', trim(unit), status(3))
+      if (present(components)) then
+         if (len_trim(components) > 0) call set_text(object, 'components', trim(components), &
+            status(4))
+      end if
+      call h5oclose_f(object, status(5))
+      call self%note(status, 'cannot describe '//path)
+   end subroutine describe
+
+   !> Writes an attribute of a group or dataset, over one of the same name: an integer of either
+   !> kind, a real, or text, which h5py shows as str.
+   subroutine set_attribute(self, path, name, value)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path                    !! of the group or dataset
+      character(*), intent(in) :: name
+      class(*), target, intent(in) :: value
+      integer(hid_t) :: object
+      integer :: status(3)
+
+      if (self%has_failed()) return
+      ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.
+      call h5oopen_f(self%id, path, object, status(1))
+      select type (value)
+      type is (integer)
+         call set_value(object, name, stored_value_type(h5t_native_integer, &
+            stored_type(as_integer), c_loc(value)), status(2))
+      type is (integer(long))
+         call set_value(object, name, stored_value_type(h5kind_to_type(long, h5_integer_kind), &
+            stored_type(as_long), c_loc(value)), status(2))
+      type is (real(dp))
+         call set_value(object, name, stored_value_type(h5t_native_double, &
+            stored_type(as_real), c_loc(value)), status(2))
+      type is (character(*))
+         call set_text(object, name, value, status(2))
+      end select
+      call h5oclose_f(object, status(3))
+      call self%note(status, 'cannot write attribute '//path//'@'//name)
+   end subroutine set_attribute
+
+   subroutine set_integers(self, path, name, values)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path, name
+      integer, contiguous, target, intent(in) :: values(:)
+      integer(hid_t) :: object
+      integer :: status(3)
+
+      if (self%has_failed()) return
+      call h5oopen_f(self%id, path, object, status(1))
+      call set_value(object, name, stored_value_type(h5t_native_integer, &
+         stored_type(as_integer), c_loc(values), size(values)), status(2))
+      call h5oclose_f(object, status(3))
+      call self%note(status, 'cannot write attribute '//path//'@'//name)
+   end subroutine set_integers
+
+   !> Writes an attribute of text of fixed length, the form that VTK asks for.
+   subroutine set_fixed_text(self, path, name, value)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path, name, value
+      character(len(value), kind=c_char), target :: copy
+      integer(hid_t) :: object, type
+      integer :: status(6)
+
+      if (self%has_failed()) return
+      copy = value
+      call h5tcopy_f(h5t_native_character, type, status(1))
+      call h5tset_size_f(type, len(value, kind=size_t), status(2))
+      call h5oopen_f(self%id, path, object, status(3))
+      call set_value(object, name, stored_value_type(type, type, c_loc(copy)), status(4))
+      call h5oclose_f(object, status(5))
+      call h5tclose_f(type, status(6))
+      call self%note(status, 'cannot write attribute '//path//'@'//name)
+   end subroutine set_fixed_text
+
+   !> Writes text to an open object.
+   subroutine set_text(object, name, value, worst)
+      integer(hid_t), intent(in) :: object
+      character(*), intent(in) :: name, value
+      integer, intent(out) :: worst                       ! negative after an error
+      character(len(value) + 1, kind=c_char), target :: copy
+      type(c_ptr), target :: start
+      integer(hid_t) :: type
+      integer :: status(3)
+
+      copy = value//c_null_char
+      start = c_loc(copy)
+      call make_text_type(type, status(1))
+      call set_value(object, name, stored_value_type(type, type, c_loc(start)), status(2))
+      call h5tclose_f(type, status(3))
+      worst = minval(status)
+   end subroutine set_text
+
+   !> Writes an attribute of an open object.
+   subroutine set_value(object, name, value, worst)
+      integer(hid_t), intent(in) :: object
+      character(*), intent(in) :: name
+      type(stored_value_type), intent(in) :: value
+      integer, intent(out) :: worst                       ! negative after an error
+      integer(hid_t) :: attribute, space
+      integer :: status(6)
+      logical :: exists
+
+      status = 0
+      call h5aexists_f(object, name, exists, status(1))
+      if (exists) then
+         call h5aopen_f(object, name, attribute, status(2))
+      else
+         if (value%extent > 0) then
+            call h5screate_simple_f(1, [int(value%extent, hsize_t)], space, status(2))
+         else
+            call h5screate_f(h5s_scalar_f, space, status(2))
+         end if
+         call h5acreate_f(object, name, value%file_type, space, attribute, status(3))
+         call h5sclose_f(space, status(4))
+      end if
+      call h5awrite_f(attribute, value%memory_type, value%address, status(5))
+      call h5aclose_f(attribute, status(6))
+      worst = minval(status)
+   end subroutine set_value
+
+end module hdf5_writer
