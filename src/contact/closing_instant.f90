@@ -236,8 +236,8 @@ contains
       end do
    end subroutine go_freely
 
-   !> What the contact points on their way give way to each other's forces, while all others that
-   !> are closed hold their positions.
+   !> Compliance of the contact points on their way, while all others that are closed hold their
+   !> positions.
    pure subroutine find_compliance(system, held, way)
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(inout) :: held   !! factors

@@ -17,8 +17,8 @@ PREFACE = """# Performance
 
 The cost of a run, its growth with the mesh, and where the time goes. In short:
 
-- The published cylinder takes about a tenth of a second. Half of its instructions are those of error
-  estimates and of writing.
+- The published cylinder takes about a tenth of a second. Error estimates and output take half of
+  its instructions.
 - Each uniform refinement multiplies the displacements by four, and the time by 2 to 6: 142,336
   displacements take some 12 s and 0.6 GB, 567,296 about a minute and 2 GB. From the second
   refinement on MUMPS is the faster solver, and the program chooses it.

@@ -11,7 +11,7 @@ TITLE = "Tail and full factorisation"
 TEXT = """
 Contact conductance changes the thermal matrix only in its last columns, the tail, which hold the
 temperature jumps of the contact points. Only the part of the tail from the first changed column on
-is factored again; *in full* counts what factoring the whole matrix as often takes. The listing
+is factored again; *in full* is the cost of factoring the whole matrix each time. The listing
 gives these numbers for each increment ("refactored"); here they are summed over the published
 cylinder. An operation is a multiplication or an addition. MUMPS counts those of nested dissection,
 so fewer in full; the tail is dense with both.
