@@ -1,5 +1,5 @@
-!> A file that HDF5 writes: groups, whole datasets, attributes. Shapes are Fortran's; C and h5py show
-!> the dimensions in reverse order.
+!> A file that HDF5 writes: groups, whole datasets, attributes. Shapes are Fortran's; C and h5py
+!> show the dimensions in reverse order.
 !>
 !> The writer keeps its first error, and writes nothing after it: its user checks once, at the end.
 module hdf5_writer
@@ -108,7 +108,7 @@ contains
       call self%note([status], 'cannot open "'//path//'"')
    end subroutine open_file
 
-   !> Closes the file, which is then complete unless there was an error; the writer can be used again.
+   !> Closes the file, which is then complete unless there was an error.
    !> Error: the first one since it was opened; status_internal, when the rest cannot be written.
    subroutine close_file(self, error)
       class(hdf5_writer_type), intent(inout) :: self
