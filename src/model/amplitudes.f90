@@ -1,14 +1,14 @@
 !> Load curves, and the value that a load has at an instant of a step.
 module amplitudes
    use kinds, only: dp
+   use named_items, only: named_type
    use piecewise_lines, only: line_value
    implicit none
    private
    public :: amplitude_type, amplitude_value
 
    !> One *AMPLITUDE: lines between points, straight or smooth, held constant outside.
-   type :: amplitude_type
-      character(:), allocatable :: name      !! name in upper case
+   type, extends(named_type) :: amplitude_type
       logical :: total_time = .false.        !! abscissa is total time, not step time
       real(dp), allocatable :: times(:)      !! (points) ascending [time]
       real(dp), allocatable :: values(:)     !! (points) factors [-]

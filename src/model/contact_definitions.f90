@@ -3,6 +3,7 @@ module contact_definitions
    use conductance_laws, only: conductance_law_type
    use friction_laws, only: friction_law_type
    use kinds, only: dp
+   use named_items, only: named_type
    implicit none
    private
    public :: interaction_type, contact_definition_type, tie_definition_type
@@ -13,15 +14,13 @@ module contact_definitions
    integer, parameter :: pairing_surfaces = 2    !! mortar points
 
    !> One *SURFACE INTERACTION.
-   type :: interaction_type
-      character(:), allocatable :: name       !! name in upper case
+   type, extends(named_type) :: interaction_type
       type(friction_law_type) :: friction     !! Coulomb's law
       type(conductance_law_type) :: law       !! conductance law
    end type interaction_type
 
    !> One *CONTACT PAIR: two surfaces that may meet; or the faces of one *TIE.
-   type :: contact_definition_type
-      character(:), allocatable :: name       !! name as the deck writes it
+   type, extends(named_type) :: contact_definition_type
       integer :: slave = 0                    !! index of the slave surface, the paper's body xi
       integer :: master = 0                   !! index of the master surface, the paper's body eta
       integer :: card = 0                     !! card image of the *CONTACT PAIR or *TIE

@@ -1,6 +1,7 @@
 !> Materials and the sections that give them to elements.
 module materials
    use kinds, only: dp
+   use named_items, only: named_type
    implicit none
    private
    public :: material_type, section_type, constant_type, set_constants
@@ -14,8 +15,7 @@ module materials
 
    !> Linear elasticity, expansion and conductivity along the material's own axes 1 and 2 in the
    !> plane and 3 across it.
-   type :: material_type
-      character(:), allocatable :: name               !! name in upper case
+   type, extends(named_type) :: material_type
       !> Stresses 11, 22, 33, 12 from strains 11, 22, 33 and the shear angle 12 [stress]
       real(dp) :: elasticity(4, 4) = 0.0_dp
       real(dp) :: expansion(3) = 0.0_dp               !! alpha along axes 1, 2, 3 [1/temperature]

@@ -9,7 +9,6 @@ module memory_needs
    use controls, only: default_solver, solver_by_size, solver_mumps
    use element_kinds, only: element_node_count, linear_kind
    use kinds, only: dp
-   use mesh, only: mesh_type
    use model, only: model_type
    use ordering, only: adjacency, permuted_lower, profile_length, profile_order
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type

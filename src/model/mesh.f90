@@ -3,6 +3,7 @@
 !> messages and output.
 module mesh
    use kinds, only: dp
+   use named_items, only: named_type
    implicit none
    private
    public :: mesh_type, set_type, surface_type, extent_of, add_node
@@ -15,16 +16,14 @@ module mesh
    integer, parameter :: face_nodes(3, 4) = reshape([1, 5, 2, 2, 6, 3, 3, 7, 4, 4, 8, 1], [3, 4])
 
    !> A named set of node or element indexes.
-   type :: set_type
-      character(:), allocatable :: name     !! name in upper case
+   type, extends(named_type) :: set_type
       integer, allocatable :: members(:)    !! indexes, each once, ascending
       !> whether all that the deck has in it are lines, which are no elements of a mesh
       logical :: of_lines = .false.
    end type set_type
 
    !> A named set of element faces.
-   type :: surface_type
-      character(:), allocatable :: name     !! name in upper case
+   type, extends(named_type) :: surface_type
       integer, allocatable :: faces(:, :)   !! (2, face count): element index, face 1..4
       integer :: card = 0                   !! card image of the *SURFACE
    end type surface_type

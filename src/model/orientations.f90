@@ -1,13 +1,13 @@
 !> Axes of materials in the plane (*ORIENTATION), and properties turned from them to x and y.
 module orientations
    use kinds, only: dp
+   use named_items, only: named_type
    implicit none
    private
    public :: orientation_type, material_axes, strain_rotation
 
    !> Local axes: axis 1 at a fixed angle to x, or to the radius from a centre.
-   type :: orientation_type
-      character(:), allocatable :: name                  !! name in upper case
+   type, extends(named_type) :: orientation_type
       logical :: cylindrical = .false.                   !! whether axis 1 follows the radius
       real(dp) :: centre(2) = 0.0_dp                     !! of the radius, x and y [length]
       !> Axis 1, unit vector in x and y, or in the directions of radius and circumference

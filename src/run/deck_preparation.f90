@@ -7,7 +7,7 @@ module deck_preparation
    use contact_definitions, only: pairing_surfaces
    use contact_quantities, only: estimated
    use deck_builder, only: build_model
-   use deck_builder_friction, only: frictionless
+   use deck_builder_interactions, only: frictionless
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
    use deck_source, only: place_type

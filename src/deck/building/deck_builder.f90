@@ -1,29 +1,26 @@
-!> Cards -> model. The cards are taken by theme, so that their order matters only where the dialect
+!> Cards -> model. The cards are read by theme, so their order matters only where the dialect
 !> says so.
 module deck_builder
    use bodies, only: find_bodies
    use cards, only: cards_type
    use controls, only: default_solver, method_names, mumps_from, solver_by_size, solver_mumps
    use deck_builder_accuracy, only: build_accuracy
-   use deck_builder_contact, only: build_contacts
+   use deck_builder_contact, only: build_contacts, build_ties
    use deck_builder_couplings, only: apply_couplings, build_couplings
    use deck_builder_equations, only: build_equations
    use deck_builder_histories, only: build_amplitudes, build_temperatures
    use deck_builder_interactions, only: build_interactions
    use deck_builder_lines, only: build_lines, split_line_sets
-   use deck_builder_load_axis, only: build_load_axis
    use deck_builder_materials, only: build_materials
    use deck_builder_mesh, only: build_elements, build_nodes
-   use deck_builder_options, only: build_options
+   use deck_builder_options, only: build_load_axis, build_options
    use deck_builder_order, only: apply_order, find_dropped
-   use deck_builder_orientations, only: build_orientations
    use deck_builder_refinement, only: build_regions, refine_model
-   use deck_builder_sections, only: build_sections
+   use deck_builder_sections, only: build_orientations, build_sections
    use deck_builder_sets, only: build_sets
    use deck_builder_steps, only: build_steps
    use deck_builder_stresses, only: build_initial_stresses
    use deck_builder_surfaces, only: build_surfaces
-   use deck_builder_ties, only: build_ties
    use deck_builder_transforms, only: apply_transforms, build_transforms, turn_equations
    use deck_builder_verify, only: build_verifications, check_heat_quantities, heatless
    use deck_checks, only: check_model
@@ -102,12 +99,13 @@ contains
          call complete_model(cards, context, model, report, error)
          if (allocated(error)) return
       end if
-      call take_notes(context, model)
+      if (.not. allocated(context%notes)) allocate(context%notes(0))
+      call move_alloc(context%notes, model%notes)
       model%warnings = report%warnings()
    end subroutine build_model
 
-   !> Takes nodes and elements, their sets and surfaces. The sets of nodes come last: they may take
-   !> the nodes of the others.
+   !> Builds nodes and elements, their sets and surfaces. The sets of nodes come last: they may
+   !> consist of the nodes of the others.
    subroutine build_mesh(cards, context, mesh, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context
@@ -242,13 +240,5 @@ contains
             ', G='//to_text(fixed_point%g)//', CONSTANT='//to_text(fixed_point%constant))
       end associate
    end subroutine note_defaults
-
-   subroutine take_notes(context, model)
-      type(deck_context_type), intent(inout) :: context
-      type(model_type), intent(inout) :: model
-
-      if (.not. allocated(context%notes)) allocate(context%notes(0))
-      call move_alloc(context%notes, model%notes)
-   end subroutine take_notes
 
 end module deck_builder

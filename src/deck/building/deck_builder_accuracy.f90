@@ -9,6 +9,7 @@ module deck_builder_accuracy
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use model, only: model_type
+   use named_items, only: find_named
    use quantity_types, only: find_quantity, quantity_type
    use spelling, only: known_choices
    use text, only: string_type, to_upper
@@ -153,16 +154,11 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: found
-      type(string_type) :: names(size(model%contacts))
-      integer :: i
 
       found = 0
-      if (.not. has_field(data, 4) .or. size(names) == 0) return
-      do i = 1, size(names)
-         names(i)%value = model%contacts(i)%name
-         if (to_upper(names(i)%value) == to_upper(field_text(data, 4))) found = i
-      end do
-      if (found == 0) call report_unknown('contact pair', field_text(data, 4), names, &
+      if (.not. has_field(data, 4) .or. size(model%contacts) == 0) return
+      found = find_named(model%contacts, field_text(data, 4))
+      if (found == 0) call report_unknown('contact pair', field_text(data, 4), model%contacts, &
          field_place(data, 4), report)
    end subroutine find_interface
 

@@ -6,22 +6,20 @@ module deck_builder_contact_changes
    use contact_changes, only: contact_changes_type, friction_change_type, interference_type, &
       pair_change_type
    use contact_definitions, only: contact_definition_type
-   use deck_builder_contact, only: read_surface
-   use deck_builder_friction, only: build_friction
-   use deck_builder_interactions, only: find_interaction
-   use deck_builder_loads, only: read_amplitude
-   use deck_context, only: deck_context_type, report_unknown
+   use deck_builder_contact, only: find_contact
+   use deck_builder_interactions, only: build_friction
+   use deck_context, only: deck_context_type, need_named, read_surface, take_named
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use model, only: model_type
-   use text, only: string_type, to_text
+   use text, only: to_text
    implicit none
    private
    public :: build_contact_change
 
 contains
 
-   !> Takes one card of a step.
+   !> Reads one card of a step.
    subroutine build_contact_change(cards, k, step, model, context, report)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: k                             !! the keyword card
@@ -71,22 +69,11 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(contact_changes_type), intent(inout) :: changes
       type(friction_change_type) :: change
-      type(string_type) :: names(size(model%interactions))
-      character(:), allocatable :: name
-      integer :: i
 
       call build_friction(cards, cards%keywords(k), context, report, change%friction)
-      call need_parameter(cards%keywords(k - 1), 'INTERACTION', report, name)
-      if (len(name) == 0) return
-      change%interaction = find_interaction(model%interactions, name)
-      if (change%interaction == 0) then
-         do i = 1, size(names)
-            names(i)%value = model%interactions(i)%name
-         end do
-         call report_unknown('surface interaction', name, names, &
-            parameter_place(cards%keywords(k - 1), 'INTERACTION'), report)
-         return
-      end if
+      call need_named(cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
+         model%interactions, report, change%interaction)
+      if (change%interaction == 0) return
       if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
       changes%frictions = [changes%frictions, change]
    end subroutine change_friction
@@ -145,7 +132,7 @@ contains
       if (given%shrinks .and. has_parameter(card, 'AMPLITUDE')) then
          call context%note('*CONTACT INTERFERENCE, SHRINK: AMPLITUDE= is ignored')
       else
-         call read_amplitude(card, 'AMPLITUDE', model, report, given%amplitude)
+         call take_named(card, 'AMPLITUDE', 'amplitude', model%amplitudes, report, given%amplitude)
       end if
       if (.not. allocated(changes%interferences)) allocate (changes%interferences(0))
       do j = card%first_data, card%last_data
@@ -195,21 +182,13 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: contact
-      integer :: i, master, slave
+      integer :: master, slave
 
-      contact = 0
-      slave = 0
-      master = 0
-      call read_surface(data, 1, 'slave surface', model%mesh, report, slave)
-      call read_surface(data, 2, 'master surface', model%mesh, report, master)
+      call read_surface(data, 1, 'slave surface', model%mesh%surfaces, report, slave)
+      call read_surface(data, 2, 'master surface', model%mesh%surfaces, report, master)
       call check_extra(data, most, layout, report)
-      if (slave == 0 .or. master == 0) return
-      do i = 1, size(model%contacts)
-         if (model%contacts(i)%slave == slave .and. model%contacts(i)%master == master) contact = i
-      end do
-      if (contact == 0) call report%missing(field_place(data, 1), &
-         'no *CONTACT PAIR has the slave surface '//model%mesh%surfaces(slave)%name// &
-         ' and the master surface '//model%mesh%surfaces(master)%name, 'surface')
+      call find_contact(slave, master, model%contacts, model%mesh, field_place(data, 1), report, &
+         contact)
    end subroutine read_contact
 
 end module deck_builder_contact_changes

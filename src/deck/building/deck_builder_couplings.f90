@@ -1,21 +1,22 @@
 !> *COUPLING with *KINEMATIC -> faces that follow a reference node.
 module deck_builder_couplings
-   use card_parameters, only: need_parameter, parameter_place, parameter_text
+   use card_parameters, only: need_parameter, parameter_place
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use couplings, only: coupling_equations, coupling_type
-   use deck_context, only: deck_context_type, find_set, report_unknown, set_names
+   use deck_context, only: deck_context_type, need_named
    use deck_report, only: deck_report_type
+   use deck_structure, only: card_count
    use model, only: model_type
    use steps, only: dof_temperature
-   use text, only: read_integer, string_type, to_text
+   use text, only: read_integer, to_text
    implicit none
    private
    public :: build_couplings, apply_couplings
 
 contains
 
-   !> Takes all couplings. Each has a node for its rotation, which the builder of nodes left behind
+   !> Builds all couplings. Each has a node for its rotation, which the builder of nodes left behind
    !> those of the deck.
    subroutine build_couplings(cards, context, model, report)
       type(cards_type), intent(in) :: cards
@@ -25,8 +26,7 @@ contains
       integer :: errors, k, n
 
       errors = report%error_count()
-      n = count([(cards%keywords(k)%name == 'COUPLING', k=1, size(cards%keywords))])
-      allocate (model%couplings(n))
+      allocate (model%couplings(card_count(cards, 'COUPLING')))
       n = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name == 'COUPLING') then
@@ -67,8 +67,6 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(coupling_type), intent(inout) :: coupling
       character(:), allocatable :: name
-      type(string_type), allocatable :: names(:)
-      integer :: i
 
       coupling%card = card%place%image
       coupling%title = '*COUPLING, '//report%source%words_of(card%place)
@@ -76,15 +74,7 @@ contains
       if (len(name) > 0) call find_reference(name, card, context, model, report, coupling%reference)
       if (coupling%reference > 0) model%mesh%coordinates(:, coupling%rotation) = &
          model%mesh%coordinates(:, coupling%reference)
-      call need_parameter(card, 'SURFACE', report, name)
-      if (len(name) == 0) return
-      allocate (names(size(model%mesh%surfaces)))
-      do i = 1, size(names)
-         names(i)%value = model%mesh%surfaces(i)%name
-         if (names(i)%value == name) coupling%surface = i
-      end do
-      if (coupling%surface == 0) call report_unknown('surface', name, names, &
-         parameter_place(card, 'SURFACE'), report)
+      call need_named(card, 'SURFACE', 'surface', model%mesh%surfaces, report, coupling%surface)
    end subroutine build_coupling
 
    !> The reference node: its number, or a set of one node.
@@ -105,10 +95,9 @@ contains
             if (node == 0) call report%missing(place, 'there is no node '//name, 'node', name)
             return
          end if
-         set = find_set(sets, name)
-         if (set == 0) then
-            call report_unknown('node set', name, set_names(sets), place, report)
-         else if (size(sets(set)%members) /= 1) then
+         call need_named(card, 'REF NODE', 'node set', sets, report, set)
+         if (set == 0) return
+         if (size(sets(set)%members) /= 1) then
             call report%error(place, 'a coupling has one reference node; node set '//name// &
                ' has '//to_text(size(sets(set)%members)))
          else

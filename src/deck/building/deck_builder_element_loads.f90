@@ -3,13 +3,14 @@ module deck_builder_element_loads
    use card_values, only: check_extra, need_field
    use cards, only: data_card_type, field_place, field_text
    use deck_builder_mass_loads, only: build_gravity, build_rotation
-   use deck_context, only: deck_context_type, find_set, read_target
+   use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
    use element_kinds, only: element_corner_count
    use kinds, only: dp
    use load_requests, only: request_type
    use mesh, only: mesh_type, surface_type
    use model, only: model_type
+   use named_items, only: find_named
    use spelling, only: known_choices
    use steps, only: load_body_force, load_body_heat, load_face_heat, load_film_coefficient, &
       load_film_sink, load_pressure
@@ -79,7 +80,7 @@ contains
       do named_surface = size(mesh%surfaces), 1, -1
          if (mesh%surfaces(named_surface)%name == name .and. len(name) > 0) exit
       end do
-      set = find_set(mesh%element_sets, name)
+      set = find_named(mesh%element_sets, name)
       if (set == 0) return
       if (.not. mesh%element_sets(set)%of_lines) named_surface = 0
    end function named_surface

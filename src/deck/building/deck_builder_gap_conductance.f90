@@ -1,54 +1,113 @@
-!> *GAP CONDUCTANCE: a table of conductance over the pressure, or over the clearance.
+!> *GAP CONDUCTANCE: a table of conductance over the pressure, or over the clearance, at one mean
+!> temperature of the faces or at several.
 module deck_builder_gap_conductance
    use card_parameters, only: has_parameter, parameter_place
-   use card_values, only: need_field
-   use cards, only: cards_type, field_place, keyword_card_type
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, field_place, has_field, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure
+   use decimal_commas, only: check_unneeded_temperature, decimal_comma, report_decimal_comma
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use gap_tables, only: gap_table_type, note_ends, read_table, read_temperatures
    use kinds, only: dp
+   use piecewise_lines, only: line_value
+   use text, only: to_text
    implicit none
    private
-   public :: build_gap_clearance, build_gap_conductance, join_gap_conductance
+   public :: build_gap_conductance, join_gap_conductance
+   public :: gap_table_type, read_table, note_ends
+
+   !> A table of conductance over the gap or the pressure. That of several temperatures has all
+   !> abscissas at each of them, on the straight lines between the rows of this temperature.
+   type :: gap_table_type
+      real(dp), allocatable :: abscissa(:)       !! (rows) gap or pressure, ascending
+      real(dp), allocatable :: omega(:)          !! (rows) conductance, at the first temperature
+      real(dp), allocatable :: temperature(:)    !! (columns) ascending; unallocated for one
+      real(dp), allocatable :: columns(:, :)     !! (rows, columns) conductance
+   end type gap_table_type
 
 contains
 
-   !> Takes one *GAP CONDUCTANCE, CLEARANCE, which has the meaning that it has in Abaqus: beyond the
-   !> last row no heat crosses.
-   subroutine build_gap_clearance(cards, card, name, context, report, law)
+   !> Reads one *GAP CONDUCTANCE. With CLEARANCE it has the meaning that it has in Abaqus: beyond
+   !> the last row no heat crosses. Without, the law is one of its own: whether it acts is seen when
+   !> all laws of the interaction are known.
+   subroutine build_gap_conductance(cards, card, name, context, report, law)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      type(conductance_law_type), intent(inout) :: law     !! receives the open side
+      type(conductance_law_type), intent(inout) :: law     !! receives the open or the closed side
       type(gap_table_type) :: table
+      character(:), allocatable :: title
       real(dp), allocatable :: temperature(:)
       integer :: errors
+      logical :: is_open
 
       errors = report%error_count()
-      if (has_parameter(card, 'PRESSURE')) call report%error(parameter_place(card, 'CLEARANCE'), &
-         'PRESSURE and CLEARANCE exclude each other: both name the second column')
-      if (law%open_kind /= law_none) then
-         call report%error(card%place, 'a second open law in one surface interaction')
+      is_open = has_parameter(card, 'CLEARANCE')
+      title = '*GAP CONDUCTANCE'
+      if (is_open) then
+         title = '*GAP CONDUCTANCE, CLEARANCE'
+         if (has_parameter(card, 'PRESSURE')) call report%error(parameter_place(card, &
+            'CLEARANCE'), 'PRESSURE and CLEARANCE exclude each other: both name the second column')
+         if (law%open_kind /= law_none) call report%error(card%place, &
+            'a second open law in one surface interaction')
+      else if (law%closed_kind /= law_none) then
+         call report%error(card%place, 'a second *GAP CONDUCTANCE in one surface interaction')
       end if
-      law%open_kind = law_clearance
-      law%open_ends = .true.
       call read_temperatures(cards, card, context, report, temperature)
-      call read_table(cards, card, 'gap', temperature, report, table)
-      if (report%error_count() == errors) call check_zero(card, name, table, report)
+      call read_table(cards, card, trim(merge('gap     ', 'pressure', is_open)), temperature, &
+         report, table)
+      if (report%error_count() == errors) call check_columns(card, name, table%columns, report)
       if (allocated(table%temperature)) then
-         if (report%error_count() == errors) call check_last_gaps(cards, card, temperature, report)
+         if (is_open .and. report%error_count() == errors) call check_last_gaps(cards, card, &
+            temperature, report)
+         call note_ends(title, name, 'mean temperatures', table%temperature, context)
          if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-         call note_ends('*GAP CONDUCTANCE, CLEARANCE', name, 'mean temperatures', &
-            table%temperature, context)
-         call move_alloc(table%temperature, law%by_temperature%open_temperature)
-         call move_alloc(table%columns, law%by_temperature%open_columns)
       end if
-      call move_alloc(table%abscissa, law%table_gap)
-      call move_alloc(table%omega, law%open_omega)
-   end subroutine build_gap_clearance
+      if (is_open) then
+         law%open_kind = law_clearance
+         law%open_ends = .true.
+         if (allocated(table%temperature)) then
+            law%by_temperature%open_temperature = table%temperature
+            law%by_temperature%open_columns = table%columns
+         end if
+         call move_alloc(table%abscissa, law%table_gap)
+         call move_alloc(table%omega, law%open_omega)
+      else
+         law%closed_kind = law_pressure
+         if (allocated(table%temperature)) then
+            law%by_temperature%closed_temperature = table%temperature
+            law%by_temperature%closed_columns = table%columns
+         end if
+         call move_alloc(table%abscissa, law%table_pressure)
+         call move_alloc(table%omega, law%closed_omega)
+         call note_ends(title, name, 'pressures', law%table_pressure, context)
+         call context%note('*GAP CONDUCTANCE: CalculiX switches NLGEOM on; here displacements '// &
+            'and strains are small')
+      end if
+   end subroutine build_gap_conductance
+
+   !> Warns of a table that conducts nothing, and of a conductance that falls along a table of which
+   !> the deck does not say that it is one of pressure: it may be one of Abaqus, where it is one of
+   !> clearance.
+   subroutine check_columns(card, name, columns, report)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name
+      real(dp), intent(in) :: columns(:, :)
+      type(deck_report_type), intent(inout) :: report
+      integer :: n
+
+      if (all(columns <= 0.0_dp)) call report%warning(card%place, 'all conductances of this '// &
+         'table of '//name//' are 0: it conducts no heat; the first column of *GAP CONDUCTANCE '// &
+         'is the conductance')
+      if (has_parameter(card, 'CLEARANCE') .or. has_parameter(card, 'PRESSURE')) return
+      n = size(columns, 1)
+      if (any(columns(2:, :) < columns(:n - 1, :))) call report%warning(card%place, &
+         'the conductance of '//name//' falls along the table, '// &
+         'whose second column is the pressure, as in CalculiX; in Abaqus it is the clearance: '// &
+         'write *GAP CONDUCTANCE, CLEARANCE if that is meant, else PRESSURE')
+   end subroutine check_columns
 
    !> Refuses a table that ends at other gaps at other temperatures: between them it would end at
    !> none.
@@ -77,59 +136,6 @@ contains
       end do
    end subroutine check_last_gaps
 
-   !> Takes one *GAP CONDUCTANCE into a law of its own: whether it holds is seen when all laws of
-   !> the interaction are known.
-   subroutine build_gap_conductance(cards, card, name, context, report, law)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name                     !! name of the surface interaction
-      type(deck_context_type), intent(inout) :: context    !! receives notes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
-      type(conductance_law_type), intent(inout) :: law     !! receives the closed side
-      type(gap_table_type) :: table
-      real(dp), allocatable :: temperature(:)
-      integer :: errors
-
-      errors = report%error_count()
-      if (law%closed_kind /= law_none) then
-         call report%error(card%place, 'a second *GAP CONDUCTANCE in one surface interaction')
-      end if
-      law%closed_kind = law_pressure
-      call read_temperatures(cards, card, context, report, temperature)
-      call read_table(cards, card, 'pressure', temperature, report, table)
-      if (report%error_count() == errors) call check_zero(card, name, table, report)
-      if (allocated(table%temperature)) then
-         call note_ends('*GAP CONDUCTANCE', name, 'mean temperatures', table%temperature, context)
-         if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-         call move_alloc(table%temperature, law%by_temperature%closed_temperature)
-         call move_alloc(table%columns, law%by_temperature%closed_columns)
-      end if
-      call move_alloc(table%abscissa, law%table_pressure)
-      call move_alloc(table%omega, law%closed_omega)
-      if (report%error_count() == errors .and. .not. has_parameter(card, 'PRESSURE')) then
-         call check_rise(card, name, law, report)
-      end if
-      call note_ends('*GAP CONDUCTANCE', name, 'pressures', law%table_pressure, context)
-      call context%note('*GAP CONDUCTANCE: CalculiX switches NLGEOM on; here displacements and '// &
-         'strains are small')
-   end subroutine build_gap_conductance
-
-   !> Warns of a table that conducts nothing.
-   subroutine check_zero(card, name, table, report)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name
-      type(gap_table_type), intent(in) :: table
-      type(deck_report_type), intent(inout) :: report
-
-      if (allocated(table%columns)) then
-         if (any(table%columns > 0.0_dp)) return
-      else if (any(table%omega > 0.0_dp)) then
-         return
-      end if
-      call report%warning(card%place, 'all conductances of this table of '//name//' are 0: it '// &
-         'conducts no heat; the first column of *GAP CONDUCTANCE is the conductance')
-   end subroutine check_zero
-
    !> Gives a law the closed side of *GAP CONDUCTANCE, unless *GAP LAW gives it another: then the
    !> table is for CalculiX, which knows no *GAP LAW.
    subroutine join_gap_conductance(table, name, context, law)
@@ -153,26 +159,141 @@ contains
       law%by_temperature%closed_columns = table%by_temperature%closed_columns
    end subroutine join_gap_conductance
 
-   !> Warns of a conductance that falls along a table of which the deck does not say that it is one
-   !> of pressure: it may be one of Abaqus, where it is one of clearance.
-   subroutine check_rise(card, name, law, report)
+   !> Rows of conductance and what it belongs to. Those of a table with temperatures have one behind
+   !> it and are in groups of one temperature.
+   subroutine read_table(cards, card, noun, temperature, report, table)
+      type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name
-      type(conductance_law_type), intent(in) :: law
-      type(deck_report_type), intent(inout) :: report
-      integer :: n
+      character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
+      real(dp), intent(in) :: temperature(:)               !! (rows) equal for one temperature
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(gap_table_type), intent(out) :: table
+      integer :: i, n
+      logical :: valid(2), valid_before
 
-      n = size(law%closed_omega)
-      if (allocated(law%by_temperature)) then
-         associate (columns => law%by_temperature%closed_columns)
-            if (all(columns(2:, :) >= columns(:n - 1, :))) return
-         end associate
-      else if (all(law%closed_omega(2:) >= law%closed_omega(:n - 1))) then
-         return
+      n = card%last_data - card%first_data + 1
+      allocate (table%abscissa(n), table%omega(n), source=0.0_dp)
+      valid_before = .false.
+      associate (abscissa => table%abscissa, omega => table%omega)
+         do i = 1, n
+            associate (data => cards%data(card%first_data + i - 1))
+               valid = .true.
+               call need_field(data, 1, 'conductance', report, omega(i), valid(1))
+               call need_field(data, 2, noun, report, abscissa(i), valid(2))
+               if (card%name == 'GAP CONDUCTANCE') then
+                  call check_extra(data, 3, 'conductance, '//noun//', temperature', report)
+               else
+                  call check_extra(data, 2, 'conductance, '//noun, report)
+               end if
+               if (valid(1) .and. omega(i) < 0.0_dp) then
+                  call report%error(field_place(data, 1), 'the conductance must not be negative')
+               end if
+               if (i > 1) valid_before = valid_before .and. &
+                  abs(temperature(i) - temperature(max(i - 1, 1))) <= 0.0_dp
+               if (valid(2) .and. abscissa(i) < 0.0_dp) then
+                  call report%error(field_place(data, 2), 'the '//noun//' must not be negative')
+               else if (valid(2) .and. valid_before) then
+                  if (abscissa(i) <= abscissa(i - 1)) then
+                     call report%error(field_place(data, 2), noun//'s must ascend')
+                  end if
+               end if
+               valid_before = valid(2)
+            end associate
+         end do
+      end associate
+      if (any(abs(temperature - temperature(1)) > 0.0_dp)) then
+         call make_columns(temperature, table)
+      else
+         table%columns = reshape(table%omega, [n, 1])
       end if
-      call report%warning(card%place, 'the conductance of '//name//' falls along the table, '// &
-         'whose second column is the pressure, as in CalculiX; in Abaqus it is the clearance: '// &
-         'write *GAP CONDUCTANCE, CLEARANCE if that is meant, else PRESSURE')
-   end subroutine check_rise
+   end subroutine read_table
+
+   !> Temperatures behind the rows of a *GAP CONDUCTANCE: one for all of them means nothing, several
+   !> ascend.
+   subroutine read_temperatures(cards, card, context, report, temperature)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      real(dp), allocatable, intent(out) :: temperature(:) !! (rows) 0 for none
+      integer :: comma, i
+      logical :: valid
+
+      associate (rows => cards%data(card%first_data:card%last_data))
+         allocate (temperature(size(rows)), source=0.0_dp)
+         valid = .true.
+         do i = 1, size(rows)
+            call take_field(rows(i), 3, 'temperature', report, temperature(i), valid)
+         end do
+         if (.not. valid) temperature = 0.0_dp
+         do i = 2, size(rows)
+            if (.not. (has_field(rows(i), 3) .neqv. has_field(rows(i - 1), 3))) cycle
+            if (all(abs(temperature - temperature(1)) <= 0.0_dp)) exit
+            comma = decimal_comma(rows(i))
+            if (comma > 0 .and. size(rows(i)%fields) > size(rows(1)%fields)) then
+               call report_decimal_comma(rows(i), comma, report)
+            else
+               call report%error(field_place(rows(i), 3), 'a temperature in some rows only; '// &
+                  'give one in each row or in none')
+            end if
+            return
+         end do
+         do i = 2, size(rows)
+            if (temperature(i) >= temperature(i - 1)) cycle
+            call report%error(field_place(rows(i), 3), 'temperatures must ascend, and the rows '// &
+               'of each temperature must be consecutive')
+            return
+         end do
+         if (any(temperature > temperature(1)) .or. .not. valid) return
+         call check_unneeded_temperature(rows(1), 3, report)
+         do i = 1, size(rows)
+            if (has_field(rows(i), 3)) call context%note('*GAP CONDUCTANCE: the temperature, '// &
+               'the same in every row, is ignored')
+         end do
+      end associate
+   end subroutine read_temperatures
+
+   !> One column for each temperature.
+   subroutine make_columns(temperature, table)
+      real(dp), intent(in) :: temperature(:)               ! (rows as written) ascending
+      type(gap_table_type), intent(inout) :: table
+      real(dp), allocatable :: grid(:)
+      logical :: here(size(temperature))
+      integer :: i, k
+
+      grid = ascending(table%abscissa)
+      table%temperature = ascending(temperature)
+      allocate (table%columns(size(grid), size(table%temperature)))
+      do k = 1, size(table%temperature)
+         here = abs(temperature - table%temperature(k)) <= 0.0_dp
+         table%columns(:, k) = [(line_value(pack(table%abscissa, here), &
+            pack(table%omega, here), grid(i)), i=1, size(grid))]
+      end do
+      call move_alloc(grid, table%abscissa)
+      table%omega = table%columns(:, 1)
+   end subroutine make_columns
+
+   !> Each of some values once.
+   pure function ascending(values) result(sorted)
+      real(dp), intent(in) :: values(:)
+      real(dp), allocatable :: sorted(:)
+
+      sorted = [minval(values)]
+      do while (any(values > sorted(size(sorted))))
+         sorted = [sorted, minval(values, mask=values > sorted(size(sorted)))]
+      end do
+   end function ascending
+
+   !> Notes that a table holds its end values.
+   subroutine note_ends(what, name, noun, abscissas, context)
+      character(*), intent(in) :: what                     !! the card
+      character(*), intent(in) :: name                     !! name of the surface interaction
+      character(*), intent(in) :: noun                     !! gaps, pressures or temperatures
+      real(dp), intent(in) :: abscissas(:)                 !! (rows) ascending
+      type(deck_context_type), intent(inout) :: context    !! receives the note
+
+      call context%note(what//' of '//name//': the table holds its end values outside the '// &
+         noun//' '//to_text(abscissas(1))//' to '//to_text(abscissas(size(abscissas))))
+   end subroutine note_ends
 
 end module deck_builder_gap_conductance

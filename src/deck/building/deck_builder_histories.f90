@@ -1,63 +1,50 @@
 !> *AMPLITUDE and *INITIAL CONDITIONS: what loads and temperatures start from and follow.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choose, has_parameter, lacks_parameter, need_parameter, &
-      parameter_place, parameter_text, take_parameter
+   use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &
+      parameter_text, take_parameter, take_positive
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use decimal_commas, only: decimal_comma, report_decimal_comma
-   use deck_context, only: deck_context_type, read_target
+   use deck_context, only: deck_context_type, name_last, read_target
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count, report_twice
+   use deck_structure, only: cards_of
    use kinds, only: dp
    use load_requests, only: request_type
    use model, only: model_type
    use text, only: read_real, to_upper
    implicit none
    private
-   public :: build_amplitudes, build_temperatures, find_amplitude
+   public :: build_amplitudes, build_temperatures
 
 contains
 
-   !> Takes all amplitudes.
+   !> Builds all amplitudes.
    subroutine build_amplitudes(cards, model, report)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(inout) :: model             !! receives the amplitudes
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer :: k, n
+      integer, allocatable :: places(:)
+      integer :: n
+      logical :: repeated
 
-      allocate(model%amplitudes(card_count(cards, 'AMPLITUDE')))
-      n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'AMPLITUDE') cycle
-         n = n + 1
-         call build_amplitude(cards, cards%keywords(k), report, model%amplitudes(n))
-         if (find_amplitude(model%amplitudes(:n - 1), model%amplitudes(n)%name) > 0) then
-            call report_twice(cards, k, 'amplitude '//model%amplitudes(n)%name, report)
-            call report%lose('amplitude')
-         end if
+      places = cards_of(cards, 'AMPLITUDE')
+      allocate(model%amplitudes(size(places)))
+      do n = 1, size(places)
+         call name_last(cards, places(n), 'amplitude', model%amplitudes(:n), report, repeated)
+         if (repeated) call report%lose('amplitude')
+         call build_amplitude(cards, cards%keywords(places(n)), report, model%amplitudes(n))
       end do
    end subroutine build_amplitudes
-
-   !> Index of an amplitude by its name; 0 for an unknown one.
-   pure integer function find_amplitude(amplitudes, name)
-      type(amplitude_type), intent(in) :: amplitudes(:)
-      character(*), intent(in) :: name                    !! name in upper case
-
-      do find_amplitude = size(amplitudes), 1, -1
-         if (amplitudes(find_amplitude)%name == name) return
-      end do
-   end function find_amplitude
 
    !> Parameters of the card, then its points.
    subroutine build_amplitude(cards, card, report, amplitude)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
-      type(amplitude_type), intent(out) :: amplitude
+      type(amplitude_type), intent(inout) :: amplitude
       character(:), allocatable :: kind
 
-      call need_parameter(card, 'NAME', report, amplitude%name)
       kind = 'STEP TIME'
       call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', report, kind)
       amplitude%total_time = kind == 'TOTAL TIME'
@@ -110,13 +97,9 @@ contains
       begin = 0.0_dp
       interval = 1.0_dp
       call take_parameter(card, 'BEGIN', report, begin)
-      call take_parameter(card, 'FIXED INTERVAL', report, interval)
-      if (lacks_parameter(card, 'FIXED INTERVAL')) then
-         call report%error(card%place, 'DEFINITION=EQUALLY SPACED needs FIXED INTERVAL=')
-      else if (interval <= 0.0_dp) then
-         call report%error(parameter_place(card, 'FIXED INTERVAL'), &
-            'FIXED INTERVAL= must be positive')
-      end if
+      call take_positive(card, 'FIXED INTERVAL', report, interval)
+      if (lacks_parameter(card, 'FIXED INTERVAL')) call report%error(card%place, &
+         'DEFINITION=EQUALLY SPACED needs FIXED INTERVAL=')
       n = sum([(size(cards%data(j)%fields), j=card%first_data, card%last_data)])
       allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
       n = 0
@@ -182,7 +165,7 @@ contains
       end do
    end function is_history
 
-   !> Takes all initial temperatures.
+   !> Reads all initial temperatures.
    subroutine build_temperatures(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives the requests
@@ -190,12 +173,13 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(request_type) :: request
       character(:), allocatable :: kind
+      integer, allocatable :: places(:)
       integer :: k, j
       logical :: valid
 
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
-            if (card%name /= 'INITIAL CONDITIONS') cycle
+      places = cards_of(cards, 'INITIAL CONDITIONS')
+      do k = 1, size(places)
+         associate (card => cards%keywords(places(k)))
             kind = ''
             if (lacks_parameter(card, 'TYPE')) then
                call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE '// &

@@ -1,19 +1,19 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
-   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, parameter_text
-   use card_values, only: check_extra, take_field
-   use cards, only: cards_type, field_place, keyword_card_type
+   use card_parameters, only: choose, has_parameter, parameter_place, parameter_text, take_parameter
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
-   use deck_builder_friction, only: build_friction
-   use deck_builder_gap_conductance, only: build_gap_clearance, build_gap_conductance, &
-      join_gap_conductance
+   use deck_builder_gap_conductance, only: build_gap_conductance, join_gap_conductance
    use deck_builder_gap_laws, only: build_gap_law
-   use deck_context, only: deck_context_type
+   use decimal_commas, only: check_unneeded
+   use deck_context, only: deck_context_type, name_last
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: card_count, report_twice
+   use deck_structure, only: card_count
+   use friction_laws, only: friction_law_type, rough_coefficient
    use kinds, only: dp
    use model, only: model_type, physical_constants_type
    use temperature_laws, only: face_temperatures_type, largest_jump, law_at, &
@@ -21,13 +21,17 @@ module deck_builder_interactions
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: build_interactions, find_interaction
+   public :: build_interactions, build_friction
+
+   !> Group of warnings that explain bodies which friction should hold.
+   character(*), parameter, public :: frictionless = 'friction'
 
    real(dp), parameter :: continuous = 1.0e-6_dp   !! a smaller jump is none, relative
+   real(dp), parameter :: largest_usual = 5.0_dp   !! coefficient, of rubber and of rough joints
 
 contains
 
-   !> Takes all surface interactions; a law belongs to the last *SURFACE INTERACTION before it.
+   !> Builds all surface interactions; a law belongs to the last *SURFACE INTERACTION before it.
    subroutine build_interactions(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives notes
@@ -35,6 +39,7 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
       type(place_type) :: law_place
       integer :: k, n, errors
+      logical :: repeated
 
       allocate(model%interactions(card_count(cards, 'SURFACE INTERACTION')))
       n = 0
@@ -45,15 +50,11 @@ contains
             case ('SURFACE INTERACTION')
                errors = report%error_count()
                n = n + 1
-               call need_parameter(card, 'NAME', report, model%interactions(n)%name)
-               if (find_interaction(model%interactions(:n - 1), &
-                  model%interactions(n)%name) > 0) then
-                  call report_twice(cards, k, 'surface interaction '// &
-                     model%interactions(n)%name, report)
-                  call report%lose('surface interaction')
-               end if
+               call name_last(cards, k, 'surface interaction', model%interactions(:n), report, &
+                  repeated)
+               if (repeated) call report%lose('surface interaction')
                law_place = card%place
-               call pass_thickness(cards, card, context, report)
+               call ignore_thickness(cards, card, context, report)
                call build_laws(cards, k, model%constants, context, report, &
                   model%interactions(n), law_place)
                if (report%error_count() > errors .or. card%flawed) cycle
@@ -70,8 +71,8 @@ contains
       end do
    end subroutine build_interactions
 
-   !> Thickness of the contact out of the plane, which Abaqus takes for surfaces of nodes alone.
-   subroutine pass_thickness(cards, card, context, report)
+   !> Thickness of the contact out of the plane, which Abaqus needs for surfaces of nodes alone.
+   subroutine ignore_thickness(cards, card, context, report)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
@@ -88,19 +89,9 @@ contains
          'the thickness must be positive')
       call context%note('*SURFACE INTERACTION: the thickness is ignored: that of '// &
          '*SOLID SECTION is taken')
-   end subroutine pass_thickness
+   end subroutine ignore_thickness
 
-   !> Index of a surface interaction by its name; 0 for an unknown one.
-   pure integer function find_interaction(interactions, name)
-      type(interaction_type), intent(in) :: interactions(:)
-      character(*), intent(in) :: name                        !! name in upper case
-
-      do find_interaction = size(interactions), 1, -1
-         if (interactions(find_interaction)%name == name) return
-      end do
-   end function find_interaction
-
-   !> Takes the laws behind one *SURFACE INTERACTION.
+   !> Reads the laws behind one *SURFACE INTERACTION.
    subroutine build_laws(cards, place, constants, context, report, interaction, law_place)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: place
@@ -133,7 +124,7 @@ contains
                   interaction%law)
             case ('GAP CONDUCTANCE')
                if (has_parameter(card, 'CLEARANCE')) then
-                  call build_gap_clearance(cards, card, interaction%name, context, report, &
+                  call build_gap_conductance(cards, card, interaction%name, context, report, &
                      interaction%law)
                else
                   call build_gap_conductance(cards, card, interaction%name, context, report, table)
@@ -146,8 +137,8 @@ contains
       call join_gap_conductance(table, interaction%name, context, interaction%law)
    end subroutine build_laws
 
-   !> What tunes a penalty means nothing here; laws of pressure and overclosure that are no penalty
-   !> are refused.
+   !> Ignores parameters of a penalty; laws of pressure and overclosure that are no penalty are
+   !> refused.
    subroutine check_behavior(card, context, report)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
@@ -158,17 +149,68 @@ contains
       select case (kind)
       case ('EXPONENTIAL', 'TABULAR')
          call report%error(parameter_place(card, 'PRESSURE-OVERCLOSURE'), &
-            'PRESSURE-OVERCLOSURE='//kind// &
-            ' is refused: closed faces do not overlap')
+            'PRESSURE-OVERCLOSURE='//kind//' is refused: closed faces do not overlap')
       case ('TIED')
          call report%error(parameter_place(card, 'PRESSURE-OVERCLOSURE'), &
-            'PRESSURE-OVERCLOSURE='//kind// &
-            ' is refused: tied faces do not open; take *TIE')
+            'PRESSURE-OVERCLOSURE='//kind//' is refused: tied faces do not open; take *TIE')
       case default
          call choose(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD', report, kind)
          call context%note('*SURFACE BEHAVIOR is ignored: contact is exact')
       end select
    end subroutine check_behavior
+
+   !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
+   subroutine build_friction(cards, card, context, report, friction)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(friction_law_type), intent(out) :: friction
+
+      call take_parameter(card, 'TAUMAX', report, friction%largest_shear)
+      if (friction%largest_shear <= 0.0_dp) call report%error(parameter_place(card, 'TAUMAX'), &
+         'TAUMAX= must be positive; without friction leave out the card')
+      if (has_parameter(card, 'ROUGH')) then
+         friction%coefficient = rough_coefficient
+         if (has_parameter(card, 'TAUMAX')) call report%error(parameter_place(card, 'ROUGH'), &
+            'TAUMAX= and ROUGH exclude each other: rough faces do not slip')
+         if (card%last_data >= card%first_data) call report%error( &
+            field_place(cards%data(card%first_data), 1), '*FRICTION, ROUGH has no data')
+      else if (card%last_data >= card%first_data) then
+         call read_coefficient(cards%data(card%first_data), context, report, &
+            friction%coefficient)
+      end if
+   end subroutine build_friction
+
+   !> The coefficient, which is not so large that a pressure is lost in the last places of mu times
+   !> it; a stick slope behind it is not needed.
+   subroutine read_coefficient(data, context, report, coefficient)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: coefficient
+      real(dp) :: slope
+      logical :: valid
+
+      valid = .true.
+      call need_field(data, 1, 'coefficient of friction', report, coefficient, valid)
+      call take_field(data, 2, 'stick slope', report, slope, valid)
+      call check_extra(data, 2, 'coefficient of friction, stick slope', report)
+      if (coefficient < 0.0_dp) then
+         call report%error(field_place(data, 1), 'the coefficient of friction must not be negative')
+      else if (coefficient > rough_coefficient) then
+         call report%error(field_place(data, 1), 'the coefficient of friction must not exceed '// &
+            to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
+      else if (coefficient > largest_usual .and. coefficient < rough_coefficient) then
+         call report%warning(field_place(data, 1), 'a coefficient of friction of '// &
+            to_text(coefficient)//' is unusual: is it in per cent? Use ROUGH for faces that '// &
+            'never slip while closed')
+      end if
+      if (size(data%fields) > 1) then
+         call context%note('*FRICTION: the stick slope is ignored')
+         call check_unneeded(data, 2, 'a stick slope', report, frictionless)
+      end if
+   end subroutine read_coefficient
 
    !> Warns of a law that jumps, where the gap closes or where its table of clearances ends.
    subroutine check_law(card, law_place, interaction, report)
@@ -179,7 +221,7 @@ contains
       type(conductance_law_type) :: law
       type(face_temperatures_type) :: faces
       real(dp) :: open, closed
-      character(:), allocatable :: there
+      character(:), allocatable :: advice, there
 
       if (table_jump(interaction%law) > 0.0_dp) call report%warning(card%place, &
          'the conductance of '//interaction%name//' falls from '// &
@@ -199,21 +241,11 @@ contains
       closed = conductance(law, .true., 0.0_dp, 0.0_dp)
       open = conductance(law, .false., 0.0_dp, 0.0_dp)
       if (abs(law_jump(law)) <= continuous*max(open, closed)) return
+      advice = '; at gap 0 and pressure 0 both laws should give the same'
+      if (law%open_kind == law_none) advice = ', for there is no open law'
       call report%warning(law_place, 'the conductance of '//interaction%name//' jumps by '// &
          to_text(law_jump(law))//' where the gap closes without pressure'//there//': from '// &
-         to_text(open)//' open to '//to_text(closed)//' closed'//origin(law))
+         to_text(open)//' open to '//to_text(closed)//' closed'//advice)
    end subroutine check_law
-
-   !> Tells which law is missing, or that the two should meet.
-   pure function origin(law) result(words)
-      type(conductance_law_type), intent(in) :: law
-      character(:), allocatable :: words
-
-      if (law%open_kind == law_none) then
-         words = ', for there is no open law'
-      else
-         words = '; at gap 0 and pressure 0 both laws should give the same'
-      end if
-   end function origin
 
 end module deck_builder_interactions

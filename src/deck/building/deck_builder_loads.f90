@@ -6,9 +6,8 @@ module deck_builder_loads
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use deck_builder_boundaries, only: build_boundary, dof_rotation
    use deck_builder_element_loads, only: build_element_load
-   use deck_builder_histories, only: find_amplitude
    use deck_builder_surface_loads, only: build_surface_load
-   use deck_context, only: deck_context_type, read_target, report_unknown
+   use deck_context, only: deck_context_type, read_target, take_named
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use load_requests, only: request_type
@@ -16,10 +15,10 @@ module deck_builder_loads
    use steps, only: dof_temperature, load_body_force, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
       load_pressure, load_temperature, load_traction, step_type
-   use text, only: string_type, to_text, to_upper
+   use text, only: to_text, to_upper
    implicit none
    private
-   public :: build_load_card, read_amplitude
+   public :: build_load_card
 
 contains
 
@@ -42,8 +41,8 @@ contains
       kind = 'DISPLACEMENT'
       call choose(card, 'TYPE', 'DISPLACEMENT', report, kind)
       call read_operation(card, step, model, context, report)
-      call read_amplitude(card, 'AMPLITUDE', model, report, request%amplitude)
-      call read_amplitude(card, 'FILM AMPLITUDE', model, report, film_amplitude)
+      call take_named(card, 'AMPLITUDE', 'amplitude', model%amplitudes, report, request%amplitude)
+      call take_named(card, 'FILM AMPLITUDE', 'amplitude', model%amplitudes, report, film_amplitude)
       if (film_amplitude > 0) call check_film(card, model%amplitudes(film_amplitude), report)
       if (any(card%name == ['FILM ', 'SFILM'])) call note_film(card, &
          model%steps(step)%ramped, context)
@@ -125,28 +124,6 @@ contains
          end select
       end associate
    end subroutine end_loads
-
-   !> Index of the amplitude that a parameter names.
-   subroutine read_amplitude(card, parameter, model, report, amplitude)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: parameter              !! AMPLITUDE or FILM AMPLITUDE
-      type(model_type), intent(in) :: model              !! amplitudes
-      type(deck_report_type), intent(inout) :: report    !! receives an error
-      integer, intent(inout) :: amplitude                !! as it was without the parameter
-      type(string_type), allocatable :: names(:)
-      character(:), allocatable :: name
-      integer :: i
-
-      if (.not. has_parameter(card, parameter)) return
-      name = to_upper(parameter_text(card, parameter))
-      amplitude = find_amplitude(model%amplitudes, name)
-      if (amplitude > 0) return
-      allocate(names(size(model%amplitudes)))
-      do i = 1, size(names)
-         names(i)%value = model%amplitudes(i)%name
-      end do
-      call report_unknown('amplitude', name, names, parameter_place(card, parameter), report)
-   end subroutine read_amplitude
 
    !> A film coefficient is never negative, at whatever time.
    subroutine check_film(card, amplitude, report)

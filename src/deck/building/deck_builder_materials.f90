@@ -1,29 +1,46 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY.
 module deck_builder_materials
-   use card_parameters, only: need_parameter
-   use cards, only: cards_type, keyword_card_type
-   use decimal_commas, only: check_unneeded
-   use deck_builder_elasticity, only: build_elasticity
-   use deck_context, only: deck_context_type
+   use card_parameters, only: choose
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
+   use decimal_commas, only: check_unneeded, check_unneeded_temperature
+   use deck_context, only: deck_context_type, name_last
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count, report_twice
+   use deck_structure, only: card_count
+   use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
+      is_positive_definite, isotropic_elasticity, orthotropic_elasticity
    use kinds, only: dp
    use materials, only: material_type, set_constants
    use model, only: model_type
-   use property_constants, only: choose_symmetry, read_constants, refuse_not_positive
    implicit none
    private
-   public :: build_materials, find_material
+   public :: build_materials
+
+   character(*), parameter :: isotropic_names(2) = [character(15) :: 'Young''s modulus', &
+      'Poisson''s ratio']
+   character(*), parameter :: engineering_names(9) = [character(4) :: 'E1', 'E2', 'E3', 'nu12', &
+      'nu13', 'nu23', 'G12', 'G13', 'G23']
+   character(*), parameter :: orthotropic_names(9) = [character(5) :: 'D1111', 'D1122', 'D2222', &
+      'D1133', 'D2233', 'D3333', 'D1212', 'D1313', 'D2323']
+   character(*), parameter :: anisotropic_names(21) = [character(5) :: 'D1111', 'D1122', &
+      'D2222', 'D1133', 'D2233', 'D3333', 'D1112', 'D2212', 'D3312', 'D1212', 'D1113', 'D2213', &
+      'D3313', 'D1213', 'D1313', 'D1123', 'D2223', 'D3323', 'D1223', 'D1323', 'D2323']
+
+   character(*), parameter :: varies = 'properties that vary with temperature are refused: '// &
+      'bodies are linear, and reduced once to their contact unknowns'
+
+   integer, parameter :: per_card = 8   !! constants of a property on a card
 
 contains
 
-   !> Takes all materials; a property belongs to the last *MATERIAL before it.
+   !> Builds all materials; a property belongs to the last *MATERIAL before it.
    subroutine build_materials(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives places and notes
       type(model_type), intent(inout) :: model             !! receives the materials
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k, n
+      logical :: repeated
 
       n = card_count(cards, 'MATERIAL')
       allocate(model%materials(n), context%material_place(n))
@@ -34,14 +51,12 @@ contains
             case ('MATERIAL')
                n = n + 1
                context%material_place(n) = card%place
-               call need_parameter(card, 'NAME', report, model%materials(n)%name)
-               if (find_material(model%materials(:n - 1), model%materials(n)%name) > 0) then
-                  call report_twice(cards, k, 'material '//model%materials(n)%name, report)
-                  call report%lose('material')   ! another name may have been meant
-                  call report%lose('*ELASTIC')   ! the other one may have these
-                  call report%lose('*CONDUCTIVITY')
-                  call report%lose('*DENSITY')
-               end if
+               call name_last(cards, k, 'material', model%materials(:n), report, repeated)
+               if (.not. repeated) cycle
+               call report%lose('material')   ! another name may have been meant
+               call report%lose('*ELASTIC')   ! the other one may have these
+               call report%lose('*CONDUCTIVITY')
+               call report%lose('*DENSITY')
             case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY')
                if (n == 0) then
                   if (len(card%meant) == 0) call report%missing(card%place, '*'//card%name// &
@@ -56,60 +71,109 @@ contains
       end do
    end subroutine build_materials
 
-   !> Index of a material by its name; 0 for an unknown one.
-   pure integer function find_material(materials, name)
-      type(material_type), intent(in) :: materials(:)
-      character(*), intent(in) :: name                  !! name in upper case
-
-      do find_material = size(materials), 1, -1
-         if (materials(find_material)%name == name) return
-      end do
-   end function find_material
-
    subroutine build_property(cards, card, context, report, material)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(material_type), intent(inout) :: material
+      real(dp), allocatable :: constants(:)
 
       select case (card%name)
       case ('ELASTIC')
+         material%has_elasticity = .true.
          call build_elasticity(cards, card, context, report, material)
       case ('EXPANSION')
-         call build_expansion(cards, card, context, report, material)
+         material%has_expansion = .true.
+         if (is_isotropic(card, report)) then
+            call read_constants(cards, card, ['coefficient of expansion'], context, report, &
+               material, constants)
+            if (allocated(constants)) material%expansion = constants(1)
+         else
+            call read_constants(cards, card, ['alpha11', 'alpha22', 'alpha33'], context, report, &
+               material, constants)
+            if (allocated(constants)) material%expansion = constants
+         end if
       case ('CONDUCTIVITY')
+         material%has_conductivity = .true.
          call build_conductivity(cards, card, context, report, material)
-      case ('DENSITY')
-         call build_density(cards, card, context, report, material)
       case default
-         return
+         material%has_density = .true.
+         call read_constants(cards, card, ['density'], context, report, material, constants)
+         if (.not. allocated(constants)) return
+         call refuse_not_positive(cards, card, ['density'], constants, [1], report)
+         material%density = constants(1)
       end select
    end subroutine build_property
 
-   subroutine build_expansion(cards, card, context, report, material)
+   !> TYPE= of expansion and conductivity. CalculiX reads the first letters only, so longer words
+   !> are in decks for it.
+   logical function is_isotropic(card, report)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: symmetry
+
+      symmetry = 'ISO'
+      call choose(card, 'TYPE', 'ISO/ORTHO/ISOTROPIC/ORTHOTROPIC', report, symmetry)
+      is_isotropic = symmetry(:3) == 'ISO'
+   end function is_isotropic
+
+   subroutine build_elasticity(cards, card, context, report, material)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(material_type), intent(inout) :: material
-      character(*), parameter :: iso_name(1) = ['coefficient of expansion']
-      character(*), parameter :: names(3) = ['alpha11', 'alpha22', 'alpha33']
+      integer, parameter :: moduli(6) = [1, 2, 3, 7, 8, 9]   ! of the engineering constants
       character(:), allocatable :: kind
-      logical :: valid
+      character(15), allocatable :: names(:)
+      real(dp), allocatable :: constants(:)
+      real(dp) :: d(6, 6)
 
       kind = 'ISO'
-      call choose_symmetry(card, 'ISO/ORTHO', report, kind)
-      material%has_expansion = .true.
-      if (kind == 'ORTHO') then
-         call read_constants(cards, card, names, context, report, material%expansion, valid)
-         call set_constants(material, card%name, names, material%expansion)
-      else
-         call read_constants(cards, card, iso_name, context, report, material%expansion(:1), valid)
-         call set_constants(material, card%name, iso_name, material%expansion(:1))
-         material%expansion = material%expansion(1)
+      call choose(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/'// &
+         'ANISOTROPIC', report, kind)
+      select case (kind)
+      case ('ENGINEERING CONSTANTS')
+         names = engineering_names
+      case ('ORTHO', 'ORTHOTROPIC')
+         names = orthotropic_names
+      case ('ANISO', 'ANISOTROPIC')
+         names = anisotropic_names
+      case default
+         names = isotropic_names
+      end select
+      call read_constants(cards, card, names, context, report, material, constants)
+      if (.not. allocated(constants)) return
+      select case (kind)
+      case ('ENGINEERING CONSTANTS')
+         call refuse_not_positive(cards, card, names, constants, moduli, report)
+         if (.not. all(constants(moduli) > 0.0_dp)) return
+         d = engineering_elasticity(constants)
+      case ('ORTHO', 'ORTHOTROPIC')
+         d = orthotropic_elasticity(constants)
+      case ('ANISO', 'ANISOTROPIC')
+         d = anisotropic_elasticity(constants)
+      case default
+         call refuse_not_positive(cards, card, names, constants, [1], report)
+         if (constants(2) > -1.0_dp .and. constants(2) < 0.5_dp) then
+            material%elasticity = isotropic_elasticity(constants(1), constants(2))
+         else
+            call report%error(field_place(cards%data(card%first_data), 2), &
+               'Poisson''s ratio must lie between -1 and 0.5')
+         end if
+         return
+      end select
+      if (couples_out_of_plane(d)) then
+         call report%error(field_place(cards%data(card%first_data), 1), &
+            'couplings of the shear 13 or 23 with strains in the plane are refused: '// &
+            'the plane would warp')
+      else if (.not. is_positive_definite(d)) then
+         call report%error(field_place(cards%data(card%first_data), 1), &
+            'these constants are not positive definite: some strain would release energy')
       end if
-   end subroutine build_expansion
+      material%elasticity = d(:4, :4)
+   end subroutine build_elasticity
 
    !> K11 and K22; K33, which CalculiX wants, is read and means nothing in the plane.
    subroutine build_conductivity(cards, card, context, report, material)
@@ -118,51 +182,114 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(material_type), intent(inout) :: material
-      character(*), parameter :: iso_name(1) = ['conductivity']
       character(*), parameter :: names(3) = ['K11', 'K22', 'K33']
-      character(:), allocatable :: kind
-      real(dp) :: constants(3)
+      real(dp), allocatable :: constants(:)
       integer :: n
-      logical :: valid
 
-      kind = 'ISO'
-      call choose_symmetry(card, 'ISO/ORTHO', report, kind)
-      material%has_conductivity = .true.
-      if (kind == 'ORTHO') then
-         n = min(max(size(cards%data(card%first_data)%fields), 2), 3)
-         call read_constants(cards, card, names(:n), context, report, constants(:n), valid)
-         if (n == 3) call context%note('*CONDUCTIVITY: K33 is ignored')
-         if (valid) call refuse_not_positive(cards, card, names, constants, [1, 2], report)
-         if (valid .and. n == 3) then
-            ! Across the plane most materials conduct as along one of its axes.
-            if (all(abs(constants(:2) - constants(3)) > 0.0_dp)) call check_unneeded( &
-               cards%data(card%first_data), 3, 'K33', report)
-         end if
-         material%conductivity = constants(:2)
-         call set_constants(material, card%name, names(:2), constants(:2))
-      else
-         call read_constants(cards, card, iso_name, context, report, constants(:1), valid)
-         if (valid) call refuse_not_positive(cards, card, iso_name, constants, [1], report)
+      if (is_isotropic(card, report)) then
+         call read_constants(cards, card, ['conductivity'], context, report, material, constants)
+         if (.not. allocated(constants)) return
+         call refuse_not_positive(cards, card, ['conductivity'], constants, [1], report)
          material%conductivity = constants(1)
-         call set_constants(material, card%name, iso_name, constants(:1))
+         return
       end if
+      n = min(max(size(cards%data(card%first_data)%fields), 2), 3)
+      call read_constants(cards, card, names(:n), context, report, material, constants)
+      if (n == 3) call context%note('*CONDUCTIVITY: K33 is ignored')
+      if (.not. allocated(constants)) return
+      call refuse_not_positive(cards, card, names, constants, [1, 2], report)
+      if (n == 3) then
+         ! Across the plane most materials conduct as along one of its axes.
+         if (all(abs(constants(:2) - constants(3)) > 0.0_dp)) call check_unneeded( &
+            cards%data(card%first_data), 3, 'K33', report)
+      end if
+      material%conductivity = constants(:2)
+      call set_constants(material, card%name, names(:2), constants(:2))
    end subroutine build_conductivity
 
-   subroutine build_density(cards, card, context, report, material)
+   !> Reads the constants of a property, eight on a card, and the temperature behind the last.
+   subroutine read_constants(cards, card, names, context, report, material, constants)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: names(:)                  ! (constants)
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
-      type(material_type), intent(inout) :: material
-      character(*), parameter :: names(1) = ['density']
-      real(dp) :: constants(1)
+      type(material_type), intent(inout) :: material        ! keeps them as the deck gives them
+      real(dp), allocatable, intent(out) :: constants(:)    ! unallocated after an error
+      real(dp) :: values(size(names))
+      integer :: i, last, place
       logical :: valid
 
-      call read_constants(cards, card, names, context, report, constants, valid)
-      if (valid) call refuse_not_positive(cards, card, names, constants, [1], report)
-      material%density = constants(1)
-      call set_constants(material, card%name, names, constants)
-      material%has_density = .true.
-   end subroutine build_density
+      valid = .true.
+      values = 0.0_dp
+      last = card%first_data + (size(values) - 1)/per_card
+      do i = 1, size(values)
+         place = card%first_data + (i - 1)/per_card
+         if (place > card%last_data) then
+            call report%error(cards%data(card%last_data)%end, 'a card is missing after '// &
+               'this one: '//trim(names(i)))
+            return
+         end if
+         call need_field(cards%data(place), mod(i - 1, per_card) + 1, trim(names(i)), report, &
+            values(i), valid)
+         if (.not. has_field(cards%data(place), mod(i - 1, per_card) + 1)) return
+         if (place == last) cycle
+         if (mod(i, per_card) == 0) call check_extra(cards%data(place), per_card, &
+            'eight constants', report)
+      end do
+      call read_temperature(cards%data(last), mod(size(values) - 1, per_card) + 2, &
+         joined(names(per_card*(last - card%first_data) + 1:)), context, report)
+      if (card%last_data > last) call report%error(field_place(cards%data(last + 1), 1), varies)
+      if (.not. valid) return
+      constants = values
+      call set_constants(material, card%name, names, values)
+   end subroutine read_constants
+
+   pure function joined(names) result(list)
+      character(*), intent(in) :: names(:)
+      character(:), allocatable :: list
+      integer :: i
+
+      list = trim(names(1))
+      do i = 2, size(names)
+         list = list//', '//trim(names(i))
+      end do
+   end function joined
+
+   !> Reports constants that must be positive and are not.
+   subroutine refuse_not_positive(cards, card, names, constants, which, report)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card         !! the property
+      character(*), intent(in) :: names(:)                !! (constants) what they are called
+      real(dp), intent(in) :: constants(:)                !! (constants) as read
+      integer, intent(in) :: which(:)                     !! indexes of those that must be positive
+      type(deck_report_type), intent(inout) :: report     !! receives errors
+      integer :: i
+
+      do i = 1, size(which)
+         if (constants(which(i)) > 0.0_dp) cycle
+         call report%error(field_place(cards%data(card%first_data + (which(i) - 1)/per_card), &
+            mod(which(i) - 1, per_card) + 1), trim(names(which(i)))//' must be positive')
+      end do
+   end subroutine refuse_not_positive
+
+   !> Reads the temperature behind a property: one row of it means nothing.
+   subroutine read_temperature(data, position, layout, context, report)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position
+      character(*), intent(in) :: layout
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: temperature
+      logical :: valid
+
+      valid = .true.
+      call take_field(data, position, 'temperature', report, temperature, valid)
+      call check_extra(data, position, layout//', temperature', report)
+      if (has_field(data, position)) then
+         call context%note('the temperature field of a single property row is ignored')
+         if (valid) call check_unneeded_temperature(data, position, report)
+      end if
+   end subroutine read_temperature
 
 end module deck_builder_materials

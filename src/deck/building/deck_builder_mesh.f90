@@ -8,6 +8,7 @@ module deck_builder_mesh
    use deck_context, only: deck_context_type, plane_by_element
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
+   use deck_structure, only: data_card_count
    use element_kinds, only: element_corner_count, element_node_count, plane_strain, quad8
    use element_types, only: take_element_type
    use kinds, only: dp
@@ -16,25 +17,11 @@ module deck_builder_mesh
    use text, only: to_text
    implicit none
    private
-   public :: build_nodes, build_elements, data_card_count
+   public :: build_nodes, build_elements
 
    real(dp), parameter :: height_rounding = 1.0e-9_dp   !! of z, by the extent of the model
 
 contains
-
-   !> Number of data cards of all keyword cards of a name.
-   pure integer function data_card_count(cards, name)
-      type(cards_type), intent(in) :: cards
-      character(*), intent(in) :: name        !! name as in the table of keywords
-      integer :: k
-
-      data_card_count = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= name) cycle
-         data_card_count = data_card_count + cards%keywords(k)%last_data - &
-            cards%keywords(k)%first_data + 1
-      end do
-   end function data_card_count
 
    !> Takes the nodes, in the order of the deck.
    subroutine build_nodes(cards, context, mesh, report)

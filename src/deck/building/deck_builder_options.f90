@@ -1,28 +1,32 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
-   use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &
-      parameter_text, take_parameter
+   use card_parameters, only: choose, has_parameter, lacks_parameter, need_choice, &
+      parameter_place, parameter_text, take_parameter, take_positive
    use cards, only: cards_type, keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline
-   use deck_context, only: deck_context_type
+   use deck_context, only: deck_context_type, report_unknown
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
    use model, only: model_type, physical_constants_type
-   use text, only: to_text, to_upper
+   use named_items, only: find_named
+   use steps, only: dof_temperature
+   use text, only: read_integer, to_text, to_upper
    implicit none
    private
-   public :: build_options, take_levels
+   public :: build_options, build_load_axis, take_levels
 
    integer, parameter :: most_levels = 11   !! *REFINE: one element more often divided is too many
 
 contains
 
-   !> Takes *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
+   !> Reads *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
    subroutine build_options(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives plane, order, levels, axis
       type(model_type), intent(inout) :: model             !! receives heading, units, solver
       type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: solver
       integer :: k
 
       model%heading = ''
@@ -42,7 +46,9 @@ contains
             case ('PHYSICAL CONSTANTS')
                call build_constants(card, report, model%constants)
             case ('SOLVER')
-               call build_solver(card, model, report)
+               call need_choice(card, 'TYPE', 'SKYLINE/MUMPS', report, solver)
+               if (solver == 'SKYLINE') model%solver = solver_skyline
+               if (solver == 'MUMPS') model%solver = solver_mumps
             case ('REFINE')
                call build_levels(card, context, report)
             case ('CONTROLS', 'SPECIFIC HEAT', 'RESTART')
@@ -61,11 +67,8 @@ contains
       type(physical_constants_type), intent(inout) :: constants
 
       call take_parameter(card, 'ABSOLUTE ZERO', report, constants%absolute_zero)
-      call take_parameter(card, 'STEFAN BOLTZMANN', report, constants%stefan_boltzmann)
-      if (has_parameter(card, 'STEFAN BOLTZMANN') .and. constants%stefan_boltzmann <= 0) then
-         call report%error(parameter_place(card, 'STEFAN BOLTZMANN'), &
-            'STEFAN BOLTZMANN= must be positive')
-      end if
+      if (has_parameter(card, 'STEFAN BOLTZMANN')) call take_positive(card, 'STEFAN BOLTZMANN', &
+         report, constants%stefan_boltzmann)
       constants%has_radiation = has_parameter(card, 'ABSOLUTE ZERO') .and. &
          has_parameter(card, 'STEFAN BOLTZMANN')
    end subroutine build_constants
@@ -134,19 +137,6 @@ contains
       model%units%temperature = trim(words(4))
    end subroutine build_units
 
-   subroutine build_solver(card, model, report)
-      type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: kind
-
-      kind = ''
-      if (lacks_parameter(card, 'TYPE')) call report%error(card%place, '*SOLVER needs TYPE=')
-      call choose(card, 'TYPE', 'SKYLINE/MUMPS', report, kind)
-      if (kind == 'SKYLINE') model%solver = solver_skyline
-      if (kind == 'MUMPS') model%solver = solver_mumps
-   end subroutine build_solver
-
    subroutine build_levels(card, context, report)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
@@ -163,7 +153,7 @@ contains
       call take_levels(card, report, context%levels)
    end subroutine build_levels
 
-   !> Takes LEVELS= of *REFINE; 0 after an error.
+   !> Reads LEVELS= of *REFINE; 0 after an error.
    subroutine take_levels(card, report, levels)
       type(keyword_card_type), intent(in) :: card          !! the *REFINE
       type(deck_report_type), intent(inout) :: report      !! receives errors
@@ -177,5 +167,94 @@ contains
          to_text(most_levels))
       levels = 0
    end subroutine take_levels
+
+   !> Reads LOAD=nset,dof of *OPTIONS: the prescribed value that the load axis follows.
+   subroutine build_load_axis(last, context, model, report)
+      type(place_type), intent(in) :: last                 !! where the deck ends
+      type(deck_context_type), intent(inout) :: context    !! set, its place, and what is prescribed
+      type(model_type), intent(inout) :: model   !! receives node, degree of freedom and label
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: name
+      integer, allocatable :: members(:)
+      integer :: comma, set, dof, i
+      logical :: valid
+
+      model%load_label = 'time'
+      if (.not. allocated(context%load_set)) then
+         call context%note('*OPTIONS without LOAD=: the load axis is the time')
+         return
+      end if
+      comma = index(context%load_set, ',')
+      if (comma == 0) comma = len(context%load_set) + 1
+      name = context%load_set(:comma - 1)
+      call read_integer(context%load_set(min(comma + 1, len(context%load_set) + 1):), dof, valid)
+      if (.not. valid .or. .not. any(dof == [1, 2, dof_temperature])) then
+         call report%error(context%load_place, &
+            'LOAD= has a node set and a degree of freedom 1, 2 or 11')
+         return
+      end if
+      set = find_named(model%mesh%node_sets, name)
+      if (set == 0) then
+         call report_unknown('node set', name, model%mesh%node_sets, &
+            context%load_place, report)
+         return
+      end if
+      members = model%mesh%node_sets(set)%members
+      if (size(members) == 0) return
+      members = pack(members, .not. context%dropped(members))
+      if (size(members) == 0) then
+         call report%error(context%load_place, 'ORDER=1 leaves no node of '//name// &
+            ', which has midside nodes only; LOAD= needs one at a corner')
+         return
+      end if
+      model%load_node = members(1)
+      model%load_dof = dof
+      model%load_label = dof_name(dof)//' of '//name
+      if (.not. (context%boundaries_sound .and. context%sets_sound)) return
+      if (is_prescribed(context, model)) return
+      do i = 1, context%boundaries%count
+         if (context%boundaries%items(i)%component /= dof) cycle
+         call report%error(context%load_place, 'LOAD= follows a value that no *BOUNDARY '// &
+            'prescribes: '//dof_name(dof)//' of '//name)
+         return
+      end do
+      if (report%has_lost('*STEP')) return
+      call report%error(last, 'no *BOUNDARY prescribes any '//dof_name(dof)// &
+         ' (degree of freedom '//to_text(dof)//'), which LOAD='//context%load_set// &
+         ' of *OPTIONS follows; give the values, as '//name//', '//to_text(dof)//', '// &
+         to_text(dof)//', value')
+   end subroutine build_load_axis
+
+   pure function dof_name(dof) result(name)
+      integer, intent(in) :: dof
+      character(:), allocatable :: name
+
+      select case (dof)
+      case (1)
+         name = 'u_x'
+      case (2)
+         name = 'u_y'
+      case default
+         name = 'temperature'
+      end select
+   end function dof_name
+
+   !> Whether a *BOUNDARY prescribes the degree of freedom of the load axis at its node.
+   pure logical function is_prescribed(context, model)
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      integer :: i
+
+      is_prescribed = .true.
+      do i = 1, context%boundaries%count
+         associate (request => context%boundaries%items(i))
+            if (request%component /= model%load_dof) cycle
+            if (request%item == model%load_node) return
+            if (request%set == 0) cycle
+            if (any(model%mesh%node_sets(request%set)%members == model%load_node)) return
+         end associate
+      end do
+      is_prescribed = .false.
+   end function is_prescribed
 
 end module deck_builder_options

@@ -1,12 +1,12 @@
 !> *NODE PRINT and *EL PRINT -> tables of the listing.
 module deck_builder_prints
-   use card_parameters, only: choose, need_parameter, parameter_place, take_parameter
+   use card_parameters, only: choose, parameter_place, parameter_text, take_from
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
-   use deck_context, only: deck_context_type, find_set, report_lines, report_unknown, &
-      set_names
+   use deck_context, only: deck_context_type, need_element_set, need_named
    use deck_report, only: deck_report_type
    use mesh, only: mesh_type, set_type
+   use named_items, only: find_named
    use print_requests, only: append_request, print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
    use spelling, only: known_choices
@@ -41,7 +41,7 @@ module deck_builder_prints
 
 contains
 
-   !> Takes *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
+   !> Reads *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
    !> former steps.
    subroutine build_print(cards, card, is_first, context, mesh, report, requests)
       type(cards_type), intent(in) :: cards
@@ -58,19 +58,18 @@ contains
       if (is_first .and. allocated(requests)) deallocate(requests)
       choice = 'NO'
       if (card%name == 'NODE PRINT') then
-         call take_set(card, 'NSET', 'node', mesh%node_sets, context, report, request%set)
+         if (names_set(card, 'NSET', mesh%node_sets, context)) call need_named(card, 'NSET', &
+            'node set', mesh%node_sets, report, request%set)
          call check_dropped(card, context, mesh, report, request%set)
          call choose(card, 'TOTALS', 'YES/NO/ONLY', report, choice)
          request%each_node = choice /= 'ONLY'
          request%totals = choice /= 'NO'
          choice = 'NO'
-         call choose(card, 'GLOBAL', 'YES/NO', report, choice)
-         request%local_axes = choice == 'NO'
-      else
-         call take_set(card, 'ELSET', 'element', mesh%element_sets, context, report, request%set)
-         call choose(card, 'GLOBAL', 'YES/NO', report, choice)
-         request%local_axes = choice == 'NO'
+      else if (names_set(card, 'ELSET', mesh%element_sets, context)) then
+         call need_element_set(card, mesh%element_sets, report, request%set)
       end if
+      call choose(card, 'GLOBAL', 'YES/NO', report, choice)
+      request%local_axes = choice == 'NO'
       call read_frequency(card, report, request%frequency)
       allocate(request%quantities(0))
       do j = card%first_data, card%last_data
@@ -79,30 +78,15 @@ contains
       if (request%set > 0 .and. size(request%quantities) > 0) call append_request(requests, request)
    end subroutine build_print
 
-   !> Index of the set that a parameter names; 0 after an error.
-   subroutine take_set(card, parameter, noun, sets, context, report, set)
+   !> Whether a set is known, or must be: not where the cards of sets have errors.
+   pure logical function names_set(card, parameter, sets, context)
       type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: parameter, noun
+      character(*), intent(in) :: parameter
       type(set_type), intent(in) :: sets(:)
       type(deck_context_type), intent(in) :: context
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(out) :: set
-      character(:), allocatable :: name
-      logical :: valid
 
-      call need_parameter(card, parameter, report, name)
-      set = find_set(sets, name)
-      if (set > 0) then
-         valid = .true.
-         if (sets(set)%of_lines) call report_lines(name, parameter_place(card, parameter), report, &
-            valid)
-         if (.not. valid) set = 0
-         return
-      end if
-      if (len(name) == 0 .or. .not. context%sets_sound) return
-      call report_unknown(noun//' set', name, set_names(sets), parameter_place(card, parameter), &
-         report)
-   end subroutine take_set
+      names_set = context%sets_sound .or. find_named(sets, parameter_text(card, parameter)) > 0
+   end function names_set
 
    !> Warns of a node set of which ORDER=1 leaves no node: there is nothing to print.
    subroutine check_dropped(card, context, mesh, report, set)
@@ -140,7 +124,7 @@ contains
       end do
    end subroutine take_quantities
 
-   !> One key: what is not computed is passed over with a warning, what nobody knows is an error.
+   !> One key: what is not computed is ignored with a warning, what nobody knows is an error.
    subroutine take_quantity(card, data, position, keys, report, quantities)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
@@ -173,13 +157,10 @@ contains
    subroutine read_frequency(card, report, frequency)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report   !! receives errors
-      integer, intent(inout) :: frequency               !! n, at least 0
+      integer, intent(out) :: frequency                 !! n, at least 0
 
       frequency = 1
-      call take_parameter(card, 'FREQUENCY', report, frequency)
-      if (frequency >= 0) return
-      call report%error(parameter_place(card, 'FREQUENCY'), 'FREQUENCY= must not be negative')
-      frequency = 1
+      call take_from(0, card, 'FREQUENCY', report, frequency)
    end subroutine read_frequency
 
 end module deck_builder_prints

@@ -2,11 +2,9 @@
 module deck_builder_refinement
    use card_parameters, only: has_parameter, lacks_parameter, parameter_place, take_parameter
    use cards, only: cards_type, keyword_card_type
-   use deck_builder_contact, only: named_surface
    use deck_builder_options, only: take_levels
-   use deck_builder_sections, only: named_element_set
    use deck_checks, only: check_numbers
-   use deck_context, only: deck_context_type
+   use deck_context, only: deck_context_type, need_element_set, need_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use errors, only: error_type
@@ -57,10 +55,10 @@ contains
          call report%error(parameter_place(card, 'ELSET'), '*REFINE takes SURFACE= or ELSET=, '// &
             'not both; give a card for each')
       else if (has_parameter(card, 'SURFACE')) then
-         call named_surface(card, 'SURFACE', mesh, report, surface)
+         call need_named(card, 'SURFACE', 'surface', mesh%surfaces, report, surface)
          region%surfaces = [surface]
       else
-         call named_element_set(card, mesh, report, region%set)
+         call need_element_set(card, mesh%element_sets, report, region%set)
       end if
       if (.not. has_parameter(card, 'DISTANCE')) return
       errors = report%error_count()

@@ -1,105 +1,194 @@
-!> *SOLID SECTION -> material and thickness of elements.
+!> *ORIENTATION and *SOLID SECTION -> material, its axes and thickness of elements.
 module deck_builder_sections
-   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
-   use card_values, only: check_extra, take_field
-   use cards, only: cards_type, field_place, keyword_card_type
-   use deck_builder_materials, only: find_material
-   use deck_builder_orientations, only: find_orientation
-   use deck_context, only: deck_context_type, find_set, report_lines, report_unknown, &
-      set_names
+   use card_parameters, only: choose, parameter_place
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
+   use deck_context, only: deck_context_type, name_last, need_element_set, need_named, take_named
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count, has_stand_in
+   use deck_structure, only: cards_of, has_stand_in
    use element_kinds, only: axisymmetric
    use kinds, only: dp
-   use materials, only: section_type
    use mesh, only: mesh_type, set_type
    use model, only: model_type
-   use text, only: string_type, to_text, to_upper
+   use named_items, only: find_named
+   use orientations, only: orientation_type
+   use text, only: to_text
    implicit none
    private
-   public :: build_sections, named_element_set
+   public :: build_orientations, build_sections
+
+   real(dp), parameter :: degree = acos(-1.0_dp)/180
 
 contains
 
-   !> Takes all sections, and gives the elements theirs.
+   !> Builds all orientations.
+   subroutine build_orientations(cards, model, report)
+      type(cards_type), intent(in) :: cards
+      type(model_type), intent(inout) :: model             !! receives the orientations
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, allocatable :: places(:)
+      integer :: n
+      logical :: repeated
+
+      places = cards_of(cards, 'ORIENTATION')
+      allocate(model%orientations(size(places)))
+      do n = 1, size(places)
+         associate (card => cards%keywords(places(n)))
+            call name_last(cards, places(n), 'orientation', model%orientations(:n), report, &
+               repeated)
+            if (card%last_data >= card%first_data) call build_axes(cards, card, &
+               model%orientations(n), report)
+         end associate
+      end do
+   end subroutine build_orientations
+
+   subroutine build_axes(cards, card, orientation, report)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(orientation_type), intent(inout) :: orientation
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: system
+      real(dp) :: a(3), b(3)
+      logical :: valid
+
+      system = 'RECTANGULAR'
+      call choose(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', report, system)
+      valid = .true.
+      associate (data => cards%data(card%first_data))
+         call read_point(data, 1, 'a', report, a, valid)
+         call read_point(data, 4, 'b', report, b, valid)
+         call check_extra(data, 6, 'a(1), a(2), a(3), b(1), b(2), b(3)', report)
+         if (.not. valid) return
+         orientation%cylindrical = system == 'CYLINDRICAL'
+         if (orientation%cylindrical) then
+            call take_cylindrical(data, a, b, orientation, report)
+         else
+            call take_rectangular(data, a, b, orientation, report)
+         end if
+      end associate
+      if (card%last_data > card%first_data) then
+         call turn_axes(cards%data(card%first_data + 1), orientation, report)
+      end if
+   end subroutine build_axes
+
+   subroutine read_point(data, first, name, report, point, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: first
+      character(*), intent(in) :: name
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(out) :: point(3)
+      logical, intent(inout) :: valid
+      integer :: i
+
+      point = 0.0_dp
+      do i = 1, 3
+         call need_field(data, first + i - 1, 'component of '//name, report, point(i), valid)
+         if (.not. has_field(data, first + i - 1)) exit
+      end do
+   end subroutine read_point
+
+   !> a lies on axis 1, b in the plane of axes 1 and 2 on the side of axis 2.
+   subroutine take_rectangular(data, a, b, orientation, report)
+      type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: a(3), b(3)
+      type(orientation_type), intent(inout) :: orientation
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: turn
+
+      if (abs(a(3)) > 0.0_dp .or. abs(b(3)) > 0.0_dp) then
+         call report%error(field_place(data, merge(3, 6, abs(a(3)) > 0.0_dp)), &
+            'axes 1 and 2 lie in the plane: the z components of a and b must be 0')
+         return
+      end if
+      turn = a(1)*b(2) - a(2)*b(1)
+      if (.not. abs(turn) > epsilon(turn)*norm2(a)*norm2(b)) then
+         call report%error(field_place(data, 1), 'a and b must not lie on one line')
+         return
+      end if
+      orientation%direction = a(1:2)/norm2(a(1:2))
+      orientation%hand = sign(1.0_dp, turn)
+   end subroutine take_rectangular
+
+   !> a and b are two points of the axis; axis 3 points from a to b.
+   subroutine take_cylindrical(data, a, b, orientation, report)
+      type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: a(3), b(3)
+      type(orientation_type), intent(inout) :: orientation
+      type(deck_report_type), intent(inout) :: report
+
+      if (norm2(b(1:2) - a(1:2)) > 0.0_dp .or. .not. abs(b(3) - a(3)) > 0.0_dp) then
+         call report%error(field_place(data, 4), 'the axis through a and b must be parallel to z')
+         return
+      end if
+      orientation%centre = a(1:2)
+      orientation%hand = sign(1.0_dp, b(3) - a(3))
+   end subroutine take_cylindrical
+
+   !> The second card: a turn round axis 3, from axis 1 towards axis 2.
+   subroutine turn_axes(data, orientation, report)
+      type(data_card_type), intent(in) :: data
+      type(orientation_type), intent(inout) :: orientation
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: angle
+      integer :: axis
+      logical :: valid
+
+      valid = .true.
+      axis = 3
+      angle = 0.0_dp
+      call need_field(data, 1, 'axis', report, axis, valid)
+      call take_field(data, 2, 'angle in degrees', report, angle, valid)
+      call check_extra(data, 2, 'axis, angle', report)
+      if (.not. valid) return
+      if (axis /= 3) then
+         call report%error(field_place(data, 1), &
+            'a turn about axis 1 or 2 leaves the plane: only axis 3')
+         return
+      end if
+      angle = angle*degree
+      associate (first => orientation%direction, &
+         second => orientation%hand*[-orientation%direction(2), orientation%direction(1)])
+         orientation%direction = cos(angle)*first + sin(angle)*second
+      end associate
+   end subroutine turn_axes
+
+   !> Builds all sections, and gives the elements theirs.
    subroutine build_sections(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives notes, whether all is sound
       type(model_type), intent(inout) :: model             !! receives the sections
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer :: k, n
-
-      allocate(model%sections(card_count(cards, 'SOLID SECTION')))
-      context%sections_sound = .not. (has_stand_in(cards, 'SOLID SECTION') .or. &
-         report%has_lost('element set'))
-      n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'SOLID SECTION') cycle
-         n = n + 1
-         call build_section(cards, cards%keywords(k), model, report, model%sections(n))
-         call give_section(cards%keywords(k), n, context%line_sets, model%mesh, report, &
-            context%sections_sound)
-         if (cards%keywords(k)%last_data >= cards%keywords(k)%first_data) cycle
-         if (any(model%mesh%element_section == n .and. &
-            model%mesh%element_plane /= axisymmetric)) then
-            call context%note('*SOLID SECTION without a thickness: '// &
-               to_text(model%sections(n)%thickness))
-         end if
-      end do
-   end subroutine build_sections
-
-   subroutine build_section(cards, card, model, report, section)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      type(section_type), intent(out) :: section
-      character(:), allocatable :: name
-      type(string_type), allocatable :: names(:)
-      integer :: i
+      integer, allocatable :: places(:)
+      integer :: n
       logical :: valid
 
-      call need_parameter(card, 'MATERIAL', report, name)
-      section%material = find_material(model%materials, name)
-      if (section%material == 0 .and. len(name) > 0) then
-         allocate(names(size(model%materials)))
-         do i = 1, size(names)
-            names(i)%value = model%materials(i)%name
-         end do
-         call report_unknown('material', name, names, parameter_place(card, 'MATERIAL'), report)
-      end if
-      call take_orientation(card, model, report, section)
-      if (card%last_data < card%first_data) return
+      places = cards_of(cards, 'SOLID SECTION')
+      allocate(model%sections(size(places)))
+      context%sections_sound = .not. (has_stand_in(cards, 'SOLID SECTION') .or. &
+         report%has_lost('element set'))
       valid = .true.
-      associate (data => cards%data(card%first_data))
-         call take_field(data, 1, 'thickness', report, section%thickness, valid)
-         call check_extra(data, 1, 'thickness', report)
-         if (section%thickness <= 0.0_dp) then
-            call report%error(field_place(data, 1), 'the thickness must be positive')
-         end if
-      end associate
-   end subroutine build_section
-
-   subroutine take_orientation(card, model, report, section)
-      type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      type(section_type), intent(inout) :: section
-      character(:), allocatable :: name
-      type(string_type), allocatable :: names(:)
-      integer :: i
-
-      if (.not. has_parameter(card, 'ORIENTATION')) return
-      name = to_upper(parameter_text(card, 'ORIENTATION'))
-      section%orientation = find_orientation(model%orientations, name)
-      if (section%orientation > 0) return
-      allocate(names(size(model%orientations)))
-      do i = 1, size(names)
-         names(i)%value = model%orientations(i)%name
+      do n = 1, size(places)
+         associate (card => cards%keywords(places(n)), section => model%sections(n))
+            call need_named(card, 'MATERIAL', 'material', model%materials, report, &
+               section%material)
+            call take_named(card, 'ORIENTATION', 'orientation', model%orientations, report, &
+               section%orientation)
+            if (card%last_data >= card%first_data) then
+               associate (data => cards%data(card%first_data))
+                  call take_field(data, 1, 'thickness', report, section%thickness, valid)
+                  call check_extra(data, 1, 'thickness', report)
+                  if (section%thickness <= 0.0_dp) call report%error(field_place(data, 1), &
+                     'the thickness must be positive')
+               end associate
+            end if
+            call give_section(card, n, context%line_sets, model%mesh, report, &
+               context%sections_sound)
+            if (card%last_data < card%first_data .and. any(model%mesh%element_section == n .and. &
+               model%mesh%element_plane /= axisymmetric)) call context%note( &
+               '*SOLID SECTION without a thickness: '//to_text(section%thickness))
+         end associate
       end do
-      call report_unknown('orientation', name, names, parameter_place(card, 'ORIENTATION'), &
-         report)
-   end subroutine take_orientation
+   end subroutine build_sections
 
    !> Gives the elements of its set a section; sound becomes false where that set is not known.
    subroutine give_section(card, section, line_sets, mesh, report, sound)
@@ -109,15 +198,13 @@ contains
       type(mesh_type), intent(inout) :: mesh
       type(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: sound
-      character(:), allocatable :: name
       integer :: set
 
-      call named_element_set(card, mesh, report, set)
+      call need_element_set(card, mesh%element_sets, report, set)
       sound = sound .and. set > 0
       if (set == 0) return
-      name = mesh%element_sets(set)%name
-      if (find_set(line_sets, name) > 0) call report%warning( &
-         parameter_place(card, 'ELSET'), 'element set '//name// &
+      if (find_named(line_sets, mesh%element_sets(set)%name) > 0) call report%warning( &
+         parameter_place(card, 'ELSET'), 'element set '//mesh%element_sets(set)%name// &
          ' also has lines, which are ignored: bars are not modelled')
       associate (members => mesh%element_sets(set)%members)
          if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
@@ -126,28 +213,5 @@ contains
          mesh%element_section(members) = section
       end associate
    end subroutine give_section
-
-   !> Index of the set of elements that ELSET= of a card names; 0 after an error.
-   subroutine named_element_set(card, mesh, report, set)
-      type(keyword_card_type), intent(in) :: card
-      type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer, intent(out) :: set
-      character(:), allocatable :: name
-      logical :: valid
-
-      set = 0
-      valid = .true.
-      call need_parameter(card, 'ELSET', report, name)
-      if (len(name) == 0) return
-      set = find_set(mesh%element_sets, name)
-      if (set == 0) then
-         call report_unknown('element set', name, set_names(mesh%element_sets), &
-            parameter_place(card, 'ELSET'), report)
-      else if (mesh%element_sets(set)%of_lines) then
-         call report_lines(name, parameter_place(card, 'ELSET'), report, valid)
-         set = 0
-      end if
-   end subroutine named_element_set
 
 end module deck_builder_sections

@@ -4,10 +4,11 @@ module deck_builder_sets
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use deck_builder_lines, only: is_line_card
-   use deck_builder_set_nodes, only: find_nodes
-   use deck_context, only: deck_context_type, read_target
+   use deck_context, only: deck_context_type, read_target, take_named
    use deck_report, only: deck_report_type
+   use element_kinds, only: side_nodes
    use mesh, only: mesh_type, set_type
+   use named_items, only: find_named
    use sorting, only: number_index_type, unique_sorted
    use text, only: read_integer, to_text, to_upper
    implicit none
@@ -25,7 +26,7 @@ module deck_builder_sets
 
 contains
 
-   !> Takes all sets of nodes or of elements, lines among them; a name that is on several cards
+   !> Builds all sets of nodes or of elements, lines among them; a name that is on several cards
    !> is one set.
    subroutine build_sets(noun, cards, context, mesh, report, sets)
       character(*), intent(in) :: noun                           !! node or element
@@ -36,7 +37,7 @@ contains
       type(set_type), allocatable, intent(out) :: sets(:)
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
-      integer :: k, first(2), kind, i
+      integer :: count, first(2), i, j, k, kind
 
       parameter = merge('NSET ', 'ELSET', noun == 'node')
       parameter = trim(parameter)
@@ -49,11 +50,13 @@ contains
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (card%name == definer) then
-               if (has_parameter(card, parameter)) call open_set(card, parameter, report, draft, i)
                kind = merge(2, 1, is_line_card(card))
-               if (has_parameter(card, parameter)) call add_range(draft, i, first(kind) + 1, &
-                  first(kind) + card%last_data - card%first_data + 1)
-               first(kind) = first(kind) + card%last_data - card%first_data + 1
+               count = card%last_data - card%first_data + 1
+               if (has_parameter(card, parameter)) then
+                  call open_set(card, parameter, report, draft, i)
+                  call add_members(draft, i, first(kind) + [(j, j=1, count)])
+               end if
+               first(kind) = first(kind) + count
             else if (card%name == parameter) then
                call build_set(cards, card, context, mesh, report, draft)
             end if
@@ -90,15 +93,6 @@ contains
       draft%counts(set) = 0
    end subroutine open_set
 
-   !> Adds members that are in a row.
-   subroutine add_range(draft, set, first, last)
-      type(draft_type), intent(inout) :: draft
-      integer, intent(in) :: set, first, last
-      integer :: i
-
-      call add_members(draft, set, [(i, i=first, last)])
-   end subroutine add_range
-
    subroutine add_members(draft, set, members)
       type(draft_type), intent(inout) :: draft
       integer, intent(in) :: set
@@ -116,7 +110,7 @@ contains
       draft%counts(set) = n + size(members)
    end subroutine add_members
 
-   !> Takes one *NSET or *ELSET card.
+   !> Reads one *NSET or *ELSET card.
    subroutine build_set(cards, card, context, mesh, report, draft)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
@@ -153,7 +147,37 @@ contains
       end do
    end subroutine build_set
 
-   !> Numbers from first to last; those between that do not exist are passed over with a warning.
+   !> The nodes of the element set or the surface that an *NSET card names; some repeatedly.
+   subroutine find_nodes(card, context, mesh, report, nodes)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context          ! lines of element sets
+      type(mesh_type), intent(in) :: mesh                     ! element sets and surfaces
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable, intent(out) :: nodes(:)
+      integer :: i, lines, set, surface
+
+      allocate(nodes(0))
+      set = 0
+      surface = 0
+      call take_named(card, 'ELSET', 'element set', mesh%element_sets, report, set)
+      if (set > 0) then
+         nodes = [mesh%element_nodes(:, mesh%element_sets(set)%members)]
+         lines = find_named(context%line_sets, mesh%element_sets(set)%name)
+         if (lines > 0) nodes = [nodes, context%line_nodes(:, context%line_sets(lines)%members)]
+      end if
+      call take_named(card, 'SURFACE', 'surface', mesh%surfaces, report, surface)
+      if (surface > 0) then
+         associate (faces => mesh%surfaces(surface)%faces)
+            do i = 1, size(faces, 2)
+               nodes = [nodes, mesh%element_nodes(side_nodes(mesh%element_kind(faces(1, i)), &
+                  faces(2, i)), faces(1, i))]
+            end do
+         end associate
+      end if
+      nodes = pack(nodes, nodes > 0)
+   end subroutine find_nodes
+
+   !> Numbers from first to last; those between that do not exist are ignored with a warning.
    subroutine generate(data, report, draft, set)
       type(data_card_type), intent(in) :: data
       type(deck_report_type), intent(inout) :: report

@@ -1,18 +1,16 @@
 !> *STEP to *END STEP -> steps; loads become requests.
 module deck_builder_steps
-   use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &
-      parameter_text, take_parameter
+   use card_parameters, only: choose, has_parameter, is_on, lacks_parameter, parameter_place, &
+      take_parameter
    use cards, only: cards_type, has_field, keyword_card_type
    use controls, only: fixed_point_type, implicit_scheme, start_type, thermal_scheme_type
-   use deck_builder_controls, only: build_fixed_point, build_thermal_scheme
-   use deck_builder_start, only: build_start
+   use deck_builder_controls, only: build_fixed_point, build_start, build_thermal_scheme
    use deck_builder_increments, only: build_increments
    use deck_builder_contact_changes, only: build_contact_change
    use deck_builder_loads, only: build_load_card
    use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use deck_source, only: place_type
    use deck_structure, only: card_count
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -27,7 +25,7 @@ module deck_builder_steps
    real(dp), parameter :: increment_rounding = 1.0e-6_dp   !! a shorter rest is none, relative
    real(dp), parameter :: most_counted = 1.0e9_dp   !! increments that a message counts
 
-   !> What every step takes over that does not say otherwise.
+   !> Controls that last until a later step changes them.
    type :: lasting_controls_type
       type(fixed_point_type) :: fixed_point
       type(start_type) :: start
@@ -44,7 +42,7 @@ module deck_builder_steps
 
 contains
 
-   !> Takes all steps, in their order.
+   !> Builds all steps, in their order.
    subroutine build_steps(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives requests and notes
@@ -122,7 +120,7 @@ contains
       end do
    end subroutine warn_of_nlgeom
 
-   !> Takes a card that holds for this step and all that follow.
+   !> Reads a card that is valid for this step and all that follow.
    subroutine build_control(cards, card, model, report, controls)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
@@ -149,7 +147,7 @@ contains
       step%scheme = controls%scheme
    end subroutine set_controls
 
-   !> Takes a card of a step that asks for output; others are none of its business.
+   !> Reads a card of a step that asks for output; others are ignored.
    subroutine build_output(cards, card, context, mesh, counts, report, step)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
@@ -177,14 +175,14 @@ contains
       end select
    end subroutine build_output
 
-   !> Takes *STEP; output goes on as in the step before.
+   !> Reads *STEP; output goes on as in the step before.
    subroutine begin_step(card, before, context, report, step)
       type(keyword_card_type), intent(in) :: card
       type(step_type), intent(in) :: before
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
-      character(:), allocatable :: history, nlgeom
+      character(:), allocatable :: history
 
       call take_parameter(card, 'INC', report, step%max_increments)
       if (step%max_increments < 1) then
@@ -200,15 +198,10 @@ contains
       step%contact_print_frequency = before%contact_print_frequency
       if (allocated(before%node_prints)) step%node_prints = before%node_prints
       if (allocated(before%element_prints)) step%element_prints = before%element_prints
-      nlgeom = 'NO'
-      if (has_parameter(card, 'NLGEOM')) nlgeom = 'YES'
-      if (len(parameter_text(card, 'NLGEOM')) > 0) then
-         call choose(card, 'NLGEOM', 'YES/NO', report, nlgeom)
-      end if
-      step%nlgeom = nlgeom == 'YES'
+      step%nlgeom = is_on(card, 'NLGEOM', report)
    end subroutine begin_step
 
-   !> Takes *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
+   !> Reads *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
    subroutine build_analysis(cards, card, n, context, report, step)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
@@ -216,30 +209,20 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
-      character(:), allocatable :: creep, direct
+      character(:), allocatable :: creep
       integer :: errors
 
       errors = report%error_count()
-      select case (card%name)
-      case ('STATIC')
-         step%analysis = analysis_static
-      case ('HEAT TRANSFER')
-         step%analysis = analysis_heat
-      case default
-         step%analysis = analysis_coupled
-      end select
+      step%analysis = analysis_coupled
+      if (card%name == 'STATIC') step%analysis = analysis_static
+      if (card%name == 'HEAT TRANSFER') step%analysis = analysis_heat
       if (solves_heat(step%analysis) .and. lacks_parameter(card, 'STEADY STATE')) then
          call report%error(card%place, '*'//card%name// &
             ' needs STEADY STATE: heat capacity is not modelled')
       end if
       creep = 'NONE'
       call choose(card, 'CREEP', 'NONE', report, creep)
-      direct = 'NO'
-      if (has_parameter(card, 'DIRECT')) direct = 'YES'
-      if (len(parameter_text(card, 'DIRECT')) > 0) then
-         call choose(card, 'DIRECT', 'YES/NO', report, direct)
-      end if
-      step%direct = direct == 'YES'
+      step%direct = is_on(card, 'DIRECT', report)
       if (card%last_data >= card%first_data) then
          call build_increments(cards%data(card%first_data), context, report, step)
       else

@@ -1,16 +1,16 @@
 !> Data cards of *DSLOAD, *DSFLUX and *SFILM: surface, label, values.
 module deck_builder_surface_loads
    use card_values, only: check_extra, need_field, need_plane_vector
-   use cards, only: data_card_type, field_place
+   use cards, only: data_card_type
    use deck_builder_element_loads, only: build_on_faces, report_label
-   use deck_context, only: deck_context_type, report_unknown
+   use deck_context, only: deck_context_type, read_surface
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use load_requests, only: request_type
    use mesh, only: surface_type
    use model, only: model_type
    use steps, only: load_pressure, load_traction
-   use text, only: string_type, to_upper
+   use text, only: to_upper
    implicit none
    private
    public :: build_surface_load
@@ -32,7 +32,8 @@ contains
 
       valid = .true.
       errors = report%error_count()
-      call read_surface(data, model%mesh%surfaces, report, surface, valid)
+      call read_surface(data, 1, 'surface', model%mesh%surfaces, report, surface)
+      valid = surface > 0
       select case (keyword)
       case ('DSFLUX')
          labels = 'S'
@@ -65,29 +66,6 @@ contains
             request, film_amplitude, context, report)
       end select
    end subroutine build_surface_load
-
-   subroutine read_surface(data, surfaces, report, surface, valid)
-      type(data_card_type), intent(in) :: data
-      type(surface_type), intent(in) :: surfaces(:)
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(out) :: surface
-      logical, intent(inout) :: valid
-      type(string_type) :: names(size(surfaces))
-      character(:), allocatable :: name
-      integer :: i
-
-      surface = 0
-      call need_field(data, 1, 'surface', report, name, valid)
-      if (len(name) == 0) return
-      name = to_upper(name)
-      do i = 1, size(surfaces)
-         names(i)%value = surfaces(i)%name
-         if (names(i)%value == name) surface = i
-      end do
-      if (surface > 0) return
-      valid = .false.
-      call report_unknown('surface', name, names, field_place(data, 1), report)
-   end subroutine read_surface
 
    !> Magnitude and direction of a traction vector.
    subroutine build_traction(data, request, model, surface, context, report, valid)

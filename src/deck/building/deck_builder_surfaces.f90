@@ -1,16 +1,17 @@
 !> *SURFACE -> sets of element faces.
 module deck_builder_surfaces
-   use card_parameters, only: choose, need_parameter, parameter_place
+   use card_parameters, only: choose, parameter_place
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
-   use deck_context, only: deck_context_type, find_set, place_list_type, read_target
+   use deck_context, only: deck_context_type, name_last, place_list_type, read_target
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: card_count, report_twice
+   use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count
    use line_faces, only: find_line_faces
    use mesh, only: mesh_type, surface_type
+   use named_items, only: find_named
    use sorting, only: sort_order
    use text, only: to_text, to_upper
    implicit none
@@ -19,47 +20,34 @@ module deck_builder_surfaces
 
 contains
 
-   !> Takes all surfaces.
+   !> Builds all surfaces.
    subroutine build_surfaces(cards, context, mesh, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives their places
       type(mesh_type), intent(inout) :: mesh               !! receives the surfaces
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer :: k, n
+      integer, allocatable :: places(:)
+      integer :: n
+      logical :: repeated
 
-      n = card_count(cards, 'SURFACE')
-      allocate(mesh%surfaces(n), context%face_places(n))
-      n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'SURFACE') cycle
-         n = n + 1
-         call build_surface(cards, cards%keywords(k), context, mesh, report, mesh%surfaces(n), &
-            context%face_places(n))
-         if (is_new(mesh%surfaces(:n))) cycle
-         call report_twice(cards, k, 'surface '//mesh%surfaces(n)%name, report)
-         call report%lose('surface')
+      places = cards_of(cards, 'SURFACE')
+      allocate(mesh%surfaces(size(places)), context%face_places(size(places)))
+      do n = 1, size(places)
+         call name_last(cards, places(n), 'surface', mesh%surfaces(:n), report, repeated)
+         if (repeated) call report%lose('surface')
+         call build_surface(cards, cards%keywords(places(n)), context, mesh, report, &
+            mesh%surfaces(n), context%face_places(n))
       end do
    end subroutine build_surfaces
 
-   pure logical function is_new(surfaces)
-      type(surface_type), intent(in) :: surfaces(:)
-      integer :: i, n
-
-      n = size(surfaces)
-      is_new = .true.
-      do i = 1, n - 1
-         if (surfaces(i)%name == surfaces(n)%name .and. len(surfaces(n)%name) > 0) is_new = .false.
-      end do
-   end function is_new
-
-   !> Takes one surface; a face that is named twice counts once, in the order of elements.
+   !> Builds one surface; a face that is named twice counts once, in the order of elements.
    subroutine build_surface(cards, card, context, mesh, report, surface, places)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
-      type(surface_type), intent(out) :: surface
+      type(surface_type), intent(inout) :: surface
       type(place_list_type), intent(inout) :: places   ! receives where each face is named
       character(:), allocatable :: kind
       type(place_type), allocatable :: named(:)
@@ -69,7 +57,6 @@ contains
 
       kind = 'ELEMENT'
       surface%card = card%place%image
-      call need_parameter(card, 'NAME', report, surface%name)
       errors = report%error_count()
       call choose(card, 'TYPE', 'ELEMENT/NODE', report, kind)
       if (kind == 'NODE') call report%error(parameter_place(card, 'TYPE'), 'TYPE=NODE is '// &
@@ -82,7 +69,9 @@ contains
       end if
       allocate(keys(0), named(0))
       do j = card%first_data, card%last_data
-         if (names_lines(cards%data(j), context)) then
+         ! An element set that has lines, without a face.
+         if (.not. has_field(cards%data(j), 2) .and. find_named(context%line_sets, &
+            field_text(cards%data(j), 1)) > 0) then
             call add_line_faces(cards%data(j), context, mesh, report, keys)
             named = [named, spread(field_place(cards%data(j), 1), 1, size(keys) - size(named))]
             cycle
@@ -114,15 +103,6 @@ contains
       end do
    end subroutine build_surface
 
-   !> Whether a data card is an element set that has lines, without a face.
-   pure logical function names_lines(data, context)
-      type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(in) :: context
-
-      names_lines = .not. has_field(data, 2) .and. &
-         find_set(context%line_sets, field_text(data, 1)) > 0
-   end function names_lines
-
    !> Adds the faces under the lines of a set; the first line under which there is none, or one
    !> inside a body, is an error.
    subroutine add_line_faces(data, context, mesh, report, keys)
@@ -136,7 +116,7 @@ contains
       integer :: i, bad
 
       call check_extra(data, 1, 'element set of lines', report)
-      members = context%line_sets(find_set(context%line_sets, field_text(data, 1)))%members
+      members = context%line_sets(find_named(context%line_sets, field_text(data, 1)))%members
       allocate(faces(2, size(members)), uses(size(members)))
       call find_line_faces(mesh, context%element_valid, context%line_nodes(:, members), faces, uses)
       keys = [keys, pack(4*faces(1, :) + faces(2, :) - 1, uses == 1)]

@@ -1,10 +1,11 @@
 !> *TRANSFORM -> nodes with axes of their own, and what cards say of them.
 module deck_builder_transforms
-   use card_parameters, only: choose, need_parameter, parameter_place
+   use card_parameters, only: choose, parameter_place
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
-   use deck_context, only: find_set, report_unknown, set_names
+   use deck_context, only: need_named
    use deck_report, only: deck_report_type
+   use deck_structure, only: cards_of
    use equations, only: equation_type
    use hanging_nodes, only: hanging_rows
    use kinds, only: dp
@@ -22,21 +23,19 @@ module deck_builder_transforms
 
 contains
 
-   !> Takes all transforms.
+   !> Builds all transforms.
    subroutine build_transforms(cards, model, report)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(inout) :: model             !! receives them
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer :: k, n
+      integer, allocatable :: places(:)
+      integer :: n
 
-      n = count([(cards%keywords(k)%name == 'TRANSFORM', k=1, size(cards%keywords))])
-      allocate (model%transforms(n))
-      n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'TRANSFORM') cycle
-         n = n + 1
-         call build_transform(cards, cards%keywords(k), model, report, model%transforms(n))
-         call check_nodes(cards%keywords(k), n, model, report)
+      places = cards_of(cards, 'TRANSFORM')
+      allocate (model%transforms(size(places)))
+      do n = 1, size(places)
+         call build_transform(cards, cards%keywords(places(n)), model, report, model%transforms(n))
+         call check_nodes(cards%keywords(places(n)), n, model, report)
       end do
    end subroutine build_transforms
 
@@ -46,14 +45,11 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(transform_type), intent(out) :: transform
-      character(:), allocatable :: kind, name
+      character(:), allocatable :: kind
 
       transform%title = '*TRANSFORM, '//report%source%words_of(card%place)
       transform%card = card%place%image
-      call need_parameter(card, 'NSET', report, name)
-      transform%set = find_set(model%mesh%node_sets, name)
-      if (len(name) > 0 .and. transform%set == 0) call report_unknown('node set', name, &
-         set_names(model%mesh%node_sets), parameter_place(card, 'NSET'), report)
+      call need_named(card, 'NSET', 'node set', model%mesh%node_sets, report, transform%set)
       kind = 'R'
       call choose(card, 'TYPE', 'R/C', report, kind)
       transform%cylindrical = kind == 'C'

@@ -1,16 +1,17 @@
 !> *VERIFY -> checks of the results.
 module deck_builder_verify
-   use card_parameters, only: choose, lacks_parameter, parameter_text
+   use card_parameters, only: need_choice, parameter_text
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field
    use couplings, only: constrained_nodes
-   use deck_builder_mesh, only: data_card_count
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_context_type, read_target, report_unknown
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
+   use deck_structure, only: data_card_count
    use kinds, only: dp
    use model, only: model_type, verify_type
+   use named_items, only: find_named
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_history, of_interface, &
       of_nodes, of_contact_points, quantity_type
    use spelling, only: nearest_known
@@ -25,7 +26,7 @@ module deck_builder_verify
 
 contains
 
-   !> Takes all checks.
+   !> Builds all checks.
    subroutine build_verifications(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(in) :: context       !! numbers of nodes
@@ -39,10 +40,7 @@ contains
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (card%name /= 'VERIFY') cycle
-            kind = ''
-            if (lacks_parameter(card, 'KIND')) call report%error(card%place, &
-               '*VERIFY needs KIND=')
-            call choose(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', report, &
+            call need_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', report, &
                kind)
             do j = card%first_data, card%last_data
                n = n + 1
@@ -86,6 +84,7 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(verify_type), intent(inout) :: check
+      type(place_type) :: places(2)
       integer :: quantity
       logical :: valid
 
@@ -94,7 +93,8 @@ contains
       check%address = report%source%address_of(data%end)
       check%quantity = ''
       check%where = field_text(data, 2)
-      check%columns = [field_column(data, 1), field_column(data, 2)]
+      places = [field_place(data, 1), field_place(data, 2)]
+      check%columns = places%column
       call read_quantity(data, context%verifiable, report, quantity)
       if (quantity > 0) then
          check%quantity = trim(context%verifiable(quantity)%name)
@@ -144,15 +144,6 @@ contains
       call report%error(field_place(data, 1), 'unknown quantity '//name//hint)
    end subroutine read_quantity
 
-   integer function field_column(data, position)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position
-      type(place_type) :: place
-
-      place = field_place(data, position)
-      field_column = place%column
-   end function field_column
-
    !> Checks where a quantity is judged; the only interface of a deck need not be named.
    subroutine check_where(data, kind, context, model, report, check)
       type(data_card_type), intent(in) :: data
@@ -161,6 +152,7 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(verify_type), intent(inout) :: check
+
       if (kind == of_history) then
          if (has_field(data, 2)) call report%error(field_place(data, 2), &
             check%quantity//' has no location: leave this field empty')
@@ -222,10 +214,9 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: name
-      type(string_type), allocatable :: names(:)
       real(dp) :: s
-      integer :: at, i
-      logical :: valid, known
+      integer :: at
+      logical :: valid
 
       valid = .true.
       call need_field(data, 2, 'contact pair', report, name, valid)
@@ -241,14 +232,8 @@ contains
          end if
          name = trim(name(:at - 1))
       end if
-      known = .false.
-      allocate(names(size(model%contacts)))
-      do i = 1, size(names)
-         names(i)%value = model%contacts(i)%name
-         known = known .or. to_upper(names(i)%value) == to_upper(name)
-      end do
-      if (.not. known) call report_unknown('contact pair', name, names, field_place(data, 2), &
-         report)
+      if (find_named(model%contacts, name) == 0) call report_unknown('contact pair', name, &
+         model%contacts, field_place(data, 2), report)
    end subroutine check_interface
 
    !> A total time that an increment meets, or LAST.

@@ -7,11 +7,11 @@ module card_parameters
    use kinds, only: dp
    use spelling, only: known_choices
    use text, only: append, integer_fault, read_integer, read_real, real_fault, string_type, &
-      to_upper, without_blanks
+      to_text, to_upper, without_blanks
    implicit none
    private
    public :: has_parameter, lacks_parameter, parameter_text, parameter_place
-   public :: need_parameter, take_parameter, choose
+   public :: need_parameter, take_parameter, choose, need_choice, is_on, take_positive, take_from
 
    !> Value of a parameter where the card has it; else it stays as it is.
    interface take_parameter
@@ -115,6 +115,45 @@ contains
       end if
    end subroutine take_real_parameter
 
+   !> Value of a parameter that must be positive; else, and after an error, it stays as it is.
+   subroutine take_positive(card, name, report, value)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name                         !! parameter
+      type(deck_report_type), intent(inout) :: report          !! receives the error
+      real(dp), intent(inout) :: value                         !! > 0
+      real(dp) :: given
+
+      given = value
+      call take_parameter(card, name, report, given)
+      if (given > 0.0_dp) then
+         value = given
+      else
+         call report%error(parameter_place(card, name), name//'= must be positive')
+      end if
+   end subroutine take_positive
+
+   !> Value of a parameter that must not be below the least one; else, and after an error, it stays
+   !> as it is.
+   subroutine take_from(least, card, name, report, value)
+      integer, intent(in) :: least
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name                         !! parameter
+      type(deck_report_type), intent(inout) :: report          !! receives the error
+      integer, intent(inout) :: value                          !! >= least
+      integer :: given
+
+      given = value
+      call take_parameter(card, name, report, given)
+      if (given >= least) then
+         value = given
+      else if (least == 0) then
+         call report%error(parameter_place(card, name), name//'= must not be negative')
+      else
+         call report%error(parameter_place(card, name), name//'= must be at least '// &
+            to_text(least))
+      end if
+   end subroutine take_from
+
    !> Takes one of several words.
    subroutine choose(card, name, choices, report, choice)
       type(keyword_card_type), intent(in) :: card
@@ -137,6 +176,32 @@ contains
       call report%error(parameter_place(card, name), 'unknown '//name//'='//wanted//' of *'// &
          card%name//known_choices(wanted, words))
    end subroutine choose
+
+   !> Takes one of several words of a parameter that the card must have; empty after an error.
+   subroutine need_choice(card, name, choices, report, choice)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name                         !! parameter
+      character(*), intent(in) :: choices                      !! words, separated by slashes
+      type(deck_report_type), intent(inout) :: report          !! receives the error
+      character(:), allocatable, intent(out) :: choice         !! the word as in choices
+
+      call need_parameter(card, name, report, choice)
+      choice = ''
+      call choose(card, name, choices, report, choice)
+   end subroutine need_choice
+
+   !> Whether a card has a parameter that needs no value, or YES; not after an error.
+   logical function is_on(card, name, report)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name                         !! parameter
+      type(deck_report_type), intent(inout) :: report          !! receives the error
+      character(:), allocatable :: choice
+
+      choice = 'NO'
+      if (has_parameter(card, name)) choice = 'YES'
+      if (len(parameter_text(card, name)) > 0) call choose(card, name, 'YES/NO', report, choice)
+      is_on = choice == 'YES'
+   end function is_on
 
    pure function split_words(choices) result(words)
       character(*), intent(in) :: choices

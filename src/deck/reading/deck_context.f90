@@ -1,13 +1,16 @@
 !> What the builder of a model knows beyond the model itself: numbers -> indexes, places for
 !> messages, loads to be applied when the mesh is final; and how a card names nodes and elements.
 module deck_context
+   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
    use card_values, only: need_field
-   use cards, only: add_note, data_card_type, field_place
+   use cards, only: add_note, cards_type, data_card_type, field_place, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
+   use deck_structure, only: report_twice
    use keywords, only: known_keywords
    use load_requests, only: request_list_type
    use mesh, only: set_type
+   use named_items, only: find_named, named_type
    use quantity_types, only: quantity_type
    use refined_regions, only: division_type, refined_region_type
    use sorting, only: number_index_type
@@ -15,8 +18,9 @@ module deck_context
    use text, only: read_integer, string_type, to_upper
    implicit none
    private
-   public :: deck_context_type, place_list_type, find_set, set_names, read_target, report_unknown
-   public :: report_lines, plane_by_element
+   public :: deck_context_type, place_list_type, plane_by_element
+   public :: name_last, need_named, take_named, need_element_set, read_surface, read_target
+   public :: report_unknown
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
 
@@ -80,41 +84,97 @@ contains
       call add_note(self%notes, line)
    end subroutine note
 
-   !> Index of a set by its name, whatever its case; 0 for an unknown one.
-   pure integer function find_set(sets, name)
-      type(set_type), intent(in) :: sets(:)
-      character(*), intent(in) :: name        !! name
+   !> Names the last of some items by NAME= of its card; the name of an earlier one is an error.
+   subroutine name_last(cards, k, noun, items, report, repeated)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: k                          !! index of the card
+      character(*), intent(in) :: noun                  !! such as material
+      class(named_type), intent(inout) :: items(:)      !! those of the cards up to this one
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      logical, intent(out) :: repeated                  !! whether an earlier one has the name
+      integer :: n
 
-      do find_set = size(sets), 1, -1
-         if (sets(find_set)%name == to_upper(name)) return
-      end do
-   end function find_set
+      n = size(items)
+      call need_parameter(cards%keywords(k), 'NAME', report, items(n)%name)
+      repeated = len(items(n)%name) > 0 .and. find_named(items(:n - 1), items(n)%name) > 0
+      if (repeated) call report_twice(cards, k, noun//' '//items(n)%name, report)
+   end subroutine name_last
 
-   !> The names of sets.
-   pure function set_names(sets) result(names)
-      type(set_type), intent(in) :: sets(:)
-      type(string_type) :: names(size(sets))            !! their names
-      integer :: i
+   !> Index of the item that a parameter names, which the card must have; 0 after an error.
+   subroutine need_named(card, parameter, noun, items, report, index)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: parameter             !! the parameter
+      character(*), intent(in) :: noun                  !! what it names, such as material
+      class(named_type), intent(in) :: items(:)
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      integer, intent(out) :: index
+      character(:), allocatable :: name
 
-      do i = 1, size(sets)
-         names(i)%value = sets(i)%name
-      end do
-   end function set_names
+      index = 0
+      call need_parameter(card, parameter, report, name)
+      if (len(name) > 0) call look_up(noun, name, items, parameter_place(card, parameter), report, &
+         index)
+   end subroutine need_named
+
+   !> Index of the item that a parameter names, where the card has it; else it stays as it is.
+   subroutine take_named(card, parameter, noun, items, report, index)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: parameter             !! the parameter
+      character(*), intent(in) :: noun                  !! what it names, such as material
+      class(named_type), intent(in) :: items(:)
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      integer, intent(inout) :: index                   !! 0 after an error
+
+      if (has_parameter(card, parameter)) call look_up(noun, &
+         to_upper(parameter_text(card, parameter)), items, parameter_place(card, parameter), &
+         report, index)
+   end subroutine take_named
+
+   !> Index of the surface that a field of a data card names; 0 after an error.
+   subroutine read_surface(data, position, what, surfaces, report, surface)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position                   !! the field
+      character(*), intent(in) :: what                  !! what the field holds
+      class(named_type), intent(in) :: surfaces(:)
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      integer, intent(out) :: surface
+      character(:), allocatable :: name
+      logical :: valid
+
+      surface = 0
+      valid = .true.
+      call need_field(data, position, what, report, name, valid)
+      if (valid) call look_up('surface', to_upper(name), surfaces, field_place(data, position), &
+         report, surface)
+   end subroutine read_surface
+
+   subroutine look_up(noun, name, items, place, report, index)
+      character(*), intent(in) :: noun, name
+      class(named_type), intent(in) :: items(:)
+      type(place_type), intent(in) :: place
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: index
+
+      index = find_named(items, name)
+      if (index == 0) call report_unknown(noun, name, items, place, report)
+   end subroutine look_up
 
    !> Reports a name that nothing has. Where a card gives no name, which is reported there, it may
    !> be the one that is missing, unless it looks like a slip of the pen.
-   subroutine report_unknown(noun, name, names, place, report)
+   subroutine report_unknown(noun, name, items, place, report)
       character(*), intent(in) :: noun                  !! what is named, such as material
       character(*), intent(in) :: name                  !! the name that is not known
-      type(string_type), intent(in) :: names(:)         !! the names that are known
+      class(named_type), intent(in) :: items(:)         !! those that are known
       type(place_type), intent(in) :: place             !! where it is
       type(deck_report_type), intent(inout) :: report   !! receives the error
+      type(string_type) :: names(size(items))
       logical :: nameless, slip
       integer :: i
 
       nameless = .false.
       slip = .false.
-      do i = 1, size(names)
+      do i = 1, size(items)
+         names(i)%value = items(i)%name
          nameless = nameless .or. len(names(i)%value) == 0
          slip = slip .or. is_slip(name, names(i)%value)
       end do
@@ -122,6 +182,21 @@ contains
       call report%missing(place, 'unknown '//noun//' '//name//nearest_known(name, names), noun, &
          name)
    end subroutine report_unknown
+
+   !> Index of the element set that ELSET= of a card names; 0 after an error.
+   subroutine need_element_set(card, sets, report, set)
+      type(keyword_card_type), intent(in) :: card
+      type(set_type), intent(in) :: sets(:)             !! element sets
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      integer, intent(out) :: set
+      logical :: valid
+
+      call need_named(card, 'ELSET', 'element set', sets, report, set)
+      if (set == 0) return
+      if (.not. sets(set)%of_lines) return
+      call report_lines(sets(set)%name, parameter_place(card, 'ELSET'), report, valid)
+      set = 0
+   end subroutine need_element_set
 
    !> Reports an element set that has lines only where elements or their faces are due.
    subroutine report_lines(name, place, report, valid)
@@ -158,7 +233,7 @@ contains
       if (is_number) then
          item = numbers%find(number)
       else
-         set = find_set(sets, name)
+         set = find_named(sets, name)
       end if
       if (set > 0) then
          if (sets(set)%of_lines) call report_lines(sets(set)%name, field_place(data, position), &
@@ -167,7 +242,7 @@ contains
       if (item > 0 .or. set > 0) return
       valid = .false.
       if (.not. (is_number .or. verify(name, '0123456789') == 0)) then
-         call report_unknown(noun//' set', to_upper(name), set_names(sets), &
+         call report_unknown(noun//' set', to_upper(name), sets, &
             field_place(data, position), report)
       else if (.not. numbers%is_empty()) then
          call report%missing(field_place(data, position), 'there is no '//noun//' '//name, noun, &

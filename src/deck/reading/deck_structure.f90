@@ -9,21 +9,41 @@ module deck_structure
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: check_structure, card_count, has_stand_in, report_twice
+   public :: check_structure, cards_of, card_count, data_card_count, has_stand_in, report_twice
 
 contains
+
+   !> The keyword cards of a name, as indexes into the keyword cards.
+   pure function cards_of(cards, name) result(places)
+      type(cards_type), intent(in) :: cards
+      character(*), intent(in) :: name        !! name as in the table of keywords
+      integer, allocatable :: places(:)
+      integer :: k
+
+      places = pack([(k, k=1, size(cards%keywords))], &
+         [(cards%keywords(k)%name == name, k=1, size(cards%keywords))])
+   end function cards_of
 
    !> Number of keyword cards of a name.
    pure integer function card_count(cards, name)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name        !! name as in the table of keywords
+
+      card_count = size(cards_of(cards, name))
+   end function card_count
+
+   !> Number of data cards of all keyword cards of a name.
+   pure integer function data_card_count(cards, name)
+      type(cards_type), intent(in) :: cards
+      character(*), intent(in) :: name        !! name as in the table of keywords
       integer :: k
 
-      card_count = 0
+      data_card_count = 0
       do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name == name) card_count = card_count + 1
+         if (cards%keywords(k)%name == name) data_card_count = data_card_count + &
+            cards%keywords(k)%last_data - cards%keywords(k)%first_data + 1
       end do
-   end function card_count
+   end function data_card_count
 
    !> Reports a card whose name another card of its keyword has before it.
    subroutine report_twice(cards, k, what, report)
