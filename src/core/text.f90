@@ -7,7 +7,7 @@ module text
    public :: string_type
    public :: others, counted, to_text, few_digits, digits_above, with_decimals, percent
    public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
-   public :: is_whole, integer_fault, real_fault, largest_magnitude
+   public :: is_whole, integer_fault, real_fault, largest_magnitude, split_words
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
@@ -175,6 +175,21 @@ contains
          if (string(next_mark:next_mark) /= ' ' .and. string(next_mark:next_mark) /= achar(9)) exit
       end do
    end function next_mark
+
+   !> The words of a list that slashes separate.
+   pure function split_words(list) result(words)
+      character(*), intent(in) :: list                  !! without blanks at its end
+      type(string_type), allocatable :: words(:)        !! none of an empty list
+      integer :: first, last
+
+      allocate(words(0))
+      last = -1
+      do while (last + 1 < len(list))
+         first = last + 2
+         last = first - 2 + index(list(first:)//'/', '/')
+         call append(words, list(first:last))
+      end do
+   end function split_words
 
    !> A string without any of its blanks and tabs.
    pure function without_blanks(string) result(squeezed)

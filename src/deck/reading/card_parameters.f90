@@ -6,7 +6,7 @@ module card_parameters
    use deck_source, only: place_type
    use kinds, only: dp
    use spelling, only: known_choices
-   use text, only: append, integer_fault, read_integer, read_real, real_fault, string_type, &
+   use text, only: integer_fault, read_integer, read_real, real_fault, split_words, string_type, &
       to_text, to_upper, without_blanks
    implicit none
    private
@@ -202,20 +202,5 @@ contains
       if (len(parameter_text(card, name)) > 0) call choose(card, name, 'YES/NO', report, choice)
       is_on = choice == 'YES'
    end function is_on
-
-   pure function split_words(choices) result(words)
-      character(*), intent(in) :: choices
-      type(string_type), allocatable :: words(:)
-      integer :: first, slash
-
-      first = 1
-      do
-         slash = index(choices(first:), '/')
-         if (slash == 0) exit
-         call append(words, choices(first:first + slash - 2))
-         first = first + slash
-      end do
-      call append(words, choices(first:))
-   end function split_words
 
 end module card_parameters

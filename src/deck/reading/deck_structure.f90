@@ -5,7 +5,7 @@ module deck_structure
    use cards, only: cards_type, field_place, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use keywords, only: built, in_model, in_step, known_keyword_type, known_keywords, not_needed
+   use keywords, only: built, in_model, in_step, keyword_type, known_keywords, not_needed
    use text, only: to_text, to_upper
    implicit none
    private
@@ -214,7 +214,7 @@ contains
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
-      type(known_keyword_type) :: known
+      type(keyword_type) :: known
       integer :: n
 
       known = known_keywords(card%known)

@@ -4,13 +4,13 @@ module keyword_cards
    use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
    use decimal_commas, only: decimal_comma_words
    use deck_report, only: deck_report_type
-   use foreign_keywords, only: find_foreign, foreign_keyword_type, not_printed, &
-      passed_over, refused_always, refused_with_data
+   use deck_source, only: place_type
    use kinds, only: dp
-   use keywords, only: built, find_keyword, find_parameter, known_keywords, known_parameter_type, &
-      not_needed, parameter_names, refusal, refused
+   use keywords, only: advice_type, built, find_advice, find_keyword, find_parameter, is_word, &
+      known_keywords, known_names, known_parameter_type, not_needed, not_printed, &
+      parameter_names, passed_over, refused, refused_with_data, word_advice
+   use spelling, only: edit_distance, is_slip, nearest_name
    use text, only: is_whole, read_real, string_type, to_upper
-   use unknown_keywords, only: report_unknown_keyword, report_unknown_parameter
    implicit none
    private
    public :: make_keyword_card, is_parameter
@@ -25,6 +25,7 @@ contains
       type(cards_type), intent(inout) :: cards          !! receives notes on what is not needed
       type(keyword_card_type), intent(out) :: card      !! the card, without data
       character(:), allocatable :: name
+      integer :: equals, i
 
       name = without_star(fields(1)%text)
       card%name = ''
@@ -34,32 +35,18 @@ contains
       allocate(card%parameters(0))
       if (card%known == 0) call take_foreign_keyword(name, index(fields(1)%text, '* ') == 1, &
          report, cards, card)
-      if (card%known == 0) then
-         call lose_names(fields(2:), report)
+      if (card%known > 0) then
+         card%name = trim(known_keywords(card%known)%name)
+         call take_parameters(fields(2:), report, cards, card)
          return
       end if
-      card%name = trim(known_keywords(card%known)%name)
-      select case (known_keywords(card%known)%status)
-      case (refused)
-         call report%error(card%place, '*'//card%name//' is refused: '//refusal(card%name, ''))
-      case default
-         call take_parameters(fields(2:), report, cards, card)
-      end select
-   end subroutine make_keyword_card
-
-   !> What a card that is not taken names may be missing elsewhere.
-   subroutine lose_names(fields, report)
-      type(field_type), intent(in) :: fields(:)
-      type(deck_report_type), intent(inout) :: report
-      integer :: i
-
-      do i = 1, size(fields)
-         associate (string => fields(i)%text)
-            if (index(string, '=') > 0) call report%lose(to_upper(without_quotes( &
-               trim(adjustl(string(index(string, '=') + 1:))))))
-         end associate
+      ! A name that a card without effect defines may be missing elsewhere.
+      do i = 2, size(fields)
+         equals = index(fields(i)%text, '=')
+         if (equals > 0) call report%lose(to_upper(without_quotes(trim(adjustl( &
+            fields(i)%text(equals + 1:))))))
       end do
-   end subroutine lose_names
+   end subroutine make_keyword_card
 
    !> Whether the first field of a line behind a keyword card that ends in a comma is a parameter of
    !> it; else the line is data, as in CalculiX.
@@ -86,33 +73,60 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: cards
       type(keyword_card_type), intent(inout) :: card
-      type(foreign_keyword_type) :: foreign
+      type(advice_type) :: advice
+      character(:), allocatable :: message
 
-      foreign = find_foreign(name)
-      select case (foreign%status)
+      advice = find_advice(name)
+      message = '*'//trim(advice%names)//' is refused: '//trim(advice%words)
+      select case (advice%kind)
       case (passed_over)
-         call add_note(cards%notes, '*'//trim(foreign%name)//' is ignored: '// &
-            trim(foreign%reason))
+         call add_note(cards%notes, '*'//trim(advice%names)//' is ignored: '//trim(advice%words))
       case (not_printed)
-         call report%warning(card%place, '*'//trim(foreign%name)//' is not printed; '// &
-            trim(foreign%reason))
-      case (refused_always)
-         card%meant = trim(foreign%stands_for)
-         call report%error(card%place, refused_foreign(foreign))
+         call report%warning(card%place, '*'//trim(advice%names)//' is not printed; '// &
+            trim(advice%words))
+      case (refused)
+         card%meant = trim(advice%keyword)
+         call report%error(card%place, message)
       case (refused_with_data)
-         card%refusal_of_data = refused_foreign(foreign)
-         call add_note(cards%notes, '*'//trim(foreign%name)//' without data is ignored')
+         card%refusal_of_data = message
+         call add_note(cards%notes, '*'//trim(advice%names)//' without data is ignored')
       case default
          call report_unknown_keyword(name, is_text, report, card)
       end select
    end subroutine take_foreign_keyword
 
-   pure function refused_foreign(foreign) result(message)
-      type(foreign_keyword_type), intent(in) :: foreign
-      character(:), allocatable :: message
+   !> Reports a keyword that nobody knows, with the known one that it likely is by its spelling, or
+   !> with what to write in its place by its meaning. All its cards are one mistake.
+   subroutine report_unknown_keyword(name, is_text, report, card)
+      character(*), intent(in) :: name
+      logical, intent(in) :: is_text   ! whether a blank follows the star
+      type(deck_report_type), intent(inout) :: report
+      type(keyword_card_type), intent(inout) :: card
+      type(string_type), allocatable :: names(:)
+      character(:), allocatable :: hint, nearest
+      integer :: i
 
-      message = '*'//trim(foreign%name)//' is refused: '//trim(foreign%reason)
-   end function refused_foreign
+      names = known_names()
+      i = nearest_name(name, names)
+      nearest = 'the nearest known is *'//names(i)%value
+      hint = word_advice(name)
+      if (i <= size(known_keywords) .and. is_slip(name, names(i)%value) .and. &
+         .not. is_word(name)) then
+         hint = nearest
+         card%meant = names(i)%value
+         card%known = i
+      else if (len(hint) > 0) then
+         continue
+      else if (is_text) then
+         hint = 'a comment begins with **'
+      else if (is_near(name, names(i)%value)) then
+         hint = nearest
+      else
+         hint = 'docs/deck.md lists those that are known'
+      end if
+      call report%error(card%place, 'unknown keyword *'//to_upper(name)//'; '//hint, &
+         'keyword '//to_upper(name))
+   end subroutine report_unknown_keyword
 
    !> Blanks inside a keyword count once.
    pure function without_star(string) result(name)
@@ -136,7 +150,7 @@ contains
       type(keyword_card_type), intent(inout) :: card
       type(parameter_type), allocatable :: found(:)
       type(parameter_type) :: parameter
-      integer :: i, n, errors
+      integer :: errors, i, k, n
       logical :: valid
 
       allocate(found(size(fields)))
@@ -156,7 +170,7 @@ contains
          end if
          i = i + 1
          if (.not. valid) cycle
-         if (is_repeated(found(:n), parameter%name)) then
+         if (any([(found(k)%name == parameter%name, k=1, n)])) then
             if (report%error_count() == errors) call report%error(parameter%place, &
                parameter%name//' appears twice on this card')
             cycle
@@ -203,17 +217,6 @@ contains
       call read_real(string, number, is_number)
    end function is_number
 
-   pure logical function is_repeated(found, name)
-      type(parameter_type), intent(in) :: found(:)
-      character(*), intent(in) :: name
-      integer :: i
-
-      is_repeated = .false.
-      do i = 1, size(found)
-         if (found(i)%name == name) is_repeated = .true.
-      end do
-   end function is_repeated
-
    !> Takes one parameter and checks it against the table. A misspelt one is taken as the one that
    !> it likely is.
    subroutine take_parameter(field, report, cards, card, parameter, valid)
@@ -224,6 +227,7 @@ contains
       type(parameter_type), intent(out) :: parameter
       logical, intent(out) :: valid
       type(known_parameter_type) :: known
+      type(advice_type) :: advice
       integer :: equals, errors
 
       errors = report%error_count()
@@ -241,8 +245,9 @@ contains
       else if (len(known%name) == 0) then
          continue
       else if (known%status == refused) then
+         advice = find_advice(known%name, card%name)
          call report%error(field%place, known%name//' is refused on *'//card%name//': '// &
-            refusal(card%name, known%name))
+            trim(advice%words))
       else if (known%needs_value .and. len(parameter%text) == 0) then
          call report%error(field%place, known%name//' needs a value')
       else if (.not. known%takes_value .and. equals <= len(field%text)) then
@@ -257,6 +262,60 @@ contains
          report%error_count() == errors) call add_note(cards%notes, '*'//card%name//': '// &
          known%name//' is ignored')
    end subroutine take_parameter
+
+   !> Reports a parameter that the keyword does not have, and finds the one that it likely is. On
+   !> all cards of the keyword it is one mistake.
+   subroutine report_unknown_parameter(name, place, report, card, known)
+      character(*), intent(in) :: name
+      type(place_type), intent(in) :: place
+      type(deck_report_type), intent(inout) :: report
+      type(keyword_card_type), intent(in) :: card
+      type(known_parameter_type), intent(inout) :: known
+      type(string_type), allocatable :: names(:)
+      character(:), allocatable :: group, hint
+      integer :: i
+
+      group = 'parameter '//to_upper(trim(name))//' of *'//card%name
+      names = parameter_names(card%known)
+      hint = ''
+      i = nearest_name(name, names)
+      if (i > 0) then
+         if (is_slip(name, names(i)%value)) known = find_parameter(card%known, names(i)%value)
+         if (len(known%name) > 0 .or. is_near(name, names(i)%value)) then
+            hint = 'the nearest known is '//names(i)%value
+         end if
+      end if
+      if (len(hint) == 0) hint = listed(card%known, names)
+      if (len(hint) > 0) then
+         call report%error(place, 'unknown '//group//'; '//hint, group)
+      else
+         call report%error(place, 'unknown parameter '//to_upper(trim(name))//'; *'// &
+            card%name//' has none', group)
+      end if
+   end subroutine report_unknown_parameter
+
+   !> The parameters that a keyword takes; empty where none of them means anything.
+   pure function listed(keyword, names) result(list)
+      integer, intent(in) :: keyword
+      type(string_type), intent(in) :: names(:)
+      character(:), allocatable :: list
+      type(known_parameter_type) :: parameter
+      integer :: i
+
+      list = ''
+      do i = 1, size(names)
+         parameter = find_parameter(keyword, names(i)%value)
+         if (parameter%status == built) list = list//', '//parameter%name
+      end do
+      if (len(list) > 0) list = 'it takes '//list(3:)
+   end function listed
+
+   !> Whether a name is near enough to a known one to be worth naming: half of its letters agree.
+   pure logical function is_near(name, known)
+      character(*), intent(in) :: name, known
+
+      is_near = 2*edit_distance(to_upper(name), known) <= len(name)
+   end function is_near
 
    !> The value behind the equals sign.
    pure subroutine take_value(string, equals, parameter)

@@ -7,8 +7,8 @@ module keyword_slips
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use field_separators, only: is_defined
-   use foreign_keywords, only: find_foreign, foreign_keyword_type
-   use keywords, only: find_keyword, find_parameter, known_parameter_type
+   use keywords, only: advice_type, find_advice, find_keyword, find_parameter, &
+      known_parameter_type, no_advice
    use text, only: to_upper
    implicit none
    private
@@ -144,7 +144,7 @@ contains
       character(*), intent(in) :: line        !! card image
       logical, intent(in) :: title            !! whether it is part of the heading
       type(cards_type), intent(in) :: cards   !! the cards so far
-      type(foreign_keyword_type) :: foreign
+      type(advice_type) :: advice
       character(:), allocatable :: name
 
       lacks_star = .false.
@@ -152,8 +152,8 @@ contains
          'ABCDEFGHIJKLMNOPQRSTUVWXYZ') > 0) return
       name = line(first_text(line):index(line//',', ',') - 1)
       name = name(:last_text(name))
-      foreign = find_foreign(name)
-      if (find_keyword(name) == 0 .and. foreign%status == 0) return
+      advice = find_advice(name)
+      if (find_keyword(name) == 0 .and. advice%kind == no_advice) return
       if (title .and. index(line, '=') == 0) return
       lacks_star = names_keyword(line)
       if (lacks_star) lacks_star = .not. is_defined(cards, name)

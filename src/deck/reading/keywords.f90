@@ -1,34 +1,44 @@
-!> The keywords of the dialect: which are understood, which are refused and why, where each may
-!> are, and which parameters it takes.
+!> The keywords of the dialect with their limits and parameters, and what to write in place of
+!> others, as one table.
 module keywords
-   use text, only: append, is_same_name, string_type
+   use text, only: append, is_same_name, split_words, string_type, to_upper, without_blanks
    implicit none
    private
-   public :: known_keyword_type, known_keywords, find_keyword, keyword_names
+   public :: keyword_type, known_keywords, find_keyword, known_names
    public :: built, not_needed, refused
    public :: in_model, in_step, in_both
-   public :: known_parameter_type, find_parameter, parameter_names, refusal
+   public :: known_parameter_type, find_parameter, parameter_names
+   public :: advice_type, find_advice, word_advice, is_word
+   public :: no_advice, passed_over, not_printed, refused_with_data
 
    integer, parameter :: built = 1        !! understood
    integer, parameter :: not_needed = 2   !! read, and means nothing to this program
-   integer, parameter :: refused = 3      !! will not be built; refusal gives the reason
+   integer, parameter :: refused = 3      !! will not be built; the advice gives the reason
 
    integer, parameter :: in_model = 1     !! is before the first *STEP
    integer, parameter :: in_step = 2      !! is between *STEP and *END STEP
    integer, parameter :: in_both = 3      !! is anywhere
 
+   ! Kinds of advice; that of a keyword may also be `refused`.
+   integer, parameter :: no_advice = 0
+   integer, parameter :: passed_over = 4         !! keyword that means nothing to this program
+   integer, parameter :: not_printed = 5         !! keyword that asks for output that there is not
+   integer, parameter :: refused_with_data = 6   !! keyword that means something with data only
+   integer, parameter :: of_parameter = 7        !! parameter, which is refused
+   integer, parameter :: of_word = 8             !! part of an unknown keyword, without blanks
+
    integer, parameter :: many = huge(1)
 
    !> One keyword. Its parameters are separated by slashes; `=` marks one that needs a value and `?`
-   !> one that may have one; `~` is before one that is not needed, `!` before a refused one.
-   type :: known_keyword_type
+   !> one that may have one; `~` is before one that is not needed.
+   type :: keyword_type
       character(32) :: name          !! without the star
-      integer :: status              !! built, not_needed or refused
+      integer :: status              !! built or not_needed
       integer :: section             !! in_model, in_step or in_both
       integer :: least_data          !! fewest data cards
       integer :: most_data           !! most data cards
       character(160) :: parameters   !! its parameters
-   end type known_keyword_type
+   end type keyword_type
 
    !> One parameter of a keyword.
    type :: known_parameter_type
@@ -38,177 +48,259 @@ module keywords
       logical :: takes_value = .false.      !! whether a value may follow
    end type known_parameter_type
 
-   !> Why a keyword, or a parameter of it, is refused.
-   type :: refusal_type
-      character(32) :: keyword     !! keyword; blank for all that have the parameter
-      character(20) :: parameter   !! parameter, blank for the keyword itself
-      character(72) :: reason      !! why
-   end type refusal_type
-
-   type(known_keyword_type), parameter :: model_keywords(30) = [ &
-      known_keyword_type('HEADING', built, in_model, 0, many, ''), &
-      known_keyword_type('OPTIONS', built, in_model, 0, 0, &
-         'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
-      known_keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
-      'ABSOLUTE ZERO=/STEFAN BOLTZMANN=/~NEWTON GRAVITY=/~UNIVERSAL GAS CONSTANT='), &
-      known_keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
-      known_keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
-      known_keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
-      known_keyword_type('NGEN', built, in_model, 1, many, 'NSET=/!LINE='), &
-      known_keyword_type('ELGEN', built, in_model, 1, many, 'ELSET='), &
-      known_keyword_type('NSET', built, in_model, 1, many, &
-      'NSET=/GENERATE/ELSET=/SURFACE=/INSTANCE=/~INTERNAL/~UNSORTED'), &
-      known_keyword_type('ELSET', built, in_model, 1, many, &
-      'ELSET=/GENERATE/INSTANCE=/~INTERNAL/~UNSORTED'), &
-      known_keyword_type('SURFACE', built, in_model, 1, many, 'NAME=/TYPE=/~INTERNAL'), &
-      known_keyword_type('MATERIAL', built, in_model, 0, 0, 'NAME='), &
-      known_keyword_type('ELASTIC', built, in_model, 1, many, 'TYPE='), &
-      known_keyword_type('EXPANSION', built, in_model, 1, many, 'TYPE=/~ZERO='), &
-      known_keyword_type('CONDUCTIVITY', built, in_model, 1, many, 'TYPE='), &
-      known_keyword_type('DENSITY', built, in_model, 1, many, ''), &
-      known_keyword_type('SPECIFIC HEAT', not_needed, in_model, 0, many, ''), &
-      known_keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
-      known_keyword_type('SOLID SECTION', built, in_model, 0, 1, &
-      'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
-      known_keyword_type('AMPLITUDE', built, in_model, 1, many, &
-      'NAME=/TIME=/DEFINITION=/FIXED INTERVAL=/BEGIN=/VALUE=/~SMOOTH=/!USER/!SHIFTX=/!SHIFTY='), &
-      known_keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
-      known_keyword_type('SURFACE INTERACTION', built, in_model, 0, 1, 'NAME='), &
-      known_keyword_type('FRICTION', built, in_both, 1, 1, &
-      'ROUGH/TAUMAX=/~SLIP TOLERANCE=/~ELASTIC SLIP='), &
-      known_keyword_type('GAP CONDUCTANCE', built, in_model, 1, many, &
-      'PRESSURE/CLEARANCE/!USER/!DEPENDENCIES='), &
-      known_keyword_type('GAP LAW', built, in_model, 1, many, &
-      'TYPE=/JUMP=/ROUGHNESS=/EMISSIVITY='), &
-      known_keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
-      'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT/!NO SEPARATION'), &
-      known_keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
-      'INTERACTION=/NAME=/PAIRING=/ADJUST=/~TYPE=/~SMALL SLIDING/!TIED'), &
-      known_keyword_type('TIE', built, in_model, 1, many, 'NAME=/POSITION TOLERANCE=/ADJUST=/'// &
-      '~TYPE=/~NO ROTATION/~NO THICKNESS/!CYCLIC SYMMETRY/!MULTISTAGE/!TIED NSET='), &
-      known_keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
-      known_keyword_type('TRANSFORM', built, in_model, 1, 1, 'NSET=/TYPE=')]
-
-   type(known_keyword_type), parameter :: control_keywords(19) = [ &
-      known_keyword_type('PART', built, in_model, 0, 0, 'NAME='), &
-      known_keyword_type('END PART', built, in_model, 0, 0, ''), &
-      known_keyword_type('ASSEMBLY', built, in_model, 0, 0, 'NAME='), &
-      known_keyword_type('END ASSEMBLY', built, in_model, 0, 0, ''), &
-      known_keyword_type('INSTANCE', built, in_model, 0, 2, 'NAME=/PART=/!LIBRARY='), &
-      known_keyword_type('END INSTANCE', built, in_model, 0, 0, ''), &
-      known_keyword_type('FIXED POINT', built, in_both, 0, 0, &
-      'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
-      known_keyword_type('START', built, in_both, 0, many, 'FROM='), &
-      known_keyword_type('THERMAL SCHEME', built, in_both, 0, 1, 'TYPE='), &
-      known_keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
-      known_keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS=/SURFACE=/ELSET=/DISTANCE='), &
-      known_keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &
-      known_keyword_type('ACCURACY', built, in_model, 1, many, 'ROUNDS='), &
-      known_keyword_type('CONTROLS', not_needed, in_both, 0, many, 'PARAMETERS=/FIELD=/RESET'), &
-      known_keyword_type('EQUATION', built, in_model, 1, many, '!REMOVE/!INPUT='), &
-      known_keyword_type('COUPLING', built, in_model, 0, 0, &
-      'REF NODE=/SURFACE=/CONSTRAINT NAME=/!ORIENTATION=/!ALPHA='), &
-      known_keyword_type('KINEMATIC', built, in_model, 0, many, ''), &
-      known_keyword_type('MPC', refused, in_model, 0, many, ''), &
-      known_keyword_type('RIGID BODY', refused, in_model, 0, many, '')]
-
-   !> Parameters of the cards that write fields.
-   character(*), parameter :: file_parameters = 'FREQUENCY=/~FREQUENCYF=/~NSET=/~GLOBAL=/'// &
-      '~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/~DIRECTIONS=/'// &
-      '~VARIABLE=/!TIME POINTS='
+   !> Why keywords and parameters of other programs are not taken, or what to write in place of them
+   !> and of words of the field.
+   type :: advice_type
+      integer :: kind = no_advice       !! refused, passed_over ...
+      character(16) :: keyword = ''     !! for which one stands, or that has a parameter
+      character(200) :: names = ''      !! what it is about: names separated by slashes
+      character(96) :: words = ''       !! why it is passed over or refused, what to write
+   end type advice_type
 
    !> Parameters of the damping by which Abaqus stabilizes a step.
    character(*), parameter :: stabilization = '~STABILIZE?/~FACTOR=/~ALLSDTOL=/~CONTINUE=/'
 
-   type(known_keyword_type), parameter :: step_keywords(29) = [ &
-      known_keyword_type('STEP', built, in_both, 0, 0, &
-      'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM=/~EXTRAPOLATION=/!PERTURBATION'), &
-      known_keyword_type('STATIC', built, in_step, 0, 1, &
-      stabilization//'DIRECT?/~SOLVER=/!EXPLICIT/!TIME RESET/!TOTAL TIME AT START='), &
-      known_keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
-      'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX=/!TIME RESET/!TOTAL TIME AT START='), &
-      known_keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
-      'CREEP=/'//stabilization// &
-      'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX=/!TIME RESET/!TOTAL TIME AT START='), &
-      known_keyword_type('BOUNDARY', built, in_both, 1, many, &
-      'OP=/AMPLITUDE=/TYPE=/!TIME DELAY=/!USER/!FIXED/!SUBMODEL/!MASS FLOW'), &
-      known_keyword_type('CLOAD', built, in_step, 1, many, &
-      'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
-      known_keyword_type('DLOAD', built, in_step, 1, many, &
-      'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
-      known_keyword_type('DSLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('CFLUX', built, in_step, 1, many, &
-      'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
-      known_keyword_type('DFLUX', built, in_step, 1, many, &
-      'OP=/AMPLITUDE=/!TIME DELAY=/!USER'), &
-      known_keyword_type('FILM', built, in_step, 1, many, &
-      'OP=/AMPLITUDE=/FILM AMPLITUDE=/!TIME DELAY=/!FILM TIME DELAY='), &
-      known_keyword_type('DSFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      known_keyword_type('SFILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
-      known_keyword_type('TEMPERATURE', built, in_step, 1, many, &
-      'OP=/AMPLITUDE=/!TIME DELAY=/!USER/!FILE=/!BSTEP='), &
-      known_keyword_type('CHANGE FRICTION', built, in_step, 0, 0, 'INTERACTION='), &
-      known_keyword_type('MODEL CHANGE', built, in_step, 1, many, &
-      'TYPE=/ADD/REMOVE/!MECHSTRAINTORESIDUAL'), &
-      known_keyword_type('CONTACT INTERFERENCE', built, in_step, 1, many, &
-      'TYPE=/AMPLITUDE=/OP=/SHRINK'), &
-      known_keyword_type('NODE FILE', built, in_step, 0, many, file_parameters), &
-      known_keyword_type('EL FILE', built, in_step, 0, many, file_parameters), &
-      known_keyword_type('CONTACT FILE', built, in_step, 0, many, file_parameters), &
-      known_keyword_type('NODE OUTPUT', built, in_step, 0, many, file_parameters), &
-      known_keyword_type('ELEMENT OUTPUT', built, in_step, 0, many, file_parameters), &
-      known_keyword_type('CONTACT OUTPUT', built, in_step, 0, many, file_parameters), &
-      known_keyword_type('RESTART', not_needed, in_both, 0, 0, &
-      '!READ/STEP=/WRITE/FREQUENCY=/OVERLAY'), &
-      known_keyword_type('NODE PRINT', built, in_step, 1, many, &
-      'NSET=/FREQUENCY=/TOTALS=/GLOBAL=/~FREQUENCYF=/!TIME POINTS='), &
-      known_keyword_type('EL PRINT', built, in_step, 1, many, &
-      'ELSET=/FREQUENCY=/GLOBAL=/~TOTALS=/~FREQUENCYF=/!TIME POINTS='), &
-      known_keyword_type('CONTACT PRINT', built, in_step, 0, many, &
-      'FREQUENCY=/~SLAVE=/~MASTER=/~NSET=/~SET=/~GLOBAL=/~TOTALS=/!TIME POINTS='), &
-      known_keyword_type('END STEP', built, in_step, 0, 0, ''), &
-      known_keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
+   !> Parameters of the cards that write fields.
+   character(*), parameter :: file_parameters = 'FREQUENCY=/~FREQUENCYF=/~NSET=/~GLOBAL=/'// &
+      '~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/~DIRECTIONS=/~VARIABLE='
 
-   !> Every keyword of the dialect.
-   type(known_keyword_type), parameter :: known_keywords(78) = &
-      [model_keywords, control_keywords, step_keywords]
+   type(keyword_type), parameter :: known_keywords(76) = [ &
+      keyword_type('HEADING', built, in_model, 0, many, ''), &
+      keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
+      keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
+         'ABSOLUTE ZERO=/STEFAN BOLTZMANN=/~NEWTON GRAVITY=/~UNIVERSAL GAS CONSTANT='), &
+      keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
+      keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
+      keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
+      keyword_type('NGEN', built, in_model, 1, many, 'NSET='), &
+      keyword_type('ELGEN', built, in_model, 1, many, 'ELSET='), &
+      keyword_type('NSET', built, in_model, 1, many, &
+         'NSET=/GENERATE/ELSET=/SURFACE=/INSTANCE=/~INTERNAL/~UNSORTED'), &
+      keyword_type('ELSET', built, in_model, 1, many, &
+         'ELSET=/GENERATE/INSTANCE=/~INTERNAL/~UNSORTED'), &
+      keyword_type('SURFACE', built, in_model, 1, many, 'NAME=/TYPE=/~INTERNAL'), &
+      keyword_type('MATERIAL', built, in_model, 0, 0, 'NAME='), &
+      keyword_type('ELASTIC', built, in_model, 1, many, 'TYPE='), &
+      keyword_type('EXPANSION', built, in_model, 1, many, 'TYPE=/~ZERO='), &
+      keyword_type('CONDUCTIVITY', built, in_model, 1, many, 'TYPE='), &
+      keyword_type('DENSITY', built, in_model, 1, many, ''), &
+      keyword_type('SPECIFIC HEAT', not_needed, in_model, 0, many, ''), &
+      keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
+      keyword_type('SOLID SECTION', built, in_model, 0, 1, &
+         'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
+      keyword_type('AMPLITUDE', built, in_model, 1, many, &
+         'NAME=/TIME=/DEFINITION=/FIXED INTERVAL=/BEGIN=/VALUE=/~SMOOTH='), &
+      keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
+      keyword_type('SURFACE INTERACTION', built, in_model, 0, 1, 'NAME='), &
+      keyword_type('FRICTION', built, in_both, 1, 1, &
+         'ROUGH/TAUMAX=/~SLIP TOLERANCE=/~ELASTIC SLIP='), &
+      keyword_type('GAP CONDUCTANCE', built, in_model, 1, many, 'PRESSURE/CLEARANCE'), &
+      keyword_type('GAP LAW', built, in_model, 1, many, 'TYPE=/JUMP=/ROUGHNESS=/EMISSIVITY='), &
+      keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
+         'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT'), &
+      keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
+         'INTERACTION=/NAME=/PAIRING=/ADJUST=/~TYPE=/~SMALL SLIDING'), &
+      keyword_type('TIE', built, in_model, 1, many, &
+         'NAME=/POSITION TOLERANCE=/ADJUST=/~TYPE=/~NO ROTATION/~NO THICKNESS'), &
+      keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
+      keyword_type('TRANSFORM', built, in_model, 1, 1, 'NSET=/TYPE='), &
+      keyword_type('PART', built, in_model, 0, 0, 'NAME='), &
+      keyword_type('END PART', built, in_model, 0, 0, ''), &
+      keyword_type('ASSEMBLY', built, in_model, 0, 0, 'NAME='), &
+      keyword_type('END ASSEMBLY', built, in_model, 0, 0, ''), &
+      keyword_type('INSTANCE', built, in_model, 0, 2, 'NAME=/PART='), &
+      keyword_type('END INSTANCE', built, in_model, 0, 0, ''), &
+      keyword_type('FIXED POINT', built, in_both, 0, 0, 'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
+      keyword_type('START', built, in_both, 0, many, 'FROM='), &
+      keyword_type('THERMAL SCHEME', built, in_both, 0, 1, 'TYPE='), &
+      keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
+      keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS=/SURFACE=/ELSET=/DISTANCE='), &
+      keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &
+      keyword_type('ACCURACY', built, in_model, 1, many, 'ROUNDS='), &
+      keyword_type('CONTROLS', not_needed, in_both, 0, many, 'PARAMETERS=/FIELD=/RESET'), &
+      keyword_type('EQUATION', built, in_model, 1, many, ''), &
+      keyword_type('COUPLING', built, in_model, 0, 0, 'REF NODE=/SURFACE=/CONSTRAINT NAME='), &
+      keyword_type('KINEMATIC', built, in_model, 0, many, ''), &
+      keyword_type('STEP', built, in_both, 0, 0, &
+         'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM=/~EXTRAPOLATION='), &
+      keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
+      keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
+         'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX='), &
+      keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
+         'CREEP=/'//stabilization//'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX='), &
+      keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE=/TYPE='), &
+      keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('DLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('DSLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('CFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('DFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('FILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
+      keyword_type('DSFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('SFILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
+      keyword_type('TEMPERATURE', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('CHANGE FRICTION', built, in_step, 0, 0, 'INTERACTION='), &
+      keyword_type('MODEL CHANGE', built, in_step, 1, many, 'TYPE=/ADD/REMOVE'), &
+      keyword_type('CONTACT INTERFERENCE', built, in_step, 1, many, &
+         'TYPE=/AMPLITUDE=/OP=/SHRINK'), &
+      keyword_type('NODE FILE', built, in_step, 0, many, file_parameters), &
+      keyword_type('EL FILE', built, in_step, 0, many, file_parameters), &
+      keyword_type('CONTACT FILE', built, in_step, 0, many, file_parameters), &
+      keyword_type('NODE OUTPUT', built, in_step, 0, many, file_parameters), &
+      keyword_type('ELEMENT OUTPUT', built, in_step, 0, many, file_parameters), &
+      keyword_type('CONTACT OUTPUT', built, in_step, 0, many, file_parameters), &
+      keyword_type('RESTART', not_needed, in_both, 0, 0, 'STEP=/WRITE/FREQUENCY=/OVERLAY'), &
+      keyword_type('NODE PRINT', built, in_step, 1, many, &
+         'NSET=/FREQUENCY=/TOTALS=/GLOBAL=/~FREQUENCYF='), &
+      keyword_type('EL PRINT', built, in_step, 1, many, &
+         'ELSET=/FREQUENCY=/GLOBAL=/~TOTALS=/~FREQUENCYF='), &
+      keyword_type('CONTACT PRINT', built, in_step, 0, many, &
+         'FREQUENCY=/~SLAVE=/~MASTER=/~NSET=/~SET=/~GLOBAL=/~TOTALS='), &
+      keyword_type('END STEP', built, in_step, 0, 0, ''), &
+      keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
-   type(refusal_type), parameter :: refusals(32) = [ &
-      refusal_type('EQUATION', 'REMOVE', 'equations hold in all steps'), &
-      refusal_type('EQUATION', 'INPUT', 'take *INCLUDE behind the keyword'), &
-      refusal_type('INSTANCE', 'LIBRARY', 'the mesh is in the deck; give its part'), &
-      refusal_type('COUPLING', 'ORIENTATION', 'faces follow along x and y'), &
-      refusal_type('COUPLING', 'ALPHA', 'small rotations need no penalty'), &
-      refusal_type('MPC', '', 'give its relations by *EQUATION or *COUPLING'), &
-      refusal_type('RIGID BODY', '', 'every body is elastic; give it a high modulus'), &
-      refusal_type('NGEN', 'LINE', &
-      'nodes are generated on straight lines; give those of a curve'), &
-      refusal_type('GAP CONDUCTANCE', 'USER', 'no routine of the user is called; give the table'), &
-      refusal_type('GAP CONDUCTANCE', 'DEPENDENCIES', 'conductance depends on one quantity only'), &
-      refusal_type('MODEL CHANGE', 'MECHSTRAINTORESIDUAL', &
-      'strains and stresses go on from step to step'), &
-      refusal_type('SURFACE BEHAVIOR', 'NO SEPARATION', &
-      'faces that do not come apart are those of *TIE'), &
-      refusal_type('CONTACT PAIR', 'TIED', 'tied faces do not open; take *TIE'), &
-      refusal_type('TIE', 'CYCLIC SYMMETRY', 'only faces that lie opposite each other are tied'), &
-      refusal_type('TIE', 'MULTISTAGE', 'only faces that lie opposite each other are tied'), &
-      refusal_type('TIE', 'TIED NSET', 'POSITION TOLERANCE= selects the nodes that are tied'), &
-      refusal_type('', 'TIME POINTS', 'FREQUENCY= selects the increments that are printed'), &
-      refusal_type('', 'TIME DELAY', 'shift the times of the *AMPLITUDE'), &
-      refusal_type('', 'FILM TIME DELAY', 'shift the times of the *AMPLITUDE'), &
-      refusal_type('', 'USER', 'no routine of the user is called; give the values'), &
-      refusal_type('', 'TIME RESET', 'times of the steps add up'), &
-      refusal_type('', 'TOTAL TIME AT START', 'times of the steps add up, from 0'), &
-      refusal_type('BOUNDARY', 'FIXED', 'give the values'), &
-      refusal_type('BOUNDARY', 'SUBMODEL', 'give the values'), &
-      refusal_type('BOUNDARY', 'MASS FLOW', 'there are no fluids'), &
-      refusal_type('TEMPERATURE', 'FILE', 'give the values, or solve *HEAT TRANSFER before'), &
-      refusal_type('TEMPERATURE', 'BSTEP', 'give the values, or solve *HEAT TRANSFER before'), &
-      refusal_type('STATIC', 'EXPLICIT', 'loads are slow'), &
-      refusal_type('AMPLITUDE', 'SHIFTX', 'add the shift to the times'), &
-      refusal_type('AMPLITUDE', 'SHIFTY', 'add the shift to the factors'), &
-      refusal_type('RESTART', 'READ', 'a run begins with the first step'), &
-      refusal_type('STEP', 'PERTURBATION', 'steps go on from the one before; leave it out')]
+   !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
+   type(advice_type), parameter :: advice(87) = [ &
+      advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
+         'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
+         'it belongs to *CONTACT'), &
+      advice_type(passed_over, '', 'CONTACT CONTROLS', 'contact is exact'), &
+      advice_type(passed_over, '', 'SECTION CONTROLS', 'elements have no hourglass modes'), &
+      advice_type(passed_over, '', 'OUTPUT', 'fields are written at every increment'), &
+      advice_type(passed_over, '', 'DAMPING/CONTACT DAMPING', 'loads are slow'), &
+      advice_type(passed_over, '', 'NORMAL', 'the normal of the plane is z'), &
+      advice_type(passed_over, '', 'DEPVAR', 'materials have no state'), &
+      advice_type(passed_over, '', 'PREPRINT', 'the listing has the whole deck'), &
+      advice_type(passed_over, '', 'PRINT', 'the listing has all that it has to say'), &
+      advice_type(passed_over, '', 'MONITOR', 'the result has all nodes'), &
+      advice_type(not_printed, '', 'SECTION PRINT/FACE PRINT', &
+         'sums over a set of nodes: *NODE PRINT, TOTALS=ONLY; over a contact: /contact of the '// &
+         'result'), &
+      advice_type(refused_with_data, '', 'RADIATE', &
+         'heat leaves sides by *FILM and *DFLUX; only contact gaps radiate'), &
+      advice_type(refused, '', 'PLASTIC/CYCLIC HARDENING/DEFORMATION PLASTICITY/HYPERELASTIC/'// &
+         'HYPERFOAM/CREEP/USER MATERIAL', &
+         'materials are linear: *ELASTIC, *EXPANSION, *CONDUCTIVITY; leave it out'), &
+      advice_type(refused, 'SOLID SECTION', 'SHELL SECTION/BEAM SECTION/BEAM GENERAL SECTION/'// &
+         'MEMBRANE SECTION', &
+         'elements are plane: CPE, CPS or CAX, with *SOLID SECTION'), &
+      advice_type(refused, 'SOLID SECTION', 'FLUID SECTION', 'there are no fluids'), &
+      advice_type(refused, '', 'FLUID CONSTANTS/SPECIFIC GAS CONSTANT/MASS FLOW', &
+         'there are no fluids'), &
+      advice_type(refused, '', 'NODAL THICKNESS', 'give the thickness on *SOLID SECTION'), &
+      advice_type(refused, '', 'DISTRIBUTION', &
+         'give the axes of each element set on an *ORIENTATION of its own'), &
+      advice_type(refused, '', 'GAP HEAT GENERATION', 'friction makes no heat'), &
+      advice_type(refused, '', 'GAP RADIATION', &
+         'gaps radiate by EMISSIVITY= of *GAP LAW, such as *GAP LAW, TYPE=GAS, EMISSIVITY=0.8'), &
+      advice_type(refused, '', 'VIEWFACTOR', 'only contact gaps radiate'), &
+      advice_type(refused, 'CONTACT PAIR', 'CONTACT', &
+         'there is no general contact; name the faces of each *CONTACT PAIR'), &
+      advice_type(refused, '', 'KINEMATIC COUPLING/DISTRIBUTING/DISTRIBUTING COUPLING/CYCLIC '// &
+         'SYMMETRY MODEL/PRE-TENSION SECTION/SUBMODEL/SPRING/DASHPOT', &
+         'bodies are held by *BOUNDARY, contact, *TIE, *EQUATION and *COUPLING'), &
+      advice_type(refused, '', 'MPC', 'give its relations by *EQUATION or *COUPLING'), &
+      advice_type(refused, '', 'RIGID BODY', 'every body is elastic; give it a high modulus'), &
+      advice_type(refused, '', 'GAP', 'name the faces of a *CONTACT PAIR'), &
+      advice_type(refused, '', 'MASS', 'weight is *DENSITY with GRAV on *DLOAD'), &
+      advice_type(refused, '', 'CHANGE MATERIAL/CHANGE SOLID SECTION/CHANGE SURFACE BEHAVIOR', &
+         'materials, elements and sections are the same in all steps'), &
+      advice_type(refused, 'STATIC', 'FREQUENCY/COMPLEX FREQUENCY/BUCKLE/DYNAMIC/MODAL DYNAMIC/'// &
+         'STEADY STATE DYNAMICS/VISCO/UNCOUPLED TEMPERATURE-DISPLACEMENT/SENSITIVITY/GREEN/'// &
+         'ELECTROMAGNETICS/CFD', &
+         'steps are *STATIC, or STEADY STATE *HEAT TRANSFER or *COUPLED '// &
+         'TEMPERATURE-DISPLACEMENT'), &
+      advice_type(refused, 'STATIC', 'NO ANALYSIS', &
+         'thercon check DECK reads a deck without solving it'), &
+      advice_type(refused, '', 'TIME POINTS', &
+         'FREQUENCY= selects the increments that are printed; increments end at the times of '// &
+         '*VERIFY'), &
+      advice_type(of_parameter, 'EQUATION', 'REMOVE', 'equations hold in all steps'), &
+      advice_type(of_parameter, 'EQUATION', 'INPUT', 'take *INCLUDE behind the keyword'), &
+      advice_type(of_parameter, 'INSTANCE', 'LIBRARY', 'the mesh is in the deck; give its part'), &
+      advice_type(of_parameter, 'COUPLING', 'ORIENTATION', 'faces follow along x and y'), &
+      advice_type(of_parameter, 'COUPLING', 'ALPHA', 'small rotations need no penalty'), &
+      advice_type(of_parameter, 'NGEN', 'LINE', &
+         'nodes are generated on straight lines; give those of a curve'), &
+      advice_type(of_parameter, 'GAP CONDUCTANCE', 'USER', &
+         'no routine of the user is called; give the table'), &
+      advice_type(of_parameter, 'GAP CONDUCTANCE', 'DEPENDENCIES', &
+         'conductance depends on one quantity only'), &
+      advice_type(of_parameter, 'MODEL CHANGE', 'MECHSTRAINTORESIDUAL', &
+         'strains and stresses go on from step to step'), &
+      advice_type(of_parameter, 'SURFACE BEHAVIOR', 'NO SEPARATION', &
+         'faces that do not come apart are those of *TIE'), &
+      advice_type(of_parameter, 'CONTACT PAIR', 'TIED', 'tied faces do not open; take *TIE'), &
+      advice_type(of_parameter, 'CONTACT PAIR', 'HCRIT/MECHANICAL CONSTRAINT/EXTENSION ZONE', &
+         'contact is exact; leave it out'), &
+      advice_type(of_parameter, 'TIE', 'CYCLIC SYMMETRY/MULTISTAGE', &
+         'only faces that lie opposite each other are tied'), &
+      advice_type(of_parameter, 'TIE', 'TIED NSET', &
+         'POSITION TOLERANCE= selects the nodes that are tied'), &
+      advice_type(of_parameter, 'BOUNDARY', 'FIXED/SUBMODEL', 'give the values'), &
+      advice_type(of_parameter, 'BOUNDARY', 'MASS FLOW', 'there are no fluids'), &
+      advice_type(of_parameter, 'TEMPERATURE', 'FILE/BSTEP', &
+         'give the values, or solve *HEAT TRANSFER before'), &
+      advice_type(of_parameter, 'STATIC', 'EXPLICIT', 'loads are slow'), &
+      advice_type(of_parameter, 'AMPLITUDE', 'SHIFTX', 'add the shift to the times'), &
+      advice_type(of_parameter, 'AMPLITUDE', 'SHIFTY', 'add the shift to the factors'), &
+      advice_type(of_parameter, 'RESTART', 'READ', 'a run begins with the first step'), &
+      advice_type(of_parameter, 'STEP', 'PERTURBATION', &
+         'steps go on from the one before; leave it out'), &
+      advice_type(of_parameter, 'FRICTION', 'LAGRANGE', &
+         'friction is Coulomb''s with one coefficient; leave it out'), &
+      advice_type(of_parameter, '', 'TIME POINTS', &
+         'FREQUENCY= selects the increments that are printed'), &
+      advice_type(of_parameter, '', 'TIME DELAY/FILM TIME DELAY', &
+         'shift the times of the *AMPLITUDE'), &
+      advice_type(of_parameter, '', 'USER', 'no routine of the user is called; give the values'), &
+      advice_type(of_parameter, '', 'TIME RESET', 'times of the steps add up'), &
+      advice_type(of_parameter, '', 'TOTAL TIME AT START', 'times of the steps add up, from 0'), &
+      advice_type(of_parameter, '', 'RIKS', &
+         'loads and temperatures follow the time; leave it out'), &
+      advice_type(of_parameter, '', 'MXDEM', 'heat capacity is not modelled; leave it out'), &
+      advice_type(of_parameter, '', 'CREEP', 'materials are linear; leave it out'), &
+      advice_type(of_parameter, '', 'DEPENDENCIES/TEMPERATURE', &
+         'properties are constant; leave it out'), &
+      advice_type(of_parameter, '', 'INPUT', 'data in a file of their own are *INCLUDE, INPUT='), &
+      advice_type(of_parameter, '', 'INSTANCE', 'write the name as INSTANCE.NAME'), &
+      advice_type(of_word, '', 'RADIA', &
+         'heat leaves faces by *FILM and *DFLUX; only contact gaps radiate'), &
+      advice_type(of_word, '', 'FLUX/CECHARGE/HEATSOURCE/HEATGEN', &
+         'heat is applied by *CFLUX at nodes, *DFLUX on faces and in bodies'), &
+      advice_type(of_word, '', 'FILM/CONVECT/COOLING', &
+         'convection is *FILM, on element faces or on a *SURFACE'), &
+      advice_type(of_word, '', 'PRESSURE/TRACTION', &
+         'pressure is P1 to P4 on *DLOAD, or P on *DSLOAD for a *SURFACE'), &
+      advice_type(of_word, '', 'GRAVITY/WEIGHT/CENTRIF/ROTATION', &
+         'weight and rotation are GRAV and CENTRIF on *DLOAD'), &
+      advice_type(of_word, '', 'FORCE/LOAD', &
+         'forces are *CLOAD at nodes, *DLOAD on elements, *DSLOAD on surfaces'), &
+      advice_type(of_word, '', 'DISPLACEMENT/SPC/SUPPORT/CONSTRAINT/FIXED/SYMMETRY', &
+         '*BOUNDARY prescribes displacements (1, 2) and temperatures (11)'), &
+      advice_type(of_word, '', 'TEMP', &
+         '*BOUNDARY prescribes temperatures (11), *INITIAL CONDITIONS gives the first ones'), &
+      advice_type(of_word, '', 'POISSON/YOUNG/MODULUS/STIFFNESS', &
+         '*ELASTIC has Young''s modulus and Poisson''s ratio'), &
+      advice_type(of_word, '', 'CAPACITY/LATENT/ENTHALPY', &
+         'heat capacity is not modelled; leave it out'), &
+      advice_type(of_word, '', 'ALPHA/CTE', 'the coefficient of thermal expansion is *EXPANSION'), &
+      advice_type(of_word, '', 'CONDUCTANCE/RESISTANCE', &
+         'the conductance of a contact is *GAP LAW or *GAP CONDUCTANCE'), &
+      advice_type(of_word, '', 'INTERFERENCE/OVERCLOSURE', &
+         'give an overlap as a negative VALUE= of *CLEARANCE'), &
+      advice_type(of_word, '', 'CONTACT', &
+         'contact is *SURFACE, *SURFACE INTERACTION and *CONTACT PAIR'), &
+      advice_type(of_word, '', 'THICKNESS', 'the thickness is the data of *SOLID SECTION'), &
+      advice_type(of_word, '', 'SECTION', 'bodies have *SOLID SECTION'), &
+      advice_type(of_word, '', 'COORDINATE/GRID', 'nodes and their coordinates are *NODE'), &
+      advice_type(of_word, '', 'CONNECTIVITY/TOPOLOGY', 'elements and their nodes are *ELEMENT'), &
+      advice_type(of_word, '', 'TITLE', 'the title is the data of *HEADING'), &
+      advice_type(of_word, '', 'OUTPUT/FILE/PRINT', &
+         'fields are always written; tables are *NODE PRINT, *EL PRINT, *CONTACT PRINT'), &
+      advice_type(of_word, '', 'TOLERANCE/ITERATION/CONVERGENCE', &
+         'tolerance and iterations are parameters of *FIXED POINT'), &
+      advice_type(of_word, '', 'INCREMENT/PERIOD/TIME', &
+         'increments and period are the data of *STATIC, *HEAT TRANSFER or *COUPLED ...')]
 
 contains
 
@@ -222,102 +314,131 @@ contains
       end do
    end function find_keyword
 
-   !> The names of all keywords.
-   pure function keyword_names() result(names)
-      type(string_type) :: names(size(known_keywords))   !! in the order of known_keywords
-      integer :: i
+   !> The names of all keywords: first those of known_keywords, then those of other programs.
+   pure function known_names() result(names)
+      type(string_type), allocatable :: names(:)
+      type(string_type), allocatable :: others(:)
+      integer :: i, k
 
+      allocate(names(0))
       do i = 1, size(known_keywords)
-         names(i)%value = trim(known_keywords(i)%name)
+         call append(names, trim(known_keywords(i)%name))
       end do
-   end function keyword_names
+      do i = 1, size(advice)
+         if (any(advice(i)%kind == [of_parameter, of_word])) cycle
+         others = split_words(trim(advice(i)%names))
+         do k = 1, size(others)
+            call append(names, others(k)%value)
+         end do
+      end do
+   end function known_names
 
    !> Names of the parameters of a keyword.
    pure function parameter_names(known) result(names)
       integer, intent(in) :: known                     !! index into known_keywords
       type(string_type), allocatable :: names(:)       !! in the order of the table
-      type(string_type), allocatable :: entries(:)
       type(known_parameter_type) :: parameter
       integer :: i
 
-      entries = parameter_entries(known)
-      allocate(names(size(entries)))
-      do i = 1, size(entries)
-         parameter = parsed_entry(entries(i)%value)
+      names = split_words(trim(known_keywords(known)%parameters))
+      do i = 1, size(names)
+         parameter = parsed_entry(names(i)%value)
          names(i)%value = parameter%name
       end do
    end function parameter_names
 
-   !> Finds a parameter of a keyword, whatever its case and blanks; its name is empty for an unknown
-   !> one.
+   !> Finds a parameter of a keyword, or one that is refused, whatever its case and blanks; its name
+   !> is empty for an unknown one.
    pure function find_parameter(known, name) result(parameter)
       integer, intent(in) :: known              !! index into known_keywords
       character(*), intent(in) :: name          !! name as written
       type(known_parameter_type) :: parameter   !! what the table says of it
       type(string_type), allocatable :: entries(:)
+      type(advice_type) :: found
       integer :: i
 
-      entries = parameter_entries(known)
+      entries = split_words(trim(known_keywords(known)%parameters))
       do i = 1, size(entries)
          parameter = parsed_entry(entries(i)%value)
          if (is_same_name(parameter%name, name)) return
       end do
-      parameter%name = ''
+      found = find_advice(name, trim(known_keywords(known)%name))
+      parameter = known_parameter_type(status=refused)
+      parameter%name = trim(found%names)
    end function find_parameter
-
-   !> Why a keyword or a parameter of it is refused.
-   pure function refusal(keyword, parameter) result(reason)
-      character(*), intent(in) :: keyword     !! name of the keyword
-      character(*), intent(in) :: parameter   !! name of the parameter, empty for the keyword itself
-      character(:), allocatable :: reason     !! why
-      integer :: i
-
-      reason = ''
-      do i = 1, size(refusals)
-         if (refusals(i)%parameter /= parameter) cycle
-         if (any(refusals(i)%keyword == [character(32) :: keyword, ''])) then
-            reason = trim(refusals(i)%reason)
-            if (refusals(i)%keyword == keyword) return
-         end if
-      end do
-   end function refusal
-
-   !> What is between the slashes of the table.
-   pure function parameter_entries(known) result(entries)
-      integer, intent(in) :: known
-      type(string_type), allocatable :: entries(:)
-      character(:), allocatable :: rest
-      integer :: slash
-
-      allocate(entries(0))
-      rest = trim(known_keywords(known)%parameters)
-      do while (len(rest) > 0)
-         slash = index(rest, '/')
-         if (slash == 0) slash = len(rest) + 1
-         call append(entries, rest(:slash - 1))
-         rest = rest(min(slash + 1, len(rest) + 1):)
-      end do
-   end function parameter_entries
 
    pure function parsed_entry(entry) result(parameter)
       character(*), intent(in) :: entry
       type(known_parameter_type) :: parameter
       integer :: first, last
 
-      first = 2
-      select case (entry(1:1))
-      case ('~')
+      first = 1
+      if (entry(1:1) == '~') then
          parameter%status = not_needed
-      case ('!')
-         parameter%status = refused
-      case default
-         first = 1
-      end select
+         first = 2
+      end if
       last = len(entry)
       parameter%needs_value = entry(last:last) == '='
       parameter%takes_value = parameter%needs_value .or. entry(last:last) == '?'
       if (parameter%takes_value) last = last - 1
       parameter%name = entry(first:last)
    end function parsed_entry
+
+   !> The advice on a keyword of another program, or on a parameter.
+   pure function find_advice(name, keyword) result(found)
+      character(*), intent(in) :: name                !! as written, without the star
+      character(*), intent(in), optional :: keyword   !! the keyword that has the parameter
+      type(advice_type) :: found                      !! with the one name; no_advice where none is
+      integer :: first, i, last
+
+      do i = 1, size(advice)
+         if (advice(i)%kind == of_word) exit
+         if (present(keyword) .neqv. advice(i)%kind == of_parameter) cycle
+         if (present(keyword)) then
+            if (all(advice(i)%keyword /= [character(32) :: keyword, ''])) cycle
+         end if
+         last = -1
+         do while (last + 1 < len_trim(advice(i)%names))
+            first = last + 2
+            last = first - 2 + index(advice(i)%names(first:)//'/', '/')
+            if (.not. is_same_name(advice(i)%names(first:last), name)) cycle
+            found = advice(i)
+            found%names = advice(i)%names(first:last)
+            return
+         end do
+      end do
+   end function find_advice
+
+   !> What to write in place of an unknown keyword; empty where its words tell nothing.
+   pure function word_advice(name) result(words)
+      character(*), intent(in) :: name         !! without the star
+      character(:), allocatable :: words       !! such as "forces are *CLOAD at nodes, ..."
+      type(string_type), allocatable :: parts(:)
+      integer :: i, k
+
+      words = ''
+      do i = 1, size(advice)
+         if (advice(i)%kind /= of_word) cycle
+         parts = split_words(trim(advice(i)%names))
+         do k = 1, size(parts)
+            if (index(to_upper(without_blanks(name)), parts(k)%value) == 0) cycle
+            words = trim(advice(i)%words)
+            return
+         end do
+      end do
+   end function word_advice
+
+   !> Whether an unknown keyword is itself a word that tells what is meant, so that its spelling
+   !> does not count.
+   pure logical function is_word(name)
+      character(*), intent(in) :: name         !! without the star
+      integer :: i
+
+      is_word = .false.
+      do i = 1, size(advice)
+         if (advice(i)%kind == of_word) is_word = is_word .or. &
+            index('/'//trim(advice(i)%names)//'/', '/'//to_upper(without_blanks(name))//'/') > 0
+      end do
+   end function is_word
 
 end module keywords
