@@ -28,7 +28,7 @@ module deck_builder
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
    use errors, only: error_type
-   use heat_checks, only: check_heat_paths, check_starts
+   use heat_checks, only: check_constants, check_heat_paths, check_starts
    use shape_checks, only: check_folds
    use load_application, only: apply_boundaries, apply_loads, apply_temperatures
    use load_checks, only: first_heat
@@ -36,7 +36,6 @@ module deck_builder
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use quantity_types, only: quantity_type
-   use radiation_checks, only: check_constants
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
    use text, only: to_text
    use touch_checks, only: check_touches

@@ -35,7 +35,9 @@ contains
       integer :: uses(4, size(model%mesh%element_number))
       logical :: inverted(size(model%mesh%element_number))
 
-      call check_size(context, model%mesh, report)
+      ! The mesh once it is refined.
+      call check_numbers(context%levels_place, &
+         size(model%mesh%element_number)*4_long**context%levels, model%mesh, report)
       call check_sections(context, model, report)
       call check_materials(context, model, report)
       call check_planes(context, model%mesh, report)
@@ -45,16 +47,6 @@ contains
       call check_sides(context, model%mesh, inverted, uses, report)
       call check_loads(context, model, uses, report)
    end subroutine check_model
-
-   !> The refined mesh, its matrices and the new numbers of its nodes fit into default integers.
-   subroutine check_size(context, mesh, report)
-      type(deck_context_type), intent(in) :: context
-      type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
-
-      call check_numbers(context%levels_place, &
-         size(mesh%element_number)*4_long**context%levels, mesh, report)
-   end subroutine check_size
 
    !> A mesh with more elements, its matrices and the new numbers of its nodes fit into default
    !> integers.

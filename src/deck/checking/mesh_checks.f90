@@ -14,13 +14,13 @@ module mesh_checks
    public :: check_planes, check_sides
 
    !> One side of one element.
-   type :: side_type
+   type :: element_side_type
       integer :: element = 0   !! element index
       integer :: face = 0      !! its side, 1, 2, ...
       integer :: low = 0       !! the corner with the smaller index
       integer :: high = 0      !! the other
       integer :: middle = 0    !! midside node, 0 if there is none
-   end type side_type
+   end type element_side_type
 
 contains
 
@@ -65,7 +65,7 @@ contains
       !> (4, elements) elements that meet at each side; 0 where an error says that it is wrong
       integer, intent(out) :: uses(:, :)
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      type(side_type) :: sides(4*size(mesh%element_number))
+      type(element_side_type) :: sides(4*size(mesh%element_number))
       integer, allocatable :: order(:)
       integer :: first, last, n
 
@@ -92,7 +92,7 @@ contains
    pure subroutine list_sides(sound, mesh, sides, n)
       logical, intent(in) :: sound(:)   !! (elements)
       type(mesh_type), intent(in) :: mesh
-      type(side_type), intent(inout) :: sides(:)
+      type(element_side_type), intent(inout) :: sides(:)
       integer, intent(out) :: n
       integer :: e, f, nodes(3)
 
@@ -103,7 +103,7 @@ contains
             do f = 1, element_corner_count(kind)
                n = n + 1
                nodes(:side_node_count(kind)) = mesh%element_nodes(side_nodes(kind, f), e)
-               sides(n) = side_type(e, f, minval(nodes([1, side_node_count(kind)])), &
+               sides(n) = element_side_type(e, f, minval(nodes([1, side_node_count(kind)])), &
                   maxval(nodes([1, side_node_count(kind)])), 0)
                if (side_node_count(kind) == 3) sides(n)%middle = nodes(2)
             end do
@@ -115,7 +115,7 @@ contains
    subroutine check_meeting(context, mesh, sides, uses, report)
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
-      type(side_type), intent(in) :: sides(:)
+      type(element_side_type), intent(in) :: sides(:)
       integer, intent(inout) :: uses(:, :)
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: fault
@@ -147,7 +147,7 @@ contains
    subroutine check_middles(context, mesh, sides, report)
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
-      type(side_type), intent(in) :: sides(:)
+      type(element_side_type), intent(in) :: sides(:)
       type(deck_report_type), intent(inout) :: report
       logical :: corner(size(mesh%node_number))
       integer :: first(size(mesh%node_number)), i

@@ -6,16 +6,35 @@ module touch_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_kinds, only: side_nodes
-   use element_sides, only: element_sides_type
+   use element_sides, only: element_sides_type, find_sides
    use equations, only: equation_nodes
+   use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
    use sorting, only: number_index_type, sort_order
    use text, only: counted, others, to_text
-   use touching_sides, only: find_touches, touch_type
    implicit none
    private
    public :: check_touches
+
+   !> Part of the shorter side by which it may be apart from the other one: coordinates of decks
+   !> have few digits.
+   real(dp), parameter :: close_by = 1.0e-3_dp
+
+   !> Part of the shorter side along which two sides must lie on each other: at corners of bodies
+   !> they meet in a point.
+   real(dp), parameter :: overlapping = 0.05_dp
+
+   real(dp), parameter :: margin = 0.1_dp   !! part of a side by which it may bulge past its nodes
+   integer, parameter :: most_steps = 8     !! to the nearest position on a curved side
+
+   !> A node on a free side that is not one of the side's nodes.
+   type :: touch_type
+      integer :: node = 0      !! node index
+      integer :: side = 0      !! the side, index into the sides
+      integer :: other = 0     !! side of the node that lies on it
+      integer :: partner = 0   !! node of the side at the same place, or 0
+   end type touch_type
 
    integer, parameter :: face_hangs = 1, face_meets = 2   !! kinds of touches
 
@@ -32,6 +51,7 @@ contains
       integer, allocatable :: order(:), key(:, :)         ! (3, touches) as keys_of
       integer :: first, k, last
 
+      sides = find_sides(model%mesh)
       call find_touches(model%mesh, sides, touches)
       if (size(touches) == 0) return
       call drop_related(model, sides, touches)
@@ -51,6 +71,43 @@ contains
          first = last + 1
       end do
    end subroutine check_touches
+
+   !> Finds the nodes that lie on free sides of others, which lie on free sides of the nodes.
+   subroutine find_touches(mesh, sides, touches)
+      type(mesh_type), intent(in) :: mesh                     ! sound, not refined
+      type(element_sides_type), intent(in) :: sides
+      type(touch_type), allocatable, intent(out) :: touches(:)
+      type(touch_type), allocatable :: more(:)
+      integer, allocatable :: free(:), nodes(:), others(:)
+      logical :: is_free(0:size(mesh%node_number))
+      real(dp) :: box(4)
+      integer :: i, k, n, s
+
+      free = pack([(s, s=1, sides%count)], sides%elements(2, :sides%count) == 0)
+      is_free = .false.
+      is_free([sides%ends(:, free)]) = .true.
+      nodes = pack([(n, n=1, size(is_free) - 1)], is_free(1:))
+      allocate (touches(0))
+      do i = 1, size(free)
+         associate (ends => sides%ends(:, free(i)))
+            box = box_of(mesh, ends)
+            do n = 1, size(nodes)
+               associate (x => mesh%coordinates(:, nodes(n)))
+                  if (x(1) < box(1) .or. x(1) > box(3)) cycle
+                  if (x(2) < box(2) .or. x(2) > box(4)) cycle
+                  if (any(ends == nodes(n))) cycle
+                  if (place_on(mesh, ends, x, close_by*length_of(mesh, ends)) < 0.0_dp) cycle
+                  others = pack(free, any(sides%ends(:, free) == nodes(n), dim=1))
+                  others = pack(others, [(lie_on_each_other(mesh, sides, free(i), others(k)), &
+                     k=1, size(others))])
+                  more = [(touch_type(nodes(n), free(i), others(k), partner_of(mesh, ends, x)), &
+                     k=1, size(others))]
+               end associate
+               touches = [touches, more]
+            end do
+         end associate
+      end do
+   end subroutine find_touches
 
    !> Drops the touches of faces that a *CONTACT PAIR, *TIE, *EQUATION or *COUPLING relates.
    subroutine drop_related(model, sides, touches)
@@ -222,5 +279,120 @@ contains
             to_text(mesh%element_number(e))
       end associate
    end function side_words
+
+   !> Least x and y, largest x and y of a side.
+   pure function box_of(mesh, ends) result(box)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: ends(3)     ! as element_sides_type
+      real(dp) :: box(4)
+      real(dp) :: wider
+
+      associate (a => mesh%coordinates(:, ends(1)), b => mesh%coordinates(:, ends(3)))
+         box = [min(a, b), max(a, b)]
+      end associate
+      if (ends(2) > 0) then
+         box(:2) = min(box(:2), mesh%coordinates(:, ends(2)))
+         box(3:) = max(box(3:), mesh%coordinates(:, ends(2)))
+      end if
+      wider = margin*length_of(mesh, ends)
+      box(:2) = box(:2) - wider
+      box(3:) = box(3:) + wider
+   end function box_of
+
+   !> The node of a side at a place, or 0.
+   pure integer function partner_of(mesh, ends, x) result(partner)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: ends(3)
+      real(dp), intent(in) :: x(2)
+      integer :: k
+
+      do k = 1, 3
+         partner = ends(k)
+         if (partner == 0) cycle
+         if (norm2(mesh%coordinates(:, partner) - x) <= close_by*length_of(mesh, ends)) return
+      end do
+      partner = 0
+   end function partner_of
+
+   pure function chord(mesh, ends)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: ends(3)
+      real(dp) :: chord(2)
+
+      chord = mesh%coordinates(:, ends(3)) - mesh%coordinates(:, ends(1))
+   end function chord
+
+   pure real(dp) function length_of(mesh, ends) result(length)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: ends(3)
+
+      length = norm2(chord(mesh, ends))
+   end function length_of
+
+   !> Whether two sides of different elements lie on each other along a part of their length, the
+   !> elements on either side. Where bodies overlap, as in a press fit, outlines may coincide too.
+   pure logical function lie_on_each_other(mesh, sides, one, other) result(touching)
+      type(mesh_type), intent(in) :: mesh
+      type(element_sides_type), intent(in) :: sides
+      integer, intent(in) :: one, other
+      real(dp) :: first, last, place, shorter
+      integer :: k
+
+      touching = .false.
+      if (sides%elements(1, one) == sides%elements(1, other)) return
+      associate (mine => sides%ends(:, one), its => sides%ends(:, other))
+         shorter = min(length_of(mesh, mine), length_of(mesh, its))
+         if (shorter <= 0.0_dp) return
+         if (dot_product(chord(mesh, mine), chord(mesh, its)) >= 0.0_dp) return
+         first = 1.0_dp
+         last = 0.0_dp
+         do k = 1, 3
+            if (its(k) == 0) cycle
+            place = place_on(mesh, mine, mesh%coordinates(:, its(k)), close_by*shorter)
+            if (place < 0.0_dp) cycle
+            first = min(first, place)
+            last = max(last, place)
+         end do
+         do k = 1, 3
+            if (mine(k) == 0) cycle
+            if (place_on(mesh, its, mesh%coordinates(:, mine(k)), close_by*shorter) < 0.0_dp) cycle
+            place = place_on(mesh, mine, mesh%coordinates(:, mine(k)), close_by*shorter)
+            first = min(first, place)
+            last = max(last, place)
+         end do
+         touching = (last - first)*length_of(mesh, mine) > overlapping*shorter
+      end associate
+   end function lie_on_each_other
+
+   !> Where a point lies on a side, 0 at its first corner and 1 at its second; -1 where it is
+   !> farther from the side than a distance.
+   pure real(dp) function place_on(mesh, ends, x, distance) result(place)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: ends(3)
+      real(dp), intent(in) :: x(2), distance
+      real(dp), parameter :: settled = 1.0e-9_dp
+      integer :: step
+      real(dp) :: along(2), apart(2), bulge(2), slope(2), change, xi
+
+      ! The side is centre + xi along/2 - xi^2 bulge, xi from -1 to 1; straight ones take one step.
+      bulge = 0.0_dp
+      associate (a => mesh%coordinates(:, ends(1)), b => mesh%coordinates(:, ends(3)))
+         along = 0.5_dp*(b - a)
+         apart = x - 0.5_dp*(a + b)
+         if (ends(2) > 0) bulge = mesh%coordinates(:, ends(2)) - 0.5_dp*(a + b)
+      end associate
+      apart = apart - bulge
+      xi = 0.0_dp
+      do step = 1, most_steps
+         slope = along - 2*xi*bulge
+         if (sum(slope**2) <= 0.0_dp) exit
+         change = dot_product(apart - xi*along + xi**2*bulge, slope)/sum(slope**2)
+         change = min(max(xi + change, -1.0_dp), 1.0_dp) - xi
+         xi = xi + change
+         if (abs(change) <= settled .or. ends(2) == 0) exit
+      end do
+      place = -1.0_dp
+      if (sum((apart - xi*along + xi**2*bulge)**2) <= distance**2) place = 0.5_dp*(xi + 1)
+   end function place_on
 
 end module touch_checks

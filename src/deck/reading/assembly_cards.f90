@@ -5,8 +5,8 @@
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
    use card_parameters, only: has_parameter, parameter_place, parameter_text
-   use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_text, &
-      field_type, keyword_card_type, replace_cards
+   use cards, only: add_note, cards_type, data_card_type, field_text, keyword_card_type, &
+      replace_cards
    use deck_report, only: deck_report_type
    use instance_copies, only: copy_card, instance_type, members_of_instance, read_motion
    use kinds, only: long
@@ -252,17 +252,13 @@ contains
       type(cards_type), intent(inout) :: all
       type(deck_report_type), intent(inout) :: report
       type(instance_type) :: owner
-      integer :: k, first
+      integer :: first, i, k
 
       first = all%keyword_count + 1
-      if (has_parameter(card, 'INSTANCE')) then
-         call find_owner(card, open, report, owner)
-         call copy_card(cards, card, owner, all)
-      else if (open%level == at_assembly) then
-         call copy_card(cards, card, open%assembly, all)
-      else
-         call copy_as_is(cards, card, all)
-      end if
+      owner%name = ''
+      if (open%level == at_assembly) owner = open%assembly
+      if (has_parameter(card, 'INSTANCE')) call find_owner(card, open, report, owner)
+      call copy_card(cards, card, owner, all)
       associate (copy => all%keywords(first))
          do k = 1, size(copy%parameters)
             ! The set of the assembly, whose members are those of an instance.
@@ -272,33 +268,11 @@ contains
          end do
       end associate
       do k = all%keywords(first)%first_data, all%data_count
-         call name_members(open%instances, all%data(k)%fields)
+         do i = 1, size(all%data(k)%fields)
+            call members_of_instance(open%instances, all%data(k)%fields(i)%text)
+         end do
       end do
    end subroutine take_flat
-
-   subroutine copy_as_is(cards, card, all)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      type(cards_type), intent(inout) :: all
-      type(field_type), allocatable :: fields(:)
-      integer :: j
-
-      call add_keyword(all, card)
-      do j = card%first_data, card%last_data
-         fields = cards%data(j)%fields
-         call add_data(all, fields, cards%data(j)%end)
-      end do
-   end subroutine copy_as_is
-
-   subroutine name_members(instances, fields)
-      type(instance_type), intent(in) :: instances(:)
-      type(field_type), intent(inout) :: fields(:)
-      integer :: i
-
-      do i = 1, size(fields)
-         call members_of_instance(instances, fields(i)%text)
-      end do
-   end subroutine name_members
 
    !> The instance that INSTANCE= of a set names.
    subroutine find_owner(card, open, report, owner)

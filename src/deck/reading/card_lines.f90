@@ -3,15 +3,14 @@ module card_lines
    use card_fields, only: append_fields, drop_empty_end, first_text, is_blank, is_comment, &
       is_keyword, last_text, split_fields, without_quotes
    use card_parameters, only: parameter_text
+   use card_slips, only: cut_at_blanks, lacks_star, mend_commas
    use cards, only: add_data, add_keyword, cards_type, extend_data, field_type, keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_types, only: element_type_fields
-   use field_separators, only: cut_at_blanks
    use fixed_columns, only: fixed_columns_type
    use keyword_cards, only: is_parameter, make_keyword_card
-   use keyword_slips, only: lacks_star, mend_commas
    use keywords, only: built, known_keywords
    use look_alikes, only: find_look_alike
    use text, only: read_integer, to_text, to_upper
@@ -80,7 +79,8 @@ contains
             continues = is_parameter(self%pending(1)%text, fields(1)%text)
          else
             call cut_at_blanks(cards, report, fields)
-            continues = .not. is_element(self, fields)
+            ! A line with all fields of an element is the next one: the comma is a slip.
+            continues = self%element_fields == 0 .or. filled(fields) /= self%element_fields
          end if
          if (continues) then
             call append_fields(self%pending, fields)
@@ -107,15 +107,6 @@ contains
       if (index(to_upper(line(:position)), 'SOURCE=') > 0) return
       call report%suspect(place_type(image, position), 'this character is '//words)
    end subroutine suspect_look_alike
-
-   !> Whether a line behind an element that goes on is the next element: the first lacks its last
-   !> nodes, and the comma at its end is a slip.
-   pure logical function is_element(self, fields)
-      type(card_lines_type), intent(in) :: self
-      type(field_type), intent(in) :: fields(:)
-
-      is_element = self%element_fields > 0 .and. filled(fields) == self%element_fields
-   end function is_element
 
    !> Number of fields that are not empty.
    pure integer function filled(fields)
@@ -148,6 +139,7 @@ contains
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report
       type(field_type), allocatable :: fields(:)
+      character(:), allocatable :: lack
       type(place_type) :: place
 
       if (.not. allocated(self%pending)) return
@@ -158,23 +150,14 @@ contains
       else
          place = fields(size(fields))%place
          place%column = place%column - 1
-         call report%error(place, 'the card ends in a comma, but nothing continues it'// &
-            missing_nodes(self, size(fields) - 2))
+         lack = ''
+         if (self%element_fields > 0) lack = ': the element has '//to_text(size(fields) - 2)// &
+            ' of its '//to_text(self%element_fields - 1)//' nodes'
+         call report%error(place, 'the card ends in a comma, but nothing continues it'//lack)
          fields(size(fields))%undefined = .true.
          call take_data(self, fields, place%image, cards, report)
       end if
    end subroutine end_pending
-
-   !> The part of a message that tells how many nodes an element lacks.
-   pure function missing_nodes(self, nodes) result(words)
-      type(card_lines_type), intent(in) :: self
-      integer, intent(in) :: nodes
-      character(:), allocatable :: words
-
-      words = ''
-      if (self%element_fields > 0) words = ': the element has '//to_text(nodes)//' of its '// &
-         to_text(self%element_fields - 1)//' nodes'
-   end function missing_nodes
 
    !> Takes the fields of a card that may continue.
    subroutine take_fields(self, fields, keyword, image, cards, report)
@@ -219,7 +202,13 @@ contains
       end do
       call make_keyword_card(fields, report, cards, card)
       if (card%known > 0 .and. card%name == 'INCLUDE') then
-         call take_include(self, card, report)
+         if (size(card%parameters) > 0) then
+            self%include = card%parameters(1)%text
+            self%include_place = card%parameters(1)%value_place
+         else
+            if (.not. card%flawed) call report%error(card%place, '*INCLUDE needs INPUT=')
+            call report%lose_file()
+         end if
          return
       end if
       if (card%name == 'OPTIONS') call take_width(self, card, report)
@@ -235,20 +224,6 @@ contains
       card%data_lost = .not. valid
       call add_keyword(cards, card)
    end subroutine take_keyword
-
-   subroutine take_include(self, card, report)
-      type(card_lines_type), intent(inout) :: self
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-
-      if (size(card%parameters) == 0) then
-         if (.not. card%flawed) call report%error(card%place, '*INCLUDE needs INPUT=')
-         call report%lose_file()
-         return
-      end if
-      self%include = card%parameters(1)%text
-      self%include_place = card%parameters(1)%value_place
-   end subroutine take_include
 
    !> WIDTH= of *OPTIONS widens every card of the deck.
    subroutine take_width(self, card, report)
@@ -278,6 +253,7 @@ contains
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report
       type(field_type), allocatable :: fields(:)
+      logical :: complete
 
       if (.not. allocated(self%keyword)) then
          call report%error(place_type(image, first_text(line)), &
@@ -298,7 +274,14 @@ contains
          return
       end if
       if (self%fixed%is_open()) then
-         call take_fixed(self, line, image, cards, report)
+         call self%fixed%take(line, image, report, complete)
+         if (.not. complete) return
+         call self%fixed%release(fields)
+         if (allocated(fields)) then
+            call take_data(self, fields, image, cards, report)
+         else
+            cards%keywords(cards%keyword_count)%data_lost = .true.
+         end if
          return
       end if
       call split_fields(line, image, report, fields)
@@ -313,26 +296,6 @@ contains
          call take_data(self, fields, image, cards, report)
       end if
    end subroutine take_data_line
-
-   !> One line in fixed columns.
-   subroutine take_fixed(self, line, image, cards, report)
-      type(card_lines_type), intent(inout) :: self
-      character(*), intent(in) :: line
-      integer, intent(in) :: image
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
-      type(field_type), allocatable :: fields(:)
-      logical :: complete
-
-      call self%fixed%take(line, image, report, complete)
-      if (.not. complete) return
-      call self%fixed%release(fields)
-      if (allocated(fields)) then
-         call take_data(self, fields, image, cards, report)
-      else
-         cards%keywords(cards%keyword_count)%data_lost = .true.
-      end if
-   end subroutine take_fixed
 
    !> Whether a line has just the nodes that the element before it lacks: in CalculiX a card may go
    !> on without a comma at its end.

@@ -189,21 +189,9 @@ contains
       type(keyword_card_type), allocatable, intent(inout) :: list(:)
       integer, intent(in) :: kept, length
       type(keyword_card_type), allocatable :: other(:)
-      integer :: i
 
       allocate(other(length))
-      do i = 1, kept
-         call move_alloc(list(i)%name, other(i)%name)
-         call move_alloc(list(i)%meant, other(i)%meant)
-         call move_alloc(list(i)%parameters, other(i)%parameters)
-         other(i)%known = list(i)%known
-         call move_alloc(list(i)%refusal_of_data, other(i)%refusal_of_data)
-         other(i)%place = list(i)%place
-         other(i)%first_data = list(i)%first_data
-         other(i)%last_data = list(i)%last_data
-         other(i)%data_lost = list(i)%data_lost
-         other(i)%flawed = list(i)%flawed
-      end do
+      other(:kept) = list(:kept)
       call move_alloc(other, list)
    end subroutine resize_keywords
 

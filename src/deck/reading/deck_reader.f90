@@ -101,9 +101,9 @@ contains
       type(deck_report_type), intent(inout) :: report        !! receives errors
       character(:), allocatable, intent(out) :: fault        !! why it is not read; else empty
       type(string_type), allocatable :: lines(:), open_files(:)
-      character(:), allocatable :: included, include_fault
+      character(:), allocatable :: target_path, included, include_fault
       type(place_type) :: place
-      integer :: i, file
+      integer :: i, k, file
 
       call read_lines(found, lines, fault)
       if (len(fault) == 0) fault = length_fault(lines)
@@ -119,7 +119,8 @@ contains
          if (.not. allocated(open_lines%include)) cycle
          call move_alloc(open_lines%include, included)
          place = open_lines%include_place
-         if (is_open(beside(found, included), open_files)) then
+         target_path = plain(beside(found, included))
+         if (any([(open_files(k)%value == target_path, k=1, size(open_files))])) then
             call report%error(place, included//' is already open: it would include itself')
             cycle
          else if (size(open_files) == deepest_include) then
@@ -155,17 +156,6 @@ contains
          return
       end do
    end function length_fault
-
-   pure logical function is_open(path, open_files)
-      character(*), intent(in) :: path
-      type(string_type), intent(in) :: open_files(:)
-      integer :: i
-
-      is_open = .false.
-      do i = 1, size(open_files)
-         is_open = is_open .or. open_files(i)%value == plain(path)
-      end do
-   end function is_open
 
    !> A path without the steps ./ that lead nowhere.
    pure function plain(path) result(short)

@@ -158,36 +158,26 @@ contains
    pure function text_fault(contents) result(fault)
       character(*), intent(in) :: contents
       character(:), allocatable :: fault
-      integer :: i, line
+      integer :: code, i, line
 
       fault = ''
       line = 1
       do i = 1, len(contents)
-         select case (iachar(contents(i:i)))
-         case (10)
-            line = line + 1
+         code = iachar(contents(i:i))
+         if (code == 10) line = line + 1
+         select case (code)
          case (13)
-            if (i < len(contents)) then
-               if (contents(i + 1:i + 1) == new_line('a')) cycle
-            else
-               cycle
-            end if
-            fault = control_fault(13, line)
-            return
+            ! At the end of a line, in the manner of Windows.
+            if (i == len(contents)) cycle
+            if (contents(i + 1:i + 1) == new_line('a')) cycle
          case (0:8, 11:12, 14:31, 127)
-            fault = control_fault(iachar(contents(i:i)), line)
-            return
+            continue
          case default
             cycle
          end select
+         fault = 'it is not text: control character '//to_text(code)//' in line '//to_text(line)
+         return
       end do
    end function text_fault
-
-   pure function control_fault(code, line) result(fault)
-      integer, intent(in) :: code, line
-      character(:), allocatable :: fault
-
-      fault = 'it is not text: control character '//to_text(code)//' in line '//to_text(line)
-   end function control_fault
 
 end module deck_source

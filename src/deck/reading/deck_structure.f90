@@ -215,6 +215,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
       type(keyword_type) :: known
+      character(:), allocatable :: most
       integer :: n
 
       known = known_keywords(card%known)
@@ -223,8 +224,10 @@ contains
          (says_all(card) .or. card%data_lost)) then
          call report%error(card%place, '*'//card%name//' needs a data card')
       else if (n > known%most_data) then
+         most = 'none'
+         if (known%most_data > 0) most = 'at most '//to_text(known%most_data)
          call report%error(field_place(cards%data(card%first_data + known%most_data), 1), &
-            'extra data card; *'//card%name//' has '//most_cards(known%most_data))
+            'extra data card; *'//card%name//' has '//most)
       end if
    end subroutine check_data_count
 
@@ -237,14 +240,6 @@ contains
          (has_parameter(card, 'ELSET') .or. has_parameter(card, 'SURFACE'))) .or. &
          (card%name == 'FRICTION' .and. has_parameter(card, 'ROUGH'))
    end function says_all
-
-   pure function most_cards(most) result(words)
-      integer, intent(in) :: most
-      character(:), allocatable :: words
-
-      words = 'none'
-      if (most > 0) words = 'at most '//to_text(most)
-   end function most_cards
 
    !> Reports a deck without *STEP at the first card that belongs in one.
    subroutine need_step(cards, report)

@@ -2,18 +2,30 @@
 module generated_cards
    use card_parameters, only: has_parameter, parameter_text
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, field_type, &
-      keyword_card_type, replace_cards
+   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, field_text, &
+      field_type, keyword_card_type, replace_cards
    use deck_report, only: deck_report_type
-   use given_cards, only: given_type, position_of
    use keywords, only: find_keyword
    use kinds, only: dp
-   use text, only: string_type, to_text
+   use text, only: read_integer, read_real, string_type, to_text
    implicit none
    private
    public :: generate_cards, exact_text
 
+   integer, parameter :: most_nodes = 8              !! of an element
    integer, parameter :: most_generated = 10000000   !! nodes or elements of one data card
+   character(*), parameter :: too_many = 'a card generates at most 10000000 nodes or elements'
+
+   !> Nodes and elements of the cards so far.
+   type :: given_type
+      integer :: nodes = 0                        !! number of nodes
+      integer, allocatable :: node(:)             !! (capacity) their numbers
+      real(dp), allocatable :: place(:, :)        !! (2, capacity) [length]
+      integer :: elements = 0                     !! number of elements
+      integer, allocatable :: element(:)          !! (capacity) their numbers
+      integer, allocatable :: corners(:, :)       !! (most_nodes, capacity) their nodes, 0 behind
+      integer, allocatable :: keyword(:)          !! (capacity) keyword card that gives the type
+   end type given_type
 
 contains
 
@@ -30,13 +42,14 @@ contains
          if (generates(cards%keywords(k))) exit
       end do
       if (k > size(cards%keywords)) return
-      call given%begin()
+      allocate(given%node(0), given%place(2, 0), given%element(0), given%keyword(0))
+      allocate(given%corners(most_nodes, 0))
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (.not. generates(card)) then
                call add_keyword(all, card)
                do j = card%first_data, card%last_data
-                  call given%note(card%name, cards%data(j), all%keyword_count)
+                  call note(given, card%name, cards%data(j), all%keyword_count)
                   call add_data(all, cards%data(j)%fields, cards%data(j)%end)
                end do
             else if (card%name == 'NGEN') then
@@ -97,7 +110,7 @@ contains
       if (n > 1) call add_generated(card, 'NODE', '', all)
       do i = 1, n - 1
          place = given%place(:, at(1)) + (given%place(:, at(2)) - given%place(:, at(1)))*i/n
-         call given%keep_node(ends(1) + i*step, place)
+         call keep_node(given, ends(1) + i*step, place)
          words(1)%value = to_text(ends(1) + i*step)
          words(2)%value = exact_text(place(1))
          words(3)%value = exact_text(place(2))
@@ -118,7 +131,7 @@ contains
          call report%error(field_place(data, 3), 'increments of '//to_text(step)// &
             ' do not lead from '//to_text(ends(1))//' to '//to_text(ends(2)))
       else if ((ends(2) - ends(1))/step > most_generated) then
-         call report%error(field_place(data, 2), too_many())
+         call report%error(field_place(data, 2), too_many)
          valid = .false.
       end if
    end subroutine check_range
@@ -179,7 +192,7 @@ contains
       call check_extra(data, 7, 'master element, elements of a row, increments of nodes and '// &
          'elements, rows, increments of nodes and elements', report)
       if (.not. valid .or. real(counts(1), dp)*counts(2) <= most_generated) return
-      call report%error(field_place(data, 2), too_many())
+      call report%error(field_place(data, 2), too_many)
       valid = .false.
    end subroutine read_rows
 
@@ -257,6 +270,78 @@ contains
       call add_data(all, fields, data%end)
    end subroutine add_fields
 
+   !> Remembers a node or an element; fields that are no numbers are reported elsewhere.
+   subroutine note(self, keyword, data, position)
+      type(given_type), intent(inout) :: self
+      character(*), intent(in) :: keyword          ! NODE, ELEMENT or another one
+      type(data_card_type), intent(in) :: data     ! its data card
+      integer, intent(in) :: position              ! of the keyword card
+      real(dp) :: place(2)
+      integer :: number, corners(most_nodes), i
+      logical :: valid
+
+      call read_integer(field_text(data, 1), number, valid)
+      if (.not. valid) return
+      if (keyword == 'NODE') then
+         do i = 1, 2
+            call read_real(field_text(data, i + 1), place(i), valid)
+            if (.not. valid) place(i) = 0.0_dp
+         end do
+         call keep_node(self, number, place)
+      else if (keyword == 'ELEMENT') then
+         corners = 0
+         do i = 1, min(most_nodes, size(data%fields) - 1)
+            call read_integer(field_text(data, i + 1), corners(i), valid)
+            if (.not. valid) corners(i) = 0
+         end do
+         call keep_element(self, number, corners, position)
+      end if
+   end subroutine note
+
+   !> Remembers a node.
+   subroutine keep_node(self, number, place)
+      type(given_type), intent(inout) :: self
+      integer, intent(in) :: number            ! its number
+      real(dp), intent(in) :: place(2)         ! [length]
+      integer :: n
+
+      n = self%nodes
+      if (n == size(self%node)) then
+         self%node = [self%node, spread(0, 1, n + 64)]
+         self%place = reshape(self%place, [2, 2*n + 64], pad=[0.0_dp])
+      end if
+      self%node(n + 1) = number
+      self%place(:, n + 1) = place
+      self%nodes = n + 1
+   end subroutine keep_node
+
+   subroutine keep_element(self, number, corners, position)
+      type(given_type), intent(inout) :: self
+      integer, intent(in) :: number, corners(most_nodes), position
+      integer :: n
+
+      n = self%elements
+      if (n == size(self%element)) then
+         self%element = [self%element, spread(0, 1, n + 64)]
+         self%keyword = [self%keyword, spread(0, 1, n + 64)]
+         self%corners = reshape(self%corners, [most_nodes, 2*n + 64], pad=[0])
+      end if
+      self%element(n + 1) = number
+      self%corners(:, n + 1) = corners
+      self%keyword(n + 1) = position
+      self%elements = n + 1
+   end subroutine keep_element
+
+   !> Position of a number in a list; 0 where it is not.
+   pure integer function position_of(number, list)
+      integer, intent(in) :: number    ! what is looked for
+      integer, intent(in) :: list(:)   ! the last one counts
+
+      do position_of = size(list), 1, -1
+         if (list(position_of) == number) return
+      end do
+   end function position_of
+
    !> A number with all of its digits.
    function exact_text(value) result(string)
       real(dp), intent(in) :: value
@@ -266,11 +351,5 @@ contains
       write (buffer, '(es24.16e3)') value
       string = trim(adjustl(buffer))
    end function exact_text
-
-   pure function too_many() result(message)
-      character(:), allocatable :: message
-
-      message = 'a card generates at most '//to_text(most_generated)//' nodes or elements'
-   end function too_many
 
 end module generated_cards

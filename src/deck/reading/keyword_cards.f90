@@ -1,16 +1,16 @@
 !> Fields of a keyword card -> the card with its parameters, each of them known.
 module keyword_cards
    use card_fields, only: first_text, without_quotes
+   use card_slips, only: is_number
    use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
    use decimal_commas, only: decimal_comma_words
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use kinds, only: dp
    use keywords, only: advice_type, built, find_advice, find_keyword, find_parameter, is_word, &
       known_keywords, known_names, known_parameter_type, not_needed, not_printed, &
       parameter_names, passed_over, refused, refused_with_data, word_advice
    use spelling, only: edit_distance, is_slip, nearest_name
-   use text, only: is_whole, read_real, string_type, to_upper
+   use text, only: is_whole, string_type, to_upper
    implicit none
    private
    public :: make_keyword_card, is_parameter
@@ -209,13 +209,6 @@ contains
       call report%explain(fields(i)%place, 'a number is not a parameter; put data on a card of '// &
          'their own: write '//list//' below the keyword')
    end subroutine report_number
-
-   pure logical function is_number(string)
-      character(*), intent(in) :: string
-      real(dp) :: number
-
-      call read_real(string, number, is_number)
-   end function is_number
 
    !> Takes one parameter and checks it against the table. A misspelt one is taken as the one that
    !> it likely is.
