@@ -2,6 +2,7 @@
 module companion_steps
    use controls, only: implicit_scheme, start_type
    use errors, only: error_type
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use increment_solution, only: begin_increment, recover_fields, solve_points
    use increments, only: simulation_type
@@ -39,25 +40,36 @@ contains
 
    !> Solves the end of an increment.
    !> Error: it has no solution.
-   subroutine implicit_state(simulation, model, step, previous, state, error)
-      type(simulation_type), intent(inout) :: simulation     !! its films change
+   subroutine implicit_state(simulation, own, model, step, previous, state, error)
+      type(simulation_type), intent(in) :: simulation
+      type(heat_reduction_type), intent(inout) :: own        !! where the run has other films
       type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step                    !! from implicit_step
       type(solution_state_type), intent(in) :: previous      !! at the start of the increment
       type(solution_state_type), intent(inout) :: state      !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
-      type(increment_data_type) :: data
-      type(increment_workspace_type) :: workspace
 
-      if (solves_heat(step%analysis)) then
-         call simulation%bodies%set_film(state%sources%film, model, error)
+      associate (bodies => simulation%bodies)
+         if (simulation%heat%serves(bodies, state%sources%film) .or. &
+            .not. solves_heat(step%analysis)) then
+            call solve_end(simulation%heat)
+         else
+            call own%share_order(simulation%heat, bodies)
+            call own%reduce(model, bodies, state%sources%film, error)
+            if (.not. allocated(error)) call solve_end(own)
+         end if
+      end associate
+   contains
+      subroutine solve_end(heat)
+         type(heat_reduction_type), intent(in) :: heat
+         type(increment_data_type) :: data
+         type(increment_workspace_type) :: workspace
+
+         call begin_increment(simulation%bodies, step, previous, state, data)
+         call solve_points(simulation%bodies, heat, simulation%loads, data, workspace, state, error)
          if (allocated(error)) return
-      end if
-      call begin_increment(simulation%bodies, step, previous, state, data)
-      call solve_points(simulation%bodies, simulation%loads, previous, data, workspace, state, &
-         error)
-      if (allocated(error)) return
-      call recover_fields(simulation%bodies, simulation%loads, data, workspace, previous, state)
+         call recover_fields(simulation%bodies, heat, simulation%loads, data, workspace, state)
+      end subroutine solve_end
    end subroutine implicit_state
 
 end module companion_steps

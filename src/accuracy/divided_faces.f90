@@ -9,6 +9,7 @@ module divided_faces
    use companion_steps, only: implicit_state, implicit_step
    use contact_states, only: contact_open
    use errors, only: error_type
+   use heat_reduction, only: heat_reduction_type
    use increments, only: simulation_type
    use initial_state, only: make_initial_state
    use interface_quantities, only: quantities_of_state
@@ -32,6 +33,8 @@ module divided_faces
       type(division_type) :: division
       type(simulation_type) :: run
       type(solution_state_type) :: initial      !! state before the first increment
+      !> heat of both meshes with the films at the end, where the runs' have others
+      type(heat_reduction_type) :: heat, coarse_heat
    contains
       procedure :: start
       procedure :: begin_step
@@ -81,7 +84,7 @@ contains
    !> Errors: as simulation_type's reduce, or the increment has no solution.
    subroutine find_change(self, simulation, model, previous, change, error)
       class(divided_faces_type), intent(inout) :: self
-      type(simulation_type), intent(inout) :: simulation  !! the run at the end; films change
+      type(simulation_type), intent(in) :: simulation     !! the run at the end
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(in) :: previous   !! state before the last increment
       real(dp), intent(out) :: change(:, :)               !! (quantities, interfaces)
@@ -100,11 +103,11 @@ contains
       next%sources%film = self%run%loads%film_matrix()
       next%force_load = self%run%loads%nodal_forces()
       step = implicit_step(model%steps(self%run%control%step))
-      call implicit_state(self%run, self%model, step, before, next, error)
+      call implicit_state(self%run, self%heat, self%model, step, before, next, error)
       if (allocated(error)) return
       call quantities_of_state(self%run%bodies, next, change)
       next = simulation%state
-      call implicit_state(simulation, model, step, previous, next, error)
+      call implicit_state(simulation, self%coarse_heat, model, step, previous, next, error)
       if (allocated(error)) return
       call quantities_of_state(simulation%bodies, next, values)
       change = change - values
@@ -115,6 +118,8 @@ contains
       class(divided_faces_type), intent(inout) :: self
 
       call self%run%release()
+      call self%heat%release()
+      call self%coarse_heat%release()
    end subroutine release
 
    !> The fields of the run on the divided mesh.

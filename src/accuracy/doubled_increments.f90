@@ -5,16 +5,17 @@ module doubled_increments
    use companion_steps, only: companion_step
    use contact_changes, only: brings_friction
    use errors, only: error_type
+   use field_problem, only: solved_loads_type
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use increment_solution, only: begin_increment, recover_fields, solve_points
-   use increments, only: accept_increment
+   use increments, only: accept_increment, simulation_type
    use kinds, only: dp
-   use known_loads, only: known_loads_type
-   use loads, only: loads_type
    use model, only: model_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
+   use sparse_matrix, only: sparse_matrix_type
    use steps, only: planned_increments, solves_heat, solves_mechanics, step_type
    use thermal_matrix, only: heat_equation_type
    implicit none
@@ -28,7 +29,8 @@ module doubled_increments
       logical :: is_led = .false.              !! whether the path of the run matters at all
       logical :: is_lost = .false.             !! whether one of its increments had no solution
       type(solution_state_type) :: state       !! its state
-      type(known_loads_type), allocatable :: known(:)   !! loads that it has solved
+      type(heat_reduction_type) :: heat        !! its own, where that of the run has other films
+      type(solved_loads_type), allocatable :: known(:)   !! loads that it has solved
       real(dp) :: time = 0.0_dp                !! total time of it [time]
       integer :: waiting = 0                   !! increments of the run since then
       integer :: step = 0                      !! step of the last of these
@@ -36,6 +38,7 @@ module doubled_increments
    contains
       procedure :: start
       procedure :: follow
+      procedure :: release
    end type doubled_increments_type
 
 contains
@@ -62,15 +65,14 @@ contains
 
    !> Takes note of an accepted increment; at every second one, and at the end of a step, the second
    !> run moves on to its end.
-   subroutine follow(self, model, bodies, loads, accepted, record)
+   subroutine follow(self, model, run, record)
       class(doubled_increments_type), intent(inout) :: self      !! the second run
       type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(inout) :: bodies !! the bodies; films change them
-      type(loads_type), intent(in) :: loads                      !! loads at its end
-      type(solution_state_type), intent(in) :: accepted          !! the run's state there
+      type(simulation_type), intent(in) :: run                   !! the run at its end
       type(increment_record_type), intent(in) :: record          !! its position in the steps
       type(error_type), allocatable :: error
       type(solution_state_type) :: before, next
+      type(sparse_matrix_type) :: film
       type(step_type) :: step
       type(increment_data_type) :: data
       type(increment_workspace_type) :: workspace
@@ -83,37 +85,56 @@ contains
       self%waiting = self%waiting + 1
       if (self%waiting < 2 .and. .not. record%last_of_step) return
       self%has_doubled = self%has_doubled .or. &
-         record%time - self%time > 1.5_dp*accepted%increment_size
+         record%time - self%time > 1.5_dp*run%state%increment_size
       step = companion_step(model%steps(record%step))
       next = self%state
       before = self%state
-      next%contact = accepted%contact
-      next%contact%tangential = self%state%contact%tangential
-      equation = heat_equation_type(step%scheme)
-      if (equation%is_steady()) then
-         ! The run's solution is a guess that is nearly right, and nothing else is taken of omega.
-         before%omega = accepted%omega
-         before%omega_before = accepted%omega
-      end if
       next%increment_size = record%time - self%time
-      next%sources = accepted%sources
-      next%force_load = accepted%force_load
-      call begin_increment(bodies, step, before, next, data)
-      if (solves_heat(step%analysis)) then
-         call bodies%set_film(data%equation%left_film(), model, error)
+      equation = heat_equation_type(step%scheme)
+      associate (accepted => run%state)
+         next%contact = accepted%contact
+         next%contact%tangential = self%state%contact%tangential
+         if (equation%is_steady()) then
+            ! The run's solution is nearly right as a guess; nothing else is taken of omega.
+            before%omega = accepted%omega
+            before%omega_before = accepted%omega
+         end if
+         next%sources = accepted%sources
+         next%force_load = accepted%force_load
+      end associate
+      call begin_increment(run%bodies, step, before, next, data)
+      film = data%equation%left_film()
+      if (run%heat%serves(run%bodies, film) .or. .not. solves_heat(step%analysis)) then
+         call solve_with(run%heat)
+      else
+         call self%heat%share_order(run%heat, run%bodies)
+         call self%heat%reduce(model, run%bodies, film, error)
+         if (.not. allocated(error)) call solve_with(self%heat)
       end if
-      call move_alloc(self%known, workspace%known)
-      if (.not. allocated(error)) call solve_points(bodies, loads, before, data, &
-         workspace, next, error)
-      call move_alloc(workspace%known, self%known)
       self%is_lost = allocated(error)
       if (self%is_lost) return
-      if (.not. equation%is_steady() .or. .not. solves_mechanics(step%analysis)) then
-         call recover_fields(bodies, loads, data, workspace, self%state, next)
-      end if
       call accept_increment(next, model, self%state)
       self%time = record%time
       self%waiting = 0
+   contains
+      subroutine solve_with(heat)
+         type(heat_reduction_type), intent(in) :: heat
+
+         call move_alloc(self%known, workspace%known)
+         call solve_points(run%bodies, heat, run%loads, data, workspace, next, error)
+         call move_alloc(workspace%known, self%known)
+         if (allocated(error)) return
+         if (.not. equation%is_steady() .or. .not. solves_mechanics(step%analysis)) then
+            call recover_fields(run%bodies, heat, run%loads, data, workspace, next)
+         end if
+      end subroutine solve_with
    end subroutine follow
+
+   !> Frees the factors.
+   subroutine release(self)
+      class(doubled_increments_type), intent(inout) :: self
+
+      call self%heat%release()
+   end subroutine release
 
 end module doubled_increments

@@ -97,7 +97,7 @@ contains
    subroutine end_increment(self, model, simulation, record, courses)
       class(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(simulation_type), intent(inout) :: simulation     !! the run; its state stays
+      type(simulation_type), intent(in) :: simulation        !! the run at its end
       type(increment_record_type), intent(inout) :: record
       !> (steps) at their ends in the round before, empty in the first; receives the present ones
       type(value_courses_type), intent(inout) :: courses(:)
@@ -116,8 +116,7 @@ contains
             if (allocated(error)) self%why_not = error%message
          end if
       end if
-      call self%doubled%follow(model, simulation%bodies, simulation%loads, simulation%state, &
-         record)
+      call self%doubled%follow(model, simulation, record)
       do i = 1, size(record%contacts)
          associate (points => simulation%bodies%interfaces(i), contact => record%contacts(i))
             values(:, i) = quantities_of(points, contact)
@@ -152,6 +151,7 @@ contains
       class(error_estimator_type), intent(inout) :: self
 
       call self%divided%release()
+      call self%doubled%release()
    end subroutine release
 
    !> Why a quantity has no bound; nothing where it has one.
@@ -194,7 +194,7 @@ contains
    subroutine bound_mesh(self, model, simulation, record, before, why_not)
       type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(simulation_type), intent(inout) :: simulation
+      type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record
       type(value_courses_type), intent(in) :: before         ! courses in the round before
       character(:), allocatable, intent(inout) :: why_not    ! why there are none; else it stays

@@ -16,14 +16,12 @@ module refinement_error
    use contact_states, only: contact_open
    use cut_hats, only: joined_conductance
    use errors, only: error_type
-   use increment_data, only: increment_data_type, increment_workspace_type
-   use increment_solution, only: begin_increment, recover_fields, solve_points
+   use heat_reduction, only: heat_reduction_type
    use increments, only: simulation_type
    use interface_quantities, only: contact_of, quantities_of, quantities_of_state
    use interruption, only: check_overdue
    use kinds, only: dp
    use linked_relaxation, only: joint_type, relax
-   use loads, only: loads_type
    use model, only: model_type
    use held_points, only: find_held_directions
    use records, only: contact_record_type
@@ -66,10 +64,27 @@ contains
    !> Error: the increment has no solution under one of the corrections, or a signal left no time.
    subroutine find_change_by_refinement(refined, simulation, model, previous, change, error)
       type(refined_model_type), intent(inout) :: refined
-      type(simulation_type), intent(inout) :: simulation         !! the run at the end; films change
+      type(simulation_type), intent(in) :: simulation            !! the run at the end
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(in) :: previous          !! state before the last increment
       real(dp), intent(out) :: change(:, :)                      !! (quantities, interfaces)
+      type(error_type), allocatable, intent(out) :: error
+      !> With the films at the end, where that of the run has others.
+      type(heat_reduction_type) :: heat
+
+      call correct_fields(refined, simulation, model, previous, heat, change, error)
+      call heat%release()
+   end subroutine find_change_by_refinement
+
+   !> Corrects the fields of both meshes until nothing moves.
+   !> Error: as above.
+   subroutine correct_fields(refined, simulation, model, previous, heat, change, error)
+      type(refined_model_type), intent(inout) :: refined
+      type(simulation_type), intent(in) :: simulation
+      type(model_type), intent(in) :: model
+      type(solution_state_type), intent(in) :: previous
+      type(heat_reduction_type), intent(inout) :: heat
+      real(dp), intent(out) :: change(:, :)
       type(error_type), allocatable, intent(out) :: error
       type(corrected_type) :: fields
       real(dp), dimension(size(change, 1), size(change, 2)) :: found, last, moved, values
@@ -78,7 +93,7 @@ contains
       logical :: moves
       integer :: k
 
-      call begin(refined, simulation, model, previous, fields, error)
+      call begin(refined, simulation, model, previous, heat, fields, error)
       if (allocated(error)) return
       call quantities_of_state(simulation%bodies, fields%coarse, values)
       step = implicit_step(model%steps(simulation%control%step))
@@ -93,7 +108,7 @@ contains
          ! of the conductances before.
          before%omega = fields%coarse%omega
          before%omega_before = fields%coarse%omega
-         call correct(refined, simulation%bodies, simulation%loads, step, before, fields, error)
+         call correct(refined, simulation, model, step, before, heat, fields, error)
          if (allocated(error)) return
          call smooth(refined, step, fields)
          last = found
@@ -102,7 +117,7 @@ contains
          if (k >= least_corrections .and. .not. moves) exit
       end do
       change = found - values
-   end subroutine find_change_by_refinement
+   end subroutine correct_fields
 
    !> Whether corrections still move anything but edges, which go from node to node.
    pure subroutine follow(values, last, found, moved, moves)
@@ -124,11 +139,12 @@ contains
 
    !> Prolongs the solution on the old mesh, brought to the equilibrium of heat.
    !> Error: it has no solution there.
-   subroutine begin(refined, simulation, model, previous, fields, error)
+   subroutine begin(refined, simulation, model, previous, heat, fields, error)
       type(refined_model_type), intent(inout) :: refined
-      type(simulation_type), intent(inout) :: simulation
+      type(simulation_type), intent(in) :: simulation
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(in) :: previous
+      type(heat_reduction_type), intent(inout) :: heat
       type(corrected_type), intent(out) :: fields
       type(error_type), allocatable, intent(out) :: error
       type(heat_equation_type) :: equation
@@ -155,10 +171,8 @@ contains
                refined%hangs(1))
             fields%film = refined%loads%film_matrix()
             fields%conduction = refined%conduction_with(fields%film)
-            call bodies%set_film(simulation%state%sources%film, model, error)
-            if (allocated(error)) return
             equation = heat_equation_type(step%scheme)
-            if (.not. equation%is_steady()) call implicit_state(simulation, model, &
+            if (.not. equation%is_steady()) call implicit_state(simulation, heat, model, &
                implicit_step(step), previous, fields%coarse, error)
             if (allocated(error)) return
          end if
@@ -216,20 +230,19 @@ contains
    end function mechanical_load
 
    !> Solves the increment on the old mesh with what is out of balance on the new one.
-   subroutine correct(refined, bodies, loads, step, previous, fields, error)
+   subroutine correct(refined, simulation, model, step, previous, heat, fields, error)
       type(refined_model_type), intent(in) :: refined
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(loads_type), intent(in) :: loads
+      type(simulation_type), intent(in) :: simulation
+      type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: previous
+      type(heat_reduction_type), intent(inout) :: heat
       type(corrected_type), intent(inout) :: fields
       type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: trial
-      type(increment_data_type) :: data
-      type(increment_workspace_type) :: workspace
 
       trial = fields%coarse
-      associate (u => fields%displacement(:size(trial%displacement)), &
+      associate (bodies => simulation%bodies, u => fields%displacement(:size(trial%displacement)), &
          t => fields%temperature(:size(trial%temperature)))
          if (solves_heat(step%analysis)) trial%sources%load = refined%restrict( &
             fields%heat, 1) + heat_taken(bodies, fields%coarse, t)
@@ -238,10 +251,8 @@ contains
             mechanical_load(refined, fields) - fields%elastic_force, 2) + &
             bodies%mechanical%matrix%multiply(u) - unstrained_forces(bodies, t)
       end associate
-      call begin_increment(bodies, step, previous, trial, data)
-      call solve_points(bodies, loads, previous, data, workspace, trial, error)
+      call implicit_state(simulation, heat, model, step, previous, trial, error)
       if (allocated(error)) return
-      call recover_fields(bodies, loads, data, workspace, previous, trial)
       fields%displacement = fields%displacement + refined%division%prolong(trial%displacement - &
          fields%displacement(:size(trial%displacement)), 2)
       fields%temperature = fields%temperature + refined%division%prolong(trial%temperature - &

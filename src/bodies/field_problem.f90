@@ -1,4 +1,8 @@
-!> A linear field problem, thermal or mechanical, reduced once to its contact unknowns.
+!> A linear field problem, thermal or mechanical, and its reduction to the contact unknowns.
+!>
+!> The problem is the matrix of the bodies and the numbering of its unknowns. A reduction is made of
+!> it once, for one numbering and for what is added to the matrix, such as films; whoever needs
+!> another one makes one of its own.
 module field_problem
    use controls, only: solver_mumps
    use errors, only: error_type, status_deck
@@ -12,7 +16,7 @@ module field_problem
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    implicit none
    private
-   public :: field_load_type, field_problem_type
+   public :: field_load_type, field_problem_type, field_reduction_type, solved_loads_type
 
    !> Part of a load, in its largest entry, that is rounding.
    real(dp), parameter :: rounding = 64*epsilon(1.0_dp)
@@ -24,19 +28,33 @@ module field_problem
       real(dp), allocatable :: condensed(:) !! (tail) right-hand side condensed on the tail
    end type field_load_type
 
-   !> Matrix of the bodies, numbering of the unknowns, factors.
+   !> Matrix of the bodies and numbering of the unknowns.
    type :: field_problem_type
       type(sparse_matrix_type) :: matrix !! (dofs, dofs) bodies alone, both triangles
-      real(dp) :: largest_entry = 0.0_dp                      !! of the bodies alone, set by reduce
-      !> (dofs, dofs) what is added to it, such as films; without values where there is nothing.
-      type(sparse_matrix_type) :: added
+      real(dp) :: largest_entry = 0.0_dp                      !! of this matrix
       type(linear_constraints_type) :: map                    !! u = T v + B g, and the unknowns v
-      class(linear_solver_type), allocatable :: solver        !! factors
-      integer :: reduction = 0                                !! which factors, by number
+      integer :: numbering = 0                                !! which numbering, counted
    contains
-      procedure :: reduce
+      procedure :: set_matrix
+      procedure :: finish_numbering
       procedure :: matrix_of_unknowns
       procedure :: leading_nodes
+   end type field_problem_type
+
+   !> Factors of a problem, its unknowns condensed on the tail.
+   type :: field_reduction_type
+      integer :: numbering = 0                                !! of the unknowns; 0 at first
+      !> (dofs, dofs) what was added to the matrix; without values where there was nothing
+      type(sparse_matrix_type) :: added = sparse_matrix_type()
+      !> (leading) the order in which solvers eliminate the unknowns of this numbering, once made
+      integer, allocatable :: rank(:)
+      class(linear_solver_type), allocatable :: solver        !! pattern and factors
+      logical, private :: is_factored = .false.
+   contains
+      procedure :: renumber
+      procedure :: is_for
+      procedure :: is_of
+      procedure :: factor
       procedure :: load_of
       procedure :: condense_load
       procedure :: recover
@@ -44,55 +62,123 @@ module field_problem
       procedure :: unit_responses
       procedure :: condense_forces
       procedure :: release
-   end type field_problem_type
+   end type field_reduction_type
+
+   !> Known loads of a field, and the reduction that they were solved with.
+   type, extends(known_loads_type) :: solved_loads_type
+      private
+      integer :: numbering = 0
+      type(sparse_matrix_type) :: added = sparse_matrix_type()
+   end type solved_loads_type
 
 contains
+
+   !> Forgets what is of another numbering of the unknowns.
+   subroutine renumber(self, problem)
+      class(field_reduction_type), intent(inout) :: self
+      type(field_problem_type), intent(in) :: problem
+
+      if (self%numbering == problem%numbering) return
+      call self%release()
+      if (allocated(self%rank)) deallocate (self%rank)
+      self%numbering = problem%numbering
+   end subroutine renumber
+
+   !> Whether this is, or is to be, the reduction of a problem as it is numbered, with an addition to
+   !> its matrix.
+   pure logical function is_for(self, problem, added)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem
+      type(sparse_matrix_type), intent(in) :: added       !! (dofs, dofs), or without values
+
+      is_for = self%numbering == problem%numbering
+      if (is_for) is_for = same_values(self%added, added)
+   end function is_for
+
+   !> Whether it is, with its factors.
+   pure logical function is_of(self, problem, added)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem
+      type(sparse_matrix_type), intent(in) :: added       !! (dofs, dofs), or without values
+
+      is_of = self%is_factored
+      if (is_of) is_of = self%is_for(problem, added)
+   end function is_of
+
+   !> Whether two matrices have the same entries.
+   pure logical function same_values(a, b)
+      type(sparse_matrix_type), intent(in) :: a, b
+
+      same_values = allocated(a%value) .eqv. allocated(b%value)
+      if (.not. (same_values .and. allocated(a%value))) return
+      same_values = size(a%value) == size(b%value)
+      if (same_values) same_values = all(a%column == b%column) .and. &
+         all(abs(a%value - b%value) <= 0.0_dp)
+   end function same_values
 
    !> Factors the matrix with what is added to it. Unknowns are ordered and their pattern analysed
    !> once for a numbering: films lie on sides of elements, whose nodes the matrix joins already.
    !> Errors: the matrix or its factors overflow; as the solver's analyse and factor.
-   subroutine reduce(self, solver_kind, node_rank, error)
-      class(field_problem_type), intent(inout) :: self    !! the problem; its matrix and map are set
+   subroutine factor(self, problem, added, solver_kind, node_rank, error)
+      class(field_reduction_type), intent(inout) :: self
+      type(field_problem_type), intent(in) :: problem
+      type(sparse_matrix_type), intent(in) :: added       !! (dofs, dofs), or without values
       integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
       !> (nodes) ranks in nested dissection, where they are known
       integer, allocatable, intent(in) :: node_rank(:)
       type(error_type), allocatable, intent(out) :: error
       type(sparse_matrix_type) :: lower
 
-      if (.not. allocated(self%map%rank)) call self%release()
-      self%reduction = self%reduction + 1
-      call check_finite(self%matrix%value, 'matrices of the bodies', status_deck, error)
+      call self%renumber(problem)
+      self%is_factored = .false.
+      self%added = added
+      call check_finite(problem%matrix%value, 'matrices of the bodies', status_deck, error)
       if (allocated(error)) return
-      self%largest_entry = maxval(abs(self%matrix%value))
-      call self%map%stiffen_links(self%matrix)
-      lower = self%matrix_of_unknowns()
+      lower = problem%matrix_of_unknowns(added)
       if (.not. allocated(self%solver)) then
          if (solver_kind == solver_mumps) then
             allocate (mumps_solver_type :: self%solver)
          else
             allocate (skyline_solver_type :: self%solver)
          end if
-         if (allocated(node_rank) .and. .not. allocated(self%map%rank)) then
-            self%map%rank = node_rank(self%leading_nodes())
+         if (allocated(node_rank) .and. .not. allocated(self%rank)) then
+            self%rank = node_rank(problem%leading_nodes())
          end if
-         call self%solver%analyse(lower, self%map%tail, self%map%rank, error)
-         if (allocated(error)) then
-            call self%release()
-            return
-         end if
+         call self%solver%analyse(lower, problem%map%tail, self%rank, error)
       end if
-      call self%solver%factor(lower, error)
-      if (allocated(error)) return
-      call check_finite([self%solver%schur], 'factors of the bodies', status_deck, error)
-   end subroutine reduce
+      if (.not. allocated(error)) call self%solver%factor(lower, error)
+      if (.not. allocated(error)) call check_finite([self%solver%schur], 'factors of the bodies', &
+         status_deck, error)
+      self%is_factored = .not. allocated(error)
+      if (allocated(error)) call self%release()
+   end subroutine factor
+
+   !> Sets the matrix, whose stiffness scales the links of the numbering.
+   subroutine set_matrix(self, matrix)
+      class(field_problem_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) both triangles
+
+      self%matrix = matrix
+      self%largest_entry = maxval(abs(matrix%value))
+      if (allocated(self%map%link_stiffness)) call self%map%stiffen_links(matrix)
+   end subroutine set_matrix
+
+   !> Counts a new numbering, whose links are scaled by the stiffness of the matrix, if it is there.
+   subroutine finish_numbering(self)
+      class(field_problem_type), intent(inout) :: self
+
+      self%numbering = self%numbering + 1
+      if (allocated(self%matrix%value)) call self%map%stiffen_links(self%matrix)
+   end subroutine finish_numbering
 
    !> The matrix on the unknowns, its lower triangle.
-   pure function matrix_of_unknowns(self) result(lower)
-      class(field_problem_type), intent(in) :: self       !! the problem; its matrix and map are set
+   pure function matrix_of_unknowns(self, added) result(lower)
+      class(field_problem_type), intent(in) :: self
+      type(sparse_matrix_type), intent(in) :: added       !! (dofs, dofs), or without values
       type(sparse_matrix_type) :: lower                   !! (equations, equations)
 
-      if (allocated(self%added%value)) then
-         lower = self%map%transform(linear_combination(1.0_dp, self%matrix, 1.0_dp, self%added))
+      if (allocated(added%value)) then
+         lower = self%map%transform(linear_combination(1.0_dp, self%matrix, 1.0_dp, added))
       else
          lower = self%map%transform(self%matrix)
       end if
@@ -108,41 +194,44 @@ contains
    end function leading_nodes
 
    !> The load of an increment.
-   pure function load_of(self, forces, given) result(load)
-      class(field_problem_type), intent(in) :: self
+   pure function load_of(self, problem, forces, given) result(load)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
       real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
       type(field_load_type) :: load                       !! not condensed
       real(dp) :: supported(size(given))
 
       load%given = given
-      supported = self%map%supported(given)
-      allocate (load%rhs(self%map%equations, 1))
+      supported = problem%map%supported(given)
+      allocate (load%rhs(problem%map%equations, 1))
       if (.not. any(abs(supported) > 0.0_dp)) then
-         load%rhs(:, 1) = self%map%load(forces, given)
+         load%rhs(:, 1) = problem%map%load(forces, given)
          return
       end if
-      load%rhs(:, 1) = self%map%load(forces - self%matrix%multiply(supported), given)
+      load%rhs(:, 1) = problem%map%load(forces - problem%matrix%multiply(supported), given)
       if (allocated(self%added%value)) load%rhs(:, 1) = load%rhs(:, 1) - &
-         self%map%restrict(self%added%multiply(supported))
+         problem%map%restrict(self%added%multiply(supported))
    end function load_of
 
    !> Condenses a load on the tail. What earlier loads say of it is taken from them: steps that ramp
    !> their loads solve for a first one only.
-   subroutine condense_load(self, load, known, welded)
-      class(field_problem_type), intent(in) :: self       !! the problem, reduced
+   subroutine condense_load(self, problem, load, known, welded)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
       type(field_load_type), intent(inout) :: load        !! receives what is condensed
-      type(known_loads_type), intent(inout) :: known      !! earlier loads of the field
+      type(solved_loads_type), intent(inout) :: known     !! earlier loads of the field
       real(dp), intent(out), optional :: welded(:)        !! (dofs) values where the tail is zero
-      real(dp) :: rest(self%map%equations, 1), condensed(self%map%tail, 1)
+      real(dp) :: rest(problem%map%equations, 1), condensed(problem%map%tail, 1)
       real(dp), allocatable :: solution(:, :)
 
-      if (known%reduction /= self%reduction) then
-         known = known_loads_type()
-         known%reduction = self%reduction
+      if (known%numbering /= self%numbering .or. .not. same_values(known%added, self%added)) then
+         known = solved_loads_type()
+         known%numbering = self%numbering
+         known%added = self%added
       end if
-      allocate (load%condensed(self%map%tail), source=0.0_dp)
-      allocate (solution(merge(self%map%equations, 0, present(welded)), 2), source=0.0_dp)
+      allocate (load%condensed(problem%map%tail), source=0.0_dp)
+      allocate (solution(merge(problem%map%equations, 0, present(welded)), 2), source=0.0_dp)
       rest = load%rhs
       call known%take_off(rest(:, 1), load%condensed, solution(:, 1))
       if (maxval(abs(rest)) > rounding*maxval(abs(load%rhs))) then
@@ -155,73 +244,78 @@ contains
          load%condensed = load%condensed + condensed(:, 1)
          call known%keep(rest(:, 1), condensed(:, 1), solution(:, 2))
       end if
-      if (present(welded)) welded = self%map%expand(solution(:, 1), load%given)
+      if (present(welded)) welded = problem%map%expand(solution(:, 1), load%given)
    end subroutine condense_load
 
    !> Values of all degrees of freedom under a load.
-   function recover(self, load, on_tail) result(values)
-      class(field_problem_type), intent(in) :: self       !! the problem, reduced
+   function recover(self, problem, load, on_tail) result(values)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
       type(field_load_type), intent(in) :: load
       real(dp), intent(in) :: on_tail(:)                  !! (tail) solution on the tail
-      real(dp) :: values(self%matrix%row_count)           !! (dofs)
-      real(dp) :: solution(self%map%equations, 1)
+      real(dp) :: values(problem%matrix%row_count)           !! (dofs)
+      real(dp) :: solution(problem%map%equations, 1)
 
       call self%solver%recover(load%rhs, reshape(on_tail, [size(on_tail), 1]), solution)
-      values = self%map%expand(solution(:, 1), load%given)
+      values = problem%map%expand(solution(:, 1), load%given)
    end function recover
 
    !> Values of all degrees of freedom that follow the tail, without load and with zero prescribed
    !> values.
-   function extended(self, on_tail) result(values)
-      class(field_problem_type), intent(in) :: self       !! the problem, reduced
+   function extended(self, problem, on_tail) result(values)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: on_tail(:, :)               !! (tail, columns)
-      real(dp) :: values(self%matrix%row_count, size(on_tail, 2))   !! (dofs, columns)
-      real(dp) :: none(self%matrix%row_count)
+      real(dp) :: values(problem%matrix%row_count, size(on_tail, 2))   !! (dofs, columns)
+      real(dp) :: none(problem%matrix%row_count)
       real(dp), allocatable :: solution(:, :)
       integer :: k
 
-      allocate (solution(self%map%equations, size(on_tail, 2)))
+      allocate (solution(problem%map%equations, size(on_tail, 2)))
       call self%solver%extend(on_tail, solution)
       none = 0.0_dp
       do k = 1, size(on_tail, 2)
-         values(:, k) = self%map%expand(solution(:, k), none)
+         values(:, k) = problem%map%expand(solution(:, k), none)
       end do
    end function extended
 
    !> Values of all degrees of freedom for unit values of some tail unknowns, without load and with
    !> zero prescribed values.
-   function unit_responses(self, first, last) result(values)
-      class(field_problem_type), intent(in) :: self
+   function unit_responses(self, problem, first, last) result(values)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
       integer, intent(in) :: first, last                  !! tail unknowns
-      real(dp) :: values(self%matrix%row_count, last - first + 1) !! (dofs, of each of them)
-      real(dp) :: unit(self%map%tail, last - first + 1)
+      real(dp) :: values(problem%matrix%row_count, last - first + 1) !! (dofs, of each of them)
+      real(dp) :: unit(problem%map%tail, last - first + 1)
       integer :: k
 
       unit = 0.0_dp
       do k = first, last
          unit(k, k - first + 1) = 1.0_dp
       end do
-      values = self%extended(unit)
+      values = self%extended(problem, unit)
    end function unit_responses
 
    !> Nodal forces condensed on the tail.
-   subroutine condense_forces(self, forces, condensed)
-      class(field_problem_type), intent(in) :: self
+   subroutine condense_forces(self, problem, forces, condensed)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: forces(:, :)                !! (dofs, columns)
       real(dp), intent(out) :: condensed(:, :)            !! (tail, columns)
-      real(dp) :: rhs(self%map%equations, size(forces, 2))
+      real(dp) :: rhs(problem%map%equations, size(forces, 2))
       integer :: k
 
       do k = 1, size(forces, 2)
-         rhs(:, k) = self%map%restrict(forces(:, k))
+         rhs(:, k) = problem%map%restrict(forces(:, k))
       end do
       call self%solver%condense(rhs, condensed)
    end subroutine condense_forces
 
    !> Frees the factors; the order of the unknowns stays.
    subroutine release(self)
-      class(field_problem_type), intent(inout) :: self
+      class(field_reduction_type), intent(inout) :: self
 
+      self%is_factored = .false.
       if (.not. allocated(self%solver)) return
       call self%solver%release()
       deallocate (self%solver)

@@ -12,7 +12,7 @@
 !> many unknowns than at many right-hand sides takes that way.
 module jump_loads
    use errors, only: error_type
-   use field_problem, only: field_problem_type
+   use field_problem, only: field_problem_type, field_reduction_type
    use kinds, only: dp
    use metis, only: nested_dissection
    use mumps_solver, only: schur_complement
@@ -29,9 +29,11 @@ module jump_loads
 contains
 
    !> The loads from the responses to each jump.
-   subroutine loads_by_solves(thermal, mechanical, thermal_load, loads)
-      type(field_problem_type), intent(in) :: thermal            !! reduced
-      type(field_problem_type), intent(in) :: mechanical         !! reduced
+   subroutine loads_by_solves(thermal, heat, mechanical, equilibrium, thermal_load, loads)
+      type(field_problem_type), intent(in) :: thermal            !! numbered
+      class(field_reduction_type), intent(in) :: heat            !! and reduced
+      type(field_problem_type), intent(in) :: mechanical         !! numbered
+      class(field_reduction_type), intent(in) :: equilibrium     !! and reduced
       type(sparse_matrix_type), intent(in) :: thermal_load !! B, forces per nodal temperature
       real(dp), allocatable, intent(out) :: loads(:, :)    !! (mechanical tail, thermal tail)
       real(dp), allocatable :: forces(:, :)
@@ -42,16 +44,18 @@ contains
       do first = 1, tail, columns_at_once
          last = min(first + columns_at_once - 1, tail)
          allocate (forces(thermal_load%row_count, last - first + 1))
-         call thermal_load%multiply_columns(thermal%unit_responses(first, last), forces)
-         call mechanical%condense_forces(forces, loads(:, first:last))
+         call thermal_load%multiply_columns(heat%unit_responses(thermal, first, last), &
+            forces)
+         call equilibrium%condense_forces(mechanical, forces, loads(:, first:last))
          deallocate (forces)
       end do
    end subroutine loads_by_solves
 
    !> The loads from one elimination of both fields, by MUMPS.
    !> Errors: as schur_complement; METIS fails.
-   subroutine loads_by_elimination(thermal, mechanical, thermal_load, node_rank, loads, error)
+   subroutine loads_by_elimination(thermal, film, mechanical, thermal_load, node_rank, loads, error)
       type(field_problem_type), intent(in) :: thermal            !! numbered
+      type(sparse_matrix_type), intent(in) :: film               !! added to its matrix
       type(field_problem_type), intent(in) :: mechanical         !! numbered
       type(sparse_matrix_type), intent(in) :: thermal_load !! B, forces per nodal temperature
       !> (nodes) in nested dissection, of both fields as numbered; made where it is not allocated
@@ -63,7 +67,7 @@ contains
       real(dp), allocatable :: schur(:, :)
       integer, allocatable :: node(:)
 
-      call join_fields(thermal, mechanical, thermal_load, entries, graph, node)
+      call join_fields(thermal, film, mechanical, thermal_load, entries, graph, node)
       if (.not. allocated(node_rank)) then
          call nested_dissection(graph, node_rank, error)
          if (allocated(error)) return
@@ -76,18 +80,18 @@ contains
    end subroutine loads_by_elimination
 
    !> The matrix of both fields, and the nodes by which its leading unknowns are ordered.
-   subroutine join_fields(thermal, mechanical, thermal_load, entries, graph, node)
+   subroutine join_fields(thermal, film, mechanical, thermal_load, entries, graph, node)
       type(field_problem_type), intent(in) :: thermal, mechanical
-      type(sparse_matrix_type), intent(in) :: thermal_load
+      type(sparse_matrix_type), intent(in) :: film, thermal_load
       type(triplet_list_type), intent(out) :: entries    !! lower triangle
       type(sparse_matrix_type), intent(out) :: graph     !! (nodes, nodes) which of them are joined
       integer, allocatable, intent(out) :: node(:)       !! (leading unknowns) their nodes
-      type(sparse_matrix_type) :: heat, motion, coupling
+      type(sparse_matrix_type) :: heat, motion, coupling, nothing
       integer, allocatable :: of_heat(:), of_motion(:)
       integer :: i
 
-      heat = thermal%matrix_of_unknowns()
-      motion = mechanical%matrix_of_unknowns()
+      heat = thermal%matrix_of_unknowns(film)
+      motion = mechanical%matrix_of_unknowns(nothing)
       associate (h => thermal%map%equations, m => mechanical%map%equations)
          associate (h_leads => h - thermal%map%tail, m_leads => m - mechanical%map%tail)
             node = [thermal%leading_nodes(), mechanical%leading_nodes()]

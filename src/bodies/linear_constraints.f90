@@ -30,8 +30,6 @@ module linear_constraints
       integer :: equations = 0                      !! unknowns v
       integer :: tail = 0                           !! how many of them, the last, are the tail
       integer :: components = 1                     !! degrees of freedom of a node
-      !> (equations - tail) the order in which solvers eliminate them, once it is made
-      integer, allocatable :: rank(:)
       integer, allocatable :: introduced(:) !! unknowns of introduced values, 0 where none has them
       type(sum_list_type) :: by_unknowns            !! (dofs, equations) T
       type(sum_list_type) :: by_given               !! (dofs, dofs) B

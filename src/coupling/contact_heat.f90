@@ -1,6 +1,7 @@
 !> L of section 2: from the conductance to the temperature jumps, eq. (3.4) on the tail, and how the
 !> jumps follow the conductance.
 module contact_heat
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
@@ -21,8 +22,9 @@ contains
 
    !> L: the jumps for a given conductance, eq. (3.4) on the tail. Only the columns from the first
    !> changed one on are factored again.
-   subroutine temperature_jumps(bodies, data, omega, workspace, jump)
+   subroutine temperature_jumps(bodies, heat, data, omega, workspace, jump)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: omega(:)                           !! (m) omega*
       type(increment_workspace_type), intent(inout) :: workspace !! heat in, factors out
@@ -32,7 +34,7 @@ contains
       real(dp), allocatable :: of_cut(:)
       integer :: k
 
-      associate (tail_index => bodies%jump_index, solver => bodies%thermal%solver, &
+      associate (tail_index => bodies%jump_index, solver => heat%solver, &
          tail => workspace%tail, work => workspace%record%work)
          of_point = data%equation%contact_diagonal(omega)
          history = data%equation%contact_history(omega)

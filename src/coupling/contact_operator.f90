@@ -9,6 +9,7 @@ module contact_operator
    use finite_values, only: check_finite
    use fixed_point, only: pass_type
    use gap_temperatures, only: settle_conductance, take_temperatures
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use contact_tractions, only: pressures
@@ -25,8 +26,9 @@ contains
    !> temperatures of the pass; then, with the coordinates of the contact points given,
    !> workspace%pass%coordinate, omega is what these and the temperatures make it.
    !> Errors: as solve_increment; jumps or conductances overflow.
-   subroutine contact_operator_pass(bodies, data, workspace, jump, state, error)
+   subroutine contact_operator_pass(bodies, heat, data, workspace, jump, state, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
@@ -36,26 +38,26 @@ contains
 
       settles = allocated(workspace%pass%coordinate) .and. bodies%points%vary_with_temperature()
       if (settles) then
-         call settle_conductance(bodies, data, workspace, jump, error)
+         call settle_conductance(bodies, heat, data, workspace, jump, error)
       else
-         call temperature_jumps(bodies, data, workspace%pass%omega, workspace, jump)
+         call temperature_jumps(bodies, heat, data, workspace%pass%omega, workspace, jump)
          call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       end if
       if (allocated(error)) return
-      call solve_increment(bodies%contact, data%previous, &
-         condensed_load(bodies, data, workspace%on_tail), workspace%contact, workspace%held, &
+      call solve_increment(bodies%equilibrium%contact, data%previous, &
+         condensed_load(heat, data, workspace%on_tail), workspace%contact, workspace%held, &
          state, error)
       if (allocated(error)) return
       if (bodies%points%vary_with_temperature() .and. .not. settles) call take_temperatures( &
-         bodies, data, jump, workspace)
+         bodies, heat, data, jump, workspace)
       workspace%pass%image = conductance(workspace%pass%graph%law, state%contact_state /= &
          contact_open, state%gap, law_pressure(bodies, state))
       call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
    end subroutine contact_operator_pass
 
    !> Condensed mechanical load of the increment with a solution of (3.4).
-   pure function condensed_load(bodies, data, on_tail) result(load)
-      type(reduced_bodies_type), intent(in) :: bodies
+   pure function condensed_load(heat, data, on_tail) result(load)
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: on_tail(:)                        !! (thermal tail)
       real(dp) :: load(size(data%welded_load))                  !! (mechanical tail) [force]
@@ -63,7 +65,7 @@ contains
 
       load = data%welded_load
       do k = 1, size(on_tail)
-         load = load + bodies%jump_load(:, k)*on_tail(k)
+         load = load + heat%jump_load(:, k)*on_tail(k)
       end do
    end function condensed_load
 
@@ -138,7 +140,7 @@ contains
             change = few*epsilon(1.0_dp)*max(data%displacement_scale, abs(state%gap(k)), &
                abs(bodies%points%initial_gap(k) - state%gap(k)))
             if (state%contact_state(k) /= contact_open) then
-               change = change*bodies%contact%alone(k)/weight
+               change = change*bodies%equilibrium%contact%alone(k)/weight
             end if
             pressure = state%force(k)/weight
          end associate

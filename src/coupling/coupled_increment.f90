@@ -10,6 +10,7 @@ module coupled_increment
    use errors, only: error_type
    use fixed_point, only: predicted_conductance
    use gap_temperatures, only: derivative_by_temperature
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use increment_iteration, only: iterate
    use kinds, only: dp
@@ -33,31 +34,33 @@ contains
 
    !> Conductances, jumps and contact state of an increment.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies.
-   subroutine solve_coupled(bodies, data, workspace, next, error)
+   subroutine solve_coupled(bodies, heat, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(inout) :: data           !! receives scales
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
       type(solution_state_type), intent(inout) :: next           !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
 
       data%scales = contact_scales(bodies, data)
-      workspace%pass%graph = make_graph(bodies, data%scales%length)
+      workspace%pass%graph = make_graph(bodies, heat, data%scales%length)
       workspace%cuts_hats = any(bodies%points%cuts_hats) .and. &
          .not. data%equation%takes_past_conductance()
       next%omega_before = data%equation%omega_old
       if (data%start%kind == start_both) then
-         call solve_from_both(bodies, data, workspace, next, error)
+         call solve_from_both(bodies, heat, data, workspace, next, error)
       else
-         next%omega = starting_conductance(bodies, data%start%kind, data)
-         call iterate(bodies, data%fixed_point, data, workspace, next, error)
+         next%omega = starting_conductance(bodies, heat, data%start%kind, data)
+         call iterate(bodies, heat, data%fixed_point, data, workspace, next, error)
       end if
       if (allocated(error) .or. .not. data%fixed_point%finds_gain) return
-      call judge(bodies, data, next, data%fixed_point%method == method_picard, workspace)
+      call judge(bodies, heat, data, next, data%fixed_point%method == method_picard, workspace)
    end subroutine solve_coupled
 
    !> omega*^0 of a start.
-   function starting_conductance(bodies, kind, data) result(omega)
+   function starting_conductance(bodies, heat, kind, data) result(omega)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       integer, intent(in) :: kind
       type(increment_data_type), intent(in) :: data
       real(dp) :: omega(size(data%equation%omega_old))
@@ -72,7 +75,7 @@ contains
          end do
       case (start_open, start_closed)
          omega = data%equation%omega_old
-         conductor = bodies%conductors()
+         conductor = heat%conductors(bodies)
          do k = 1, size(omega)
             if (bodies%jump_index(k) == 0 .or. bodies%points%weight(k) <= 0.0_dp) cycle
             omega(k) = end_conductance(merge(1, 2, kind == start_open))*conductor(k)/ &
@@ -87,8 +90,9 @@ contains
    !> The increment from the last ones, and from both ends of the conductance: do all lead to one
    !> solution? That of the first start that leads to any is the increment's. It is found last, for
    !> the factors to be its own.
-   subroutine solve_from_both(bodies, data, workspace, next, error)
+   subroutine solve_from_both(bodies, heat, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
@@ -118,9 +122,9 @@ contains
          integer, intent(in) :: i
 
          next = guess
-         next%omega = starting_conductance(bodies, kinds(i), data)
+         next%omega = starting_conductance(bodies, heat, kinds(i), data)
          workspace = fresh
-         call iterate(bodies, data%fixed_point, data, workspace, next, error)
+         call iterate(bodies, heat, data%fixed_point, data, workspace, next, error)
       end subroutine try_start
    end subroutine solve_from_both
 
@@ -150,8 +154,9 @@ contains
    end function differ
 
    !> The gain of the coupling, and what follows from it.
-   subroutine judge(bodies, data, next, is_plain, workspace)
+   subroutine judge(bodies, heat, data, next, is_plain, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: next
       logical, intent(in) :: is_plain                            !! whether the iteration is (4.1)
@@ -167,7 +172,7 @@ contains
       if (.not. all(next%resting)) then
          workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
          workspace%record%coupling_gain_max = workspace%record%coupling_gain
-         call find_gains(bodies, data, workspace, next%jump, next%contact, next%resting, gains)
+         call find_gains(bodies, heat, data, workspace, next, gains)
          if (.not. gains%found) return
          workspace%record%coupling_gain = real(gains%largest, dp)
          if (gains%largest_real > -huge(1.0_dp)) workspace%record%coupling_gain_max = &
@@ -183,7 +188,7 @@ contains
             severity=-abs(record%coupling_gain_max - 1.0_dp))
          ! Where all gains are below 1 in modulus, det(I - U') is positive.
          if (any(next%resting) .or. abs(gains%largest) >= 1.0_dp) then
-            if (is_unstable(bodies, data, workspace, next)) call record%warn( &
+            if (is_unstable(bodies, heat, data, workspace, next)) call record%warn( &
                'det(I - U'') is negative: the branch is unstable, and there are at least two '// &
                'other solutions')
          end if
@@ -199,8 +204,9 @@ contains
    end function is_near_turning_point
 
    !> Whether det(I - U') < 0.
-   logical function is_unstable(bodies, data, workspace, next)
+   logical function is_unstable(bodies, heat, data, workspace, next)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       type(solution_state_type), intent(in) :: next
@@ -209,11 +215,11 @@ contains
 
       is_unstable = .false.
       call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
-      call opening_derivative(bodies, workspace, by_omega, next%contact, derivative, body)
+      call opening_derivative(bodies, heat, workspace, by_omega, next%contact, derivative, body)
       if (.not. allocated(derivative)) return
       associate (graph => workspace%pass%graph, opening => workspace%pass%opening)
          if (bodies%points%vary_with_temperature()) by_temperature = derivative_by_temperature( &
-            bodies, workspace, graph%coordinate_of_opening(opening), by_omega)
+            bodies, heat, workspace, graph%coordinate_of_opening(opening), by_omega)
          is_unstable = is_one_of_several(graph, opening, derivative, next%resting, by_temperature)
       end associate
    end function is_unstable

@@ -4,15 +4,16 @@ module coupling_gains
    use arnoldi, only: arnoldi_type
    use conductance_graph, only: conductance_graph_type
    use contact_heat, only: heat_by_omega
-   use contact_states, only: contact_state_type
    use contact_tangent, only: make_tangent
    use contact_workspace, only: contact_workspace_type
    use dense, only: lu_type
    use gap_temperatures, only: changes_by_temperature
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use opening_derivatives, only: opening_changes
    use reduced_bodies, only: reduced_bodies_type
+   use solution_state, only: solution_state_type
    implicit none
    private
    public :: find_gains, is_one_of_several
@@ -28,43 +29,43 @@ contains
    !> Laws and jumps make rows and columns of U' differ by orders of magnitude. The method works on
    !> a similar matrix without that, which is nearly normal: its eigenvalues are as sharp as their
    !> residuals.
-   subroutine find_gains(bodies, data, workspace, jump, state, resting, gains)
+   subroutine find_gains(bodies, heat, data, workspace, solution, gains)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
-      real(dp), intent(in) :: jump(:)                          !! (m) T_xi - T_eta [temperature]
-      type(contact_state_type), intent(in) :: state
-      logical, intent(in) :: resting(:)                        !! (m) contact points that rest
+      type(solution_state_type), intent(in) :: solution        !! that the last pass found
       type(arnoldi_type), intent(out) :: gains                 !! none found where U' does not exist
       type(contact_workspace_type) :: tangent
-      real(dp), dimension(size(jump)) :: coordinate, heat, scale, slope
+      real(dp), dimension(size(solution%jump)) :: coordinate, rate, scale, slope
       real(dp), allocatable :: change(:, :), of_tail(:, :)
       integer, allocatable :: free(:)
       integer :: k
       logical :: sound
 
-      free = pack([(k, k=1, size(jump))], .not. resting)
+      free = pack([(k, k=1, size(rate))], .not. solution%resting)
       if (size(free) == 0) return
-      call make_tangent(bodies%contact, workspace%contact, state, tangent, sound)
+      call make_tangent(bodies%equilibrium%contact, workspace%contact, solution%contact, tangent, &
+         sound)
       if (.not. sound) return
       associate (graph => workspace%pass%graph, index => bodies%jump_index)
          coordinate = graph%coordinate_of_opening(workspace%pass%opening)
          slope = graph%derivative(coordinate)
-         heat = heat_by_omega(bodies, data, workspace, jump)
-         scale = sqrt(of_largest(slope)/of_largest(heat))
-         allocate (of_tail(bodies%thermal%map%tail, 1), change(size(jump), 1))
+         rate = heat_by_omega(bodies, data, workspace, solution%jump)
+         scale = sqrt(of_largest(slope)/of_largest(rate))
+         allocate (of_tail(bodies%thermal%map%tail, 1), change(size(rate), 1))
          call gains%begin(size(free), no_gain)
          do while (gains%wants_product)
             of_tail = 0.0_dp
             do k = 1, size(free)
-               if (index(free(k)) > 0) of_tail(index(free(k)), 1) = heat(free(k))*scale(free(k))* &
+               if (index(free(k)) > 0) of_tail(index(free(k)), 1) = rate(free(k))*scale(free(k))* &
                   gains%vector(k)
             end do
             call workspace%tail%solve_columns(of_tail)
-            call opening_changes(bodies, graph, tangent, state, of_tail, change)
+            call opening_changes(bodies, heat, graph, tangent, solution%contact, of_tail, change)
             change(:, 1) = slope*change(:, 1)
             if (bodies%points%vary_with_temperature()) change = change + &
-               changes_by_temperature(bodies, workspace, coordinate, of_tail)
+               changes_by_temperature(bodies, heat, workspace, coordinate, of_tail)
             call gains%take(change(free, 1)/scale(free))
          end do
       end associate

@@ -29,10 +29,10 @@ contains
       now = tangential_positions(bodies%points, next%displacement)
       associate (contact => next%contact)
          do k = 1, size(now)
-            if (bodies%contact%tangent(k) == 0) then
+            if (bodies%equilibrium%contact%tangent(k) == 0) then
                contact%tangential(k) = now(k)
                contact%reference(k) = before(k) + &
-                  closing_fraction(bodies%contact, solved, k, previous%contact%gap(k), &
+                  closing_fraction(bodies%equilibrium%contact, solved, k, previous%contact%gap(k), &
                   contact%force(k))*(now(k) - before(k))
             end if
             if (contact%contact_state(k) == contact_open .or. next%idle(k)) then

@@ -13,6 +13,7 @@ module gap_temperatures
    use dense, only: lu_type, product_of
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
@@ -32,8 +33,9 @@ module gap_temperatures
 contains
 
    !> Temperatures of the faces with given jumps, and the laws at these.
-   pure subroutine take_temperatures(bodies, data, jump, workspace)
+   pure subroutine take_temperatures(bodies, heat, data, jump, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: jump(:)                            !! (m) T_xi - T_eta [temperature]
       type(increment_workspace_type), intent(inout) :: workspace !! receives faces and laws
@@ -45,7 +47,7 @@ contains
          faces%jump = jump
          do k = 1, size(jump)
             if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
-               bodies%jump_mean(:, bodies%jump_index(k))*jump(k)
+               heat%jump_mean(:, bodies%jump_index(k))*jump(k)
          end do
          workspace%pass%graph%law = bodies%points%laws_at(faces)
       end associate
@@ -54,8 +56,9 @@ contains
    !> Conductances and jumps with the coordinates of a pass: the solution of (3.4) whose
    !> conductances follow the temperatures. The factors are left of these conductances.
    !> Errors: no convergence, jumps that overflow.
-   subroutine settle_conductance(bodies, data, workspace, jump, error)
+   subroutine settle_conductance(bodies, heat, data, workspace, jump, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       !> heat, coordinates and a guess of omega in; omega, temperatures, laws and factors out
       type(increment_workspace_type), intent(inout) :: workspace
@@ -68,15 +71,15 @@ contains
       part = 1.0_dp
       last = huge(last)
       do i = 1, most_steps
-         call temperature_jumps(bodies, data, workspace%pass%omega, workspace, jump)
+         call temperature_jumps(bodies, heat, data, workspace%pass%omega, workspace, jump)
          call check_finite(jump, 'temperature jumps', status_no_convergence, error)
          if (allocated(error)) return
-         call take_temperatures(bodies, data, jump, workspace)
+         call take_temperatures(bodies, heat, data, jump, workspace)
          wanted = workspace%pass%graph%omega(workspace%pass%coordinate)
          residual = maxval([0.0_dp, abs(log_ratio(wanted, workspace%pass%omega))])
          if (residual <= rounding .or. (residual <= converged .and. residual >= 0.5_dp*last)) return
          if (residual < last .or. part < shortest) then
-            step = newton_step(bodies, data, workspace, jump, wanted)
+            step = newton_step(bodies, heat, data, workspace, jump, wanted)
             base = workspace%pass%omega
             last = residual
             part = 1.0_dp
@@ -103,8 +106,9 @@ contains
    end function log_ratio
 
    !> Newton's step of log omega; towards the values wanted where there is none.
-   function newton_step(bodies, data, workspace, jump, wanted) result(step)
+   function newton_step(bodies, heat, data, workspace, jump, wanted) result(step)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace
       real(dp), intent(in) :: jump(:), wanted(:)
@@ -118,7 +122,8 @@ contains
       call jump_derivatives(bodies, data, workspace, jump, by_omega)
       associate (omega => workspace%pass%omega)
          rest(:, 1) = log_ratio(wanted, omega)
-         matrix = -derivative_by_temperature(bodies, workspace, workspace%pass%coordinate, by_omega)
+         matrix = -derivative_by_temperature(bodies, heat, workspace, workspace%pass%coordinate, &
+            by_omega)
          do k = 1, size(omega)
             matrix(:, k) = matrix(:, k)*omega(k)/max(wanted, tiny(1.0_dp))
          end do
@@ -133,21 +138,24 @@ contains
    end function newton_step
 
    !> dW/domega of the solution that the factors belong to.
-   function derivative_by_temperature(bodies, workspace, coordinate, by_omega) result(derivative)
+   function derivative_by_temperature(bodies, heat, workspace, coordinate, by_omega) &
+      result(derivative)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
       type(jump_derivatives_type), intent(in) :: by_omega
       real(dp) :: derivative(size(coordinate), size(coordinate))   !! (m, m)
 
       derivative = 0.0_dp
-      derivative(:, by_omega%active) = changes_by_temperature(bodies, workspace, coordinate, &
+      derivative(:, by_omega%active) = changes_by_temperature(bodies, heat, workspace, coordinate, &
          by_omega%of_tail)
    end function derivative_by_temperature
 
    !> dW with the unknowns of the thermal tail.
-   function changes_by_temperature(bodies, workspace, coordinate, of_tail) result(change)
+   function changes_by_temperature(bodies, heat, workspace, coordinate, of_tail) result(change)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
       real(dp), intent(in) :: of_tail(:, :)                    !! (thermal tail, n)
@@ -155,7 +163,7 @@ contains
       real(dp) :: by_faces(2)
       integer :: k
 
-      change = product_of(bodies%jump_mean, of_tail)
+      change = product_of(heat%jump_mean, of_tail)
       do k = 1, size(coordinate)
          by_faces = graph_derivatives(workspace%pass%graph(k), coordinate(k))
          change(k, :) = by_faces(1)*change(k, :)

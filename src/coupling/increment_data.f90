@@ -4,11 +4,11 @@ module increment_data
    use contact_workspace, only: contact_workspace_type
    use controls, only: fixed_point_type, start_type
    use cut_hats, only: cut_hat_type, cut_hats_type
-   use field_problem, only: field_load_type
+   use field_problem, only: field_load_type, solved_loads_type
    use fixed_point, only: pass_type
    use kinds, only: dp
-   use known_loads, only: known_loads_type
    use solution_report, only: solution_report_type
+   use solution_state, only: solution_state_type
    use tail_factors, only: tail_factors_type
    use temperature_laws, only: face_temperatures_type
    use thermal_matrix, only: heat_equation_type
@@ -27,6 +27,7 @@ module increment_data
       integer :: analysis = 0                        !! one of the analysis_* constants of steps
       type(start_type) :: start                      !! where its fixed point starts
       type(fixed_point_type) :: fixed_point          !! controls of its fixed point
+      type(solution_state_type) :: before            !! state at the start of the increment
       ! The next five are of the start of the increment, under the laws of its step.
       type(heat_equation_type) :: equation           !! eq. (3.4)
       type(contact_state_type) :: previous           !! contact state
@@ -49,7 +50,7 @@ module increment_data
       type(field_load_type) :: heat                  !! load of (3.4)
       type(field_load_type) :: force                 !! load of (2.4)
       !> Loads of earlier increments, of (3.4) and of (2.4).
-      type(known_loads_type), allocatable :: known(:)
+      type(solved_loads_type), allocatable :: known(:)
       real(dp), allocatable :: supported(:) !! (nodes) what prescribed temperatures alone make
       type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
       real(dp), allocatable :: on_tail(:)            !! (thermal tail) their last solution

@@ -9,6 +9,7 @@ module increment_iteration
    use errors, only: error_type, set_error, status_no_convergence
    use fixed_point, only: accelerator_type, point_residual
    use gap_temperatures, only: at_own_temperatures, derivative_by_temperature
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use interruption, only: check_overdue
    use kinds, only: dp
@@ -35,8 +36,9 @@ contains
    !> others know no contact points at rest; elsewhere it only tells what the failure means.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies;
    !> status_interrupted where a signal left no more time.
-   subroutine iterate(bodies, controls, data, workspace, next, error)
+   subroutine iterate(bodies, heat, controls, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(fixed_point_type), intent(in) :: controls
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, passes out
@@ -49,7 +51,7 @@ contains
       next%cut = cut_hats_type()
       start = next
       if (workspace%cuts_hats) then
-         call use_method(bodies, controls, data, workspace, next, error)
+         call use_method(bodies, heat, controls, data, workspace, next, error)
          if (.not. allocated(error)) return
          if (error%status /= status_no_convergence) return
          deallocate (error)
@@ -60,12 +62,12 @@ contains
          workspace%cut = cut_hats_type()
       end if
       before = size(workspace%record%iterations)
-      call use_method(bodies, controls, data, workspace, next, error)
+      call use_method(bodies, heat, controls, data, workspace, next, error)
       if (allocated(error) .and. size(workspace%record%iterations) == before) then
          ! Not even the contact zones of the start were found: those of the last increment may be.
          next%contact = start%contact
          next%omega = data%equation%omega_old
-         call use_method(bodies, controls, data, workspace, next, error)
+         call use_method(bodies, heat, controls, data, workspace, next, error)
       end if
       if (.not. allocated(error)) return
       if (controls%method == method_newton) then
@@ -76,13 +78,13 @@ contains
             'the method of the deck finds no state for a contact point whose conductance '// &
             'jumps; NEWTON solves this increment')
          next = start
-         call use_method(bodies, by_newton(controls), data, workspace, next, error)
+         call use_method(bodies, heat, by_newton(controls), data, workspace, next, error)
          if (allocated(error)) call name_runaway(bodies, data, next%jump, workspace%record, &
             error)
       else if (runs_away(data, next%jump)) then
          call name_runaway(bodies, data, next%jump, workspace%record, error)
       else if (.not. workspace%contact%driven) then
-         call explain_failure(bodies, by_newton(controls), data, start, workspace, error)
+         call explain_failure(bodies, heat, by_newton(controls), data, start, workspace, error)
       end if
    end subroutine iterate
 
@@ -97,8 +99,9 @@ contains
 
    !> Says of an increment in which another method failed what Newton's finds in it: a solution, or
    !> that the heat runs away.
-   subroutine explain_failure(bodies, controls, data, start, workspace, error)
+   subroutine explain_failure(bodies, heat, controls, data, start, workspace, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(fixed_point_type), intent(in) :: controls
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: start
@@ -110,7 +113,7 @@ contains
 
       other = start
       other_workspace = workspace
-      call use_method(bodies, controls, data, other_workspace, other, other_error)
+      call use_method(bodies, heat, controls, data, other_workspace, other, other_error)
       if (allocated(other_error)) then
          call name_runaway(bodies, data, other%jump, workspace%record, error)
       else
@@ -148,8 +151,9 @@ contains
    end subroutine name_runaway
 
    !> The iteration by one method.
-   subroutine use_method(bodies, controls, data, workspace, next, error)
+   subroutine use_method(bodies, heat, controls, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(fixed_point_type), intent(in) :: controls
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
@@ -180,7 +184,8 @@ contains
             pass%iteration = i
             if (workspace%cuts_hats) workspace%cut = cut_hats_at(workspace%edge_hats, &
                bodies%points%weight, pass%omega)
-            call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
+            call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, &
+               error)
             if (i > size(passes)) call double(passes)
             passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
                residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
@@ -203,7 +208,7 @@ contains
                (good%contact_state == contact_open)) turns = turns + 1
             if (controls%method /= method_newton .and. any(turns > most_turns .and. &
                pass%graph%width > 0.0_dp)) exit
-            call take_step(bodies, data, next, accelerator, workspace)
+            call take_step(bodies, heat, data, next, accelerator, workspace)
          end do
          call close_passes(record, passes, i, wanted, error)
          if (allocated(error)) return
@@ -288,8 +293,9 @@ contains
    end subroutine double
 
    !> The next omega*, from the derivative of the pass where the accelerator asks for it.
-   subroutine take_step(bodies, data, next, accelerator, workspace)
+   subroutine take_step(bodies, heat, data, next, accelerator, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(inout) :: next
       class(accelerator_type), intent(inout) :: accelerator
@@ -301,10 +307,10 @@ contains
          if (allocated(pass%derivative)) deallocate (pass%derivative)
          if (accelerator%asks_derivative(pass)) then
             call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
-            call opening_derivative(bodies, workspace, by_omega, next%contact, pass%derivative, &
-               pass%body)
+            call opening_derivative(bodies, heat, workspace, by_omega, next%contact, &
+               pass%derivative, pass%body)
             if (bodies%points%vary_with_temperature() .and. allocated(pass%derivative)) then
-               call at_own_temperatures(derivative_by_temperature(bodies, workspace, &
+               call at_own_temperatures(derivative_by_temperature(bodies, heat, workspace, &
                   pass%coordinates(), by_omega), pass%derivative)
             end if
          end if

@@ -16,6 +16,7 @@ module increment_solution
    use fixed_point, only: pass_type
    use friction_memory, only: remember_slip
    use gap_temperatures, only: settle_conductance
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -39,10 +40,10 @@ contains
    !> belong to welded contacts. A field that the step does not solve stays.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies,
    !> loads that overflow.
-   subroutine solve_points(bodies, loads, previous, data, workspace, next, error)
+   subroutine solve_points(bodies, heat, loads, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(solution_state_type), intent(in) :: previous          !! state at the start
       type(increment_data_type), intent(inout) :: data           !! as begun; completed
       type(increment_workspace_type), intent(inout) :: workspace !! a fresh one, but for known loads
       !> guess and loads at the end in, solution out
@@ -56,17 +57,17 @@ contains
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
       if (solves_heat(data%analysis)) then
-         call load_heat(bodies, loads, data, workspace, next)
+         call load_heat(bodies, heat, loads, data, workspace, next)
          call check_finite([workspace%heat%condensed, next%temperature], &
             'heat and temperatures', status_no_convergence, error)
          if (allocated(error)) return
          if (size(next%omega) > 0 .and. .not. bodies%is_coupled) then
-            call conduct(bodies, previous, data, workspace, next, error)
+            call conduct(bodies, heat, data, workspace, next, error)
             if (.not. allocated(error)) call check_absolute_zero(bodies, workspace, error)
             if (allocated(error)) return
          end if
       end if
-      if (solves_mechanics(data%analysis)) call solve_equilibrium(bodies, loads, previous, data, &
+      if (solves_mechanics(data%analysis)) call solve_equilibrium(bodies, heat, loads, data, &
          workspace, next, error)
       if (allocated(error)) return
       next%carrying = data%equation%carrying(joined_conductance(next%omega, next%cut))
@@ -74,19 +75,17 @@ contains
 
    !> Contact and conductance of an increment whose heat is loaded or solved.
    !> Errors: as solve_points.
-   subroutine solve_equilibrium(bodies, loads, previous, data, workspace, next, error)
+   subroutine solve_equilibrium(bodies, heat, loads, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(in) :: loads
-      type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(inout) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
 
-      data%displacement_scale = maxval(abs(previous%displacement))
-      data%expansion = bodies%largest_expansion
-      next%contact%reference = previous%contact%tangential
-      if (.not. solves_heat(data%analysis)) call give_temperatures(bodies, loads, previous, next)
+      next%contact%reference = data%before%contact%tangential
+      if (.not. solves_heat(data%analysis)) call give_temperatures(bodies, loads, data%before, next)
       call load_mechanics(bodies, loads, next, workspace, data%welded_load)
       call check_finite([workspace%force%rhs(:, 1), data%welded_load], 'forces', &
          status_no_convergence, error)
@@ -94,9 +93,9 @@ contains
       if (.not. bodies%is_coupled) then
          call solve_mechanics(bodies, data, workspace, next, error)
       else if (data%equation%is_explicit()) then
-         call pass_once(bodies, data, workspace, next, error)
+         call pass_once(bodies, heat, data, workspace, next, error)
       else
-         call solve_coupled(bodies, data, workspace, next, error)
+         call solve_coupled(bodies, heat, data, workspace, next, error)
       end if
       if (.not. allocated(error)) call settle_idle_points(bodies, workspace%contact%idle, next)
       next%has_mechanics = .true.
@@ -118,6 +117,9 @@ contains
       data%analysis = step%analysis
       data%start = step%start
       data%fixed_point = step%fixed_point
+      data%before = previous
+      data%displacement_scale = maxval(abs(previous%displacement))
+      data%expansion = bodies%largest_expansion
       data%previous = previous%contact
       call adapt_contact(bodies, data%previous)
       omega = law_conductance(bodies, bodies%points%laws_of(previous%temperature, previous%jump), &
@@ -172,8 +174,8 @@ contains
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
 
-      call solve_increment(bodies%contact, data%previous, data%welded_load, workspace%contact, &
-         workspace%held, next%contact, error)
+      call solve_increment(bodies%equilibrium%contact, data%previous, data%welded_load, &
+         workspace%contact, workspace%held, next%contact, error)
       if (allocated(error)) return
       next%omega = law_conductance(bodies, bodies%points%laws_of(next%temperature, next%jump), &
          next%contact)
@@ -205,45 +207,46 @@ contains
    !> or because the conductance is constant: it is that of the contact state that stays, at both
    !> ends of the increment; or it follows the temperatures.
    !> Error: no convergence to these.
-   subroutine conduct(bodies, previous, data, workspace, next, error)
+   subroutine conduct(bodies, heat, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(solution_state_type), intent(in) :: previous
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(inout) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
 
-      next%omega = law_conductance(bodies, bodies%points%laws_of(previous%temperature, &
-         previous%jump), kept_contact(data%previous, previous%has_mechanics))
+      associate (before => data%before)
+         next%omega = law_conductance(bodies, bodies%points%laws_of(before%temperature, &
+            before%jump), kept_contact(data%previous, before%has_mechanics))
+      end associate
       where (data%resting) next%omega = data%equation%omega_old
       data%equation%omega_old = next%omega
       workspace%cut = data%cut
       if (bodies%points%vary_with_temperature()) then
-         call begin_graphs(bodies, previous, data, next%omega, workspace%pass)
-         call settle_conductance(bodies, data, workspace, next%jump, error)
+         call begin_graphs(bodies, data, next%omega, workspace%pass)
+         call settle_conductance(bodies, heat, data, workspace, next%jump, error)
          if (allocated(error)) return
          next%omega = workspace%pass%omega
       else
-         call temperature_jumps(bodies, data, next%omega, workspace, next%jump)
+         call temperature_jumps(bodies, heat, data, next%omega, workspace, next%jump)
       end if
       next%omega_before = next%omega
-      call add_jumps(bodies, workspace, next%temperature)
+      call add_jumps(bodies, heat, workspace, next%temperature)
    end subroutine conduct
 
    !> A pass with given conductances, the graphs of the laws, and the coordinates of a contact state
    !> that stays.
-   subroutine begin_graphs(bodies, previous, data, omega, pass)
+   subroutine begin_graphs(bodies, data, omega, pass)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(solution_state_type), intent(in) :: previous
       type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: omega(:)
       type(pass_type), intent(out) :: pass
       type(contact_state_type) :: contact
 
-      contact = kept_contact(data%previous, previous%has_mechanics)
+      contact = kept_contact(data%previous, data%before%has_mechanics)
       pass%omega = omega
       allocate (pass%graph(size(omega)))
-      pass%graph%law = bodies%points%laws_of(previous%temperature, previous%jump)
+      pass%graph%law = bodies%points%laws_of(data%before%temperature, data%before%jump)
       where (law_jumps(bodies%points%law)) pass%graph%width = 1.0_dp
       pass%coordinate = -pass%graph%width - law_pressure(bodies, contact)
       where (contact%contact_state == contact_open) pass%coordinate = max(contact%gap, 0.0_dp)
@@ -271,8 +274,9 @@ contains
 
    !> An increment explicit in omega: temperatures by the conductance at its start, then mechanics,
    !> then the conductance at its end. Nothing is iterated.
-   subroutine pass_once(bodies, data, workspace, next, error)
+   subroutine pass_once(bodies, heat, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
@@ -281,7 +285,7 @@ contains
       workspace%pass%omega = data%equation%omega_old
       allocate (workspace%pass%graph(size(workspace%pass%omega)))
       workspace%pass%graph%law = bodies%points%law
-      call contact_operator_pass(bodies, data, workspace, next%jump, next%contact, error)
+      call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, error)
       if (allocated(error)) return
       next%omega = workspace%pass%image
       next%omega_before = data%equation%omega_old
@@ -300,17 +304,18 @@ contains
    end function only_pass
 
    !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.
-   subroutine load_heat(bodies, loads, data, workspace, next)
+   subroutine load_heat(bodies, heat, loads, data, workspace, next)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(in) :: loads
       type(increment_data_type), intent(inout) :: data
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
 
       associate (given => loads%temperature%value)
-         workspace%heat = bodies%thermal%load_of( &
+         workspace%heat = heat%load_of(bodies%thermal, &
             data%equation%history(bodies%thermal%matrix), given)
-         call bodies%thermal%condense_load(workspace%heat, workspace%known(of_heat), &
+         call heat%condense_load(bodies%thermal, workspace%heat, workspace%known(of_heat), &
             next%temperature)
          data%held_jump = bodies%points%jumps(given)
          where (bodies%jump_index > 0) data%held_jump = 0.0_dp
@@ -330,41 +335,43 @@ contains
       real(dp) :: thermal(2*size(next%temperature))
 
       thermal = unstrained_forces(bodies, next%temperature)
-      workspace%force = bodies%mechanical%load_of(next%force_load + thermal, &
-         loads%displacement%value)
-      call bodies%mechanical%condense_load(workspace%force, workspace%known(of_mechanics))
-      workspace%contact = contact_workspace_type(bodies%contact, loads%present_gaps( &
-         bodies%points))
+      workspace%force = bodies%equilibrium%load_of(bodies%mechanical, &
+         next%force_load + thermal, loads%displacement%value)
+      call bodies%equilibrium%condense_load(bodies%mechanical, workspace%force, &
+         workspace%known(of_mechanics))
+      workspace%contact = contact_workspace_type(bodies%equilibrium%contact, &
+         loads%present_gaps(bodies%points))
       workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
-      associate (applied => next%force_load, rigid => bodies%rigid)
-         workspace%contact%least_drive = least_drive(bodies%contact%rigid, &
-            matmul(abs(applied), abs(rigid)))
-         welded_load = balanced_load(workspace%force%condensed, bodies%contact%rigid, &
-            bodies%contact%motion, matmul(applied, rigid))
+      associate (applied => next%force_load, rigid => bodies%rigid, &
+         contact => bodies%equilibrium%contact)
+         workspace%contact%least_drive = least_drive(contact%rigid, matmul(abs(applied), &
+            abs(rigid)))
+         welded_load = balanced_load(workspace%force%condensed, contact%rigid, contact%motion, &
+            matmul(applied, rigid))
       end associate
    end subroutine load_mechanics
 
    !> Fields of the whole bodies, from the solution on the contact points, and what contact points
    !> remember of it.
-   subroutine recover_fields(bodies, loads, data, workspace, previous, next)
+   subroutine recover_fields(bodies, heat, loads, data, workspace, next)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(in) :: loads                      !! loads at the end
       type(increment_data_type), intent(in) :: data              !! as solve_points left it
       type(increment_workspace_type), intent(inout) :: workspace !! of the solution
-      type(solution_state_type), intent(in) :: previous          !! state at the start
       type(solution_state_type), intent(inout) :: next           !! as solve_points left it
       real(dp), allocatable :: on_tail(:)
       integer :: k
 
-      next%smallest_gap = min(previous%smallest_gap, next%contact%gap)
+      next%smallest_gap = min(data%before%smallest_gap, next%contact%gap)
       if (.not. solves_mechanics(data%analysis)) return
       if (bodies%is_coupled) then
-         call add_jumps(bodies, workspace, next%temperature)
-         workspace%force = bodies%mechanical%load_of(next%force_load + &
+         call add_jumps(bodies, heat, workspace, next%temperature)
+         workspace%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
             unstrained_forces(bodies, next%temperature), loads%displacement%value)
       end if
       allocate (on_tail(bodies%mechanical%map%tail))
-      associate (contact => bodies%contact)
+      associate (contact => bodies%equilibrium%contact)
          on_tail(contact%normal) = merge(next%contact%approach, &
             workspace%contact%initial_gap - next%contact%gap, next%contact%contact_state == &
             contact_open)
@@ -373,18 +380,19 @@ contains
          end do
          on_tail(contact%link) = next%contact%link
       end associate
-      next%displacement = bodies%mechanical%recover(workspace%force, on_tail)
+      next%displacement = bodies%equilibrium%recover(bodies%mechanical, workspace%force, on_tail)
       next%stress_temperature = next%temperature
-      call remember_slip(bodies, workspace%contact, previous, next)
+      call remember_slip(bodies, workspace%contact, data%before, next)
    end subroutine recover_fields
 
    !> Adds what the jumps make of the temperatures of welded contacts.
-   subroutine add_jumps(bodies, workspace, temperature)
+   subroutine add_jumps(bodies, heat, workspace, temperature)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace
       real(dp), intent(inout) :: temperature(:)                  !! (nodes) [temperature]
 
-      associate (of_jumps => bodies%thermal%extended(reshape(workspace%on_tail, &
+      associate (of_jumps => heat%extended(bodies%thermal, reshape(workspace%on_tail, &
          [size(workspace%on_tail), 1])))
          temperature = temperature + of_jumps(:, 1)
       end associate

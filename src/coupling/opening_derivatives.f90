@@ -12,6 +12,7 @@ module opening_derivatives
    use contact_tangent, only: contact_response, make_tangent
    use contact_workspace, only: contact_workspace_type
    use dense, only: product_of
+   use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
@@ -27,8 +28,9 @@ module opening_derivatives
 contains
 
    !> Graphs of the conductance of all contact points.
-   pure function make_graph(bodies, length) result(graph)
+   pure function make_graph(bodies, heat, length) result(graph)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       real(dp), intent(in) :: length                          !! of a rest, > 0 [length]
       type(conductance_graph_type), allocatable :: graph(:)   !! (m)
       real(dp) :: stiffness(size(bodies%points%weight)), weight(size(bodies%points%weight))
@@ -39,14 +41,14 @@ contains
       weight = bodies%points%weight
       where (weight <= 0.0_dp) weight = maxval(weight)
       do k = 1, size(weight)
-         stiffness(k) = bodies%contact%alone(k)
+         stiffness(k) = bodies%equilibrium%contact%alone(k)
          graph(k)%law = bodies%points%law(k)
       end do
       stiffness = max(stiffness, least_stiffness*maxval(stiffness))
       where (stiffness <= 0.0_dp) stiffness = 1.0_dp
       graph%modulus = stiffness/weight
       if (.not. any([(law_jumps(graph(k)%law), k=1, size(graph))])) return
-      conductor = bodies%conductors()
+      conductor = heat%conductors(bodies)
       do k = 1, size(weight)
          if (bodies%points%weight(k) <= 0.0_dp .or. bodies%jump_index(k) == 0) cycle
          if (.not. law_jumps(graph(k)%law)) cycle
@@ -69,8 +71,9 @@ contains
    !> Derivative of the openings by the conductances, for the state that the last pass found;
    !> unallocated where it does not exist. Contact points of weight 0 carry no heat: their rows stay
    !> 0.
-   subroutine opening_derivative(bodies, workspace, by_omega, state, derivative, body)
+   subroutine opening_derivative(bodies, heat, workspace, by_omega, state, derivative, body)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       type(jump_derivatives_type), intent(in) :: by_omega     !! of the last pass
       type(contact_state_type), intent(in) :: state
@@ -96,11 +99,11 @@ contains
             end associate
          end do
          where (body <= 0.0_dp) body = 1.0_dp
-         call make_tangent(bodies%contact, workspace%contact, state, tangent, sound)
+         call make_tangent(bodies%equilibrium%contact, workspace%contact, state, tangent, sound)
          if (sound) then
             allocate (change(m, n))
-            call opening_changes(bodies, workspace%pass%graph, tangent, state, by_omega%of_tail, &
-               change)
+            call opening_changes(bodies, heat, workspace%pass%graph, tangent, state, &
+               by_omega%of_tail, change)
             derivative(:, active) = change
          else
             deallocate (derivative)
@@ -109,8 +112,9 @@ contains
    end subroutine opening_derivative
 
    !> Changes of the openings with the unknowns of the thermal tail.
-   pure subroutine opening_changes(bodies, graph, tangent, state, of_tail, change)
+   pure subroutine opening_changes(bodies, heat, graph, tangent, state, of_tail, change)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(conductance_graph_type), intent(in) :: graph(:)    !! (m) graphs of the conductance
       type(contact_workspace_type), intent(in) :: tangent     !! of the state, by make_tangent
       type(contact_state_type), intent(in) :: state
@@ -119,8 +123,8 @@ contains
       real(dp), dimension(size(change, 1), size(change, 2)) :: gap, force
       integer :: k
 
-      call contact_response(bodies%contact, tangent, state, product_of(bodies%jump_load, of_tail), &
-         gap, force)
+      call contact_response(bodies%equilibrium%contact, tangent, state, &
+         product_of(heat%jump_load, of_tail), gap, force)
       change = 0.0_dp
       associate (weight => bodies%points%weight)
          do k = 1, size(graph)

@@ -31,9 +31,9 @@ contains
 
       scales%force = maxval(data%previous%force)
       scales%length = max(data%displacement_scale, maxval(abs(data%previous%gap)))
-      do k = 1, size(bodies%contact%normal)
-         associate (row => bodies%contact%normal(k))
-            stiffness = bodies%contact%alone(k)
+      do k = 1, size(bodies%equilibrium%contact%normal)
+         associate (row => bodies%equilibrium%contact%normal(k))
+            stiffness = bodies%equilibrium%contact%alone(k)
             if (stiffness > 0.0_dp) scales%length = max(scales%length, &
                abs(data%welded_load(row))/stiffness)
          end associate

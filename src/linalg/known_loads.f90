@@ -10,7 +10,6 @@ module known_loads
 
    !> Orthonormal loads, the latest last.
    type :: known_loads_type
-      integer :: reduction = 0                              !! whose factors they were solved with
       real(dp), allocatable, private :: rhs(:, :)           !! (equations, n)
       real(dp), allocatable, private :: condensed(:, :)     !! (tail, n)
       real(dp), allocatable, private :: solution(:, :)      !! (equations, n), or none

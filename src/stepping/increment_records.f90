@@ -134,7 +134,7 @@ contains
          record%smallest_gap = next%smallest_gap(first:last)
          closed = record%contact_state /= contact_open
          if (next%has_mechanics) closed = in_contact(points, closed, record%gap, &
-            contact%force(first:last), bodies%contact%alone(first:last))
+            contact%force(first:last), bodies%equilibrium%contact%alone(first:last))
          touches = closed .and. record%contact_state == contact_open
          where (touches)
             record%contact_state = merge(contact_stick, contact_slip, &
@@ -220,7 +220,7 @@ contains
 
       least = least_displacement(model, next%temperature)
       scales%length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp), &
-         bodies%contact%least_length/noise)
+         bodies%equilibrium%contact%least_length/noise)
       if (size(bodies%points%initial_gap) > 0) then
          scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
       end if
@@ -241,7 +241,7 @@ contains
             bodies%points%normal, dim=1), sum(positions*bodies%points%tangent, dim=1)], &
             shape(positions), order=[2, 1])
          record%contact_violation = contact_violation(positions, residual, held, bodies%points, &
-            next%contact, bodies%contact%tangent > 0, scales)
+            next%contact, bodies%equilibrium%contact%tangent > 0, scales)
          record%fields%reaction = on_nodes(bodies%points%partners, reshape(merge(residual, &
             0.0_dp, held), [2, size(next%temperature)]))
       end associate

@@ -3,7 +3,9 @@ module increments
    use clock, only: wall_seconds
    use discretisation_errors, only: recovery_type
    use errors, only: error_type, set_error, status_no_convergence
+   use field_problem, only: solved_loads_type
    use heat_balance, only: sound_imbalance
+   use heat_reduction, only: heat_reduction_type
    use increment_checks, only: check_balance, check_heat, check_values, check_violation, &
       warn_of_choices
    use increment_control, only: increment_control_type
@@ -12,7 +14,6 @@ module increments
    use increment_solution, only: begin_increment, recover_fields, solve_points
    use initial_state, only: make_initial_state
    use kinds, only: dp
-   use known_loads, only: known_loads_type
    use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
@@ -20,8 +21,8 @@ module increments
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
-   use step_reduction, only: assemble_bodies, measure_factors, measure_steps, run_seconds_type, &
-      run_size_type, step_reduction_type
+   use step_reduction, only: assemble_bodies, measure_factors, measure_steps, reduce_bodies, &
+      run_seconds_type, run_size_type, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: counted, to_text
    use thermal_matrix, only: heat_equation_type
@@ -36,11 +37,12 @@ module increments
    !> A run: the reduced bodies, the loads and the state, moved on by advance.
    type :: simulation_type
       type(reduced_bodies_type) :: bodies   !! the bodies reduced to their contact unknowns
-      type(step_reduction_type) :: reduction        !! what of them is numbered and reduced
+      type(heat_reduction_type) :: heat     !! their heat likewise, for the films of the increment
+      type(step_reduction_type) :: reduction        !! what of them is numbered
       type(recovery_type) :: recovery               !! stress and flux with their errors
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
-      type(known_loads_type), allocatable :: known(:)   !! loads of earlier increments, solved
+      type(solved_loads_type), allocatable :: known(:)  !! loads of earlier increments, solved
       type(increment_control_type) :: control       !! position in the steps, size of increments
       type(run_seconds_type) :: seconds             !! where the time went
       type(run_size_type) :: sizes                  !! sizes over all steps
@@ -105,7 +107,7 @@ contains
    end subroutine assemble
 
    !> Assembles and reduces the bodies for the present step, where that is not done.
-   !> Errors: as step_reduction's reduce.
+   !> Errors: as step_reduction's reduce_bodies.
    subroutine reduce(self, model, error)
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
@@ -114,15 +116,17 @@ contains
       type(sparse_matrix_type) :: film
 
       associate (step => model%steps(self%control%step))
-         if (solves_heat(step%analysis) .and. .not. self%reduction%heat_is_reduced) then
+         film = self%heat%added
+         if (solves_heat(step%analysis) .and. &
+            self%heat%numbering /= self%bodies%thermal%numbering) then
             call self%loads%move_to(self%control%next_instant(model), model)
             equation = heat_equation_type(step%scheme, self%state%sources)
             equation%new%film = self%loads%film_matrix()
             film = equation%left_film()
          end if
-         call self%reduction%reduce(model, step, film, self%bodies, self%seconds, error)
+         call reduce_bodies(model, step, film, self%bodies, self%heat, self%seconds, error)
       end associate
-      call measure_factors(self%bodies, self%sizes)
+      call measure_factors(self%bodies, self%heat, self%sizes)
    end subroutine reduce
 
    !> Whether all steps are solved.
@@ -271,14 +275,14 @@ contains
       associate (step => model%steps(self%control%step), bodies => self%bodies)
          call begin_increment(bodies, step, self%state, next, data)
          if (solves_heat(step%analysis)) then
-            call bodies%set_film(data%equation%left_film(), model, error)
+            call self%heat%reduce(model, bodies, data%equation%left_film(), error)
             if (allocated(error)) return
-            call measure_factors(bodies, self%sizes)
+            call measure_factors(bodies, self%heat, self%sizes)
          end if
          since = wall_seconds()
          ! An increment that fails leaves nothing behind, not even in the last digits.
          if (allocated(self%known)) workspace%known = self%known
-         call solve_points(bodies, self%loads, self%state, data, workspace, next, error)
+         call solve_points(bodies, self%heat, self%loads, data, workspace, next, error)
          record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
@@ -294,7 +298,7 @@ contains
          if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &
             workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
-         call recover_fields(bodies, self%loads, data, workspace, self%state, next)
+         call recover_fields(bodies, self%heat, self%loads, data, workspace, next)
          call complete_record(bodies, model, self%recovery, self%loads, data, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_values(record, error)
@@ -332,6 +336,7 @@ contains
       class(simulation_type), intent(inout) :: self   !! the run
 
       call self%bodies%release()
+      call self%heat%release()
    end subroutine release
 
 end module increments

@@ -5,9 +5,10 @@ module step_reduction
    use all_contact_points, only: all_contact_points_type
    use clock, only: wall_seconds
    use conductance_laws, only: is_constant
-   use contact_reduction, only: take_laws
    use equation_checks, only: check_equations
+   use equilibrium_reduction, only: take_laws
    use errors, only: error_type
+   use heat_reduction, only: heat_reduction_type
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
    use load_histories, only: end_of_step
@@ -22,7 +23,7 @@ module step_reduction
    implicit none
    private
    public :: step_reduction_type, assemble_bodies, measure_steps, measure_factors, &
-      run_seconds_type, run_size_type
+      reduce_bodies, run_seconds_type, run_size_type
 
    !> Where the time goes.
    type :: run_seconds_type
@@ -41,17 +42,14 @@ module step_reduction
       real(dp) :: smallest_pivot = 1.0_dp   !! over its diagonal entry, smallest so far [-]
    end type run_size_type
 
-   !> What of the bodies is numbered and reduced.
+   !> What of the bodies is numbered.
    type :: step_reduction_type
       private
-      logical, public :: heat_is_reduced = .false.  !! whether heat is reduced as numbered
       logical, allocatable :: held(:)               !! (2 nodes) supports that are numbered
       logical, allocatable :: has_friction(:)       !! (m) contact points that are numbered with it
       logical, allocatable :: held_temperature(:)   !! (nodes) prescribed nodes that are numbered
-      logical :: mechanics_is_reduced = .false.     !! whether mechanics is reduced as numbered
    contains
       procedure :: number
-      procedure :: reduce
    end type step_reduction_type
 
 contains
@@ -82,8 +80,8 @@ contains
             self%has_friction = bodies%points%has_friction()
          end if
          if (heat) self%held_temperature = held_temperature
-         self%mechanics_is_reduced = self%mechanics_is_reduced .and. .not. mechanics
-         self%heat_is_reduced = self%heat_is_reduced .and. .not. heat
+         bodies%is_coupled = solves_heat(step%analysis) .and. solves_mechanics(step%analysis) &
+            .and. .not. all(is_constant(bodies%points%law))
          call bodies%number(model, held, held_temperature, mechanics, heat, error)
       end associate
    end subroutine number
@@ -152,32 +150,33 @@ contains
 
    !> Assembles the bodies, where that is not done, and reduces the fields of a step to their
    !> contact unknowns, where that is not done.
-   !> Errors: as reduced_bodies' reduce.
-   subroutine reduce(self, model, step, film, bodies, seconds, error)
-      class(step_reduction_type), intent(inout) :: self          !! numbered for the step
+   !> Errors: as reduced_bodies' and heat_reduction's reduce.
+   subroutine reduce_bodies(model, step, film, bodies, heat, seconds, error)
       type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
       type(sparse_matrix_type), intent(in) :: film !! left-hand side of (3.4) [power/temperature]
-      type(reduced_bodies_type), intent(inout) :: bodies
+      type(reduced_bodies_type), intent(inout) :: bodies         !! numbered for the step
+      type(heat_reduction_type), intent(inout) :: heat
       type(run_seconds_type), intent(inout) :: seconds           !! receives the time it took
       type(error_type), allocatable, intent(out) :: error
-      logical :: heat, mechanics
+      type(error_type), allocatable :: of_elimination
+      logical :: mechanics
       real(dp) :: since
 
-      mechanics = solves_mechanics(step%analysis) .and. .not. self%mechanics_is_reduced
-      heat = solves_heat(step%analysis) .and. .not. self%heat_is_reduced
       call assemble_bodies(model, bodies, seconds)
       since = wall_seconds()
-      if (heat) bodies%thermal%added = film
-      call bodies%reduce(model, mechanics, heat, solves_heat(step%analysis) .and. &
-         solves_mechanics(step%analysis) .and. .not. all(is_constant(bodies%points%law)), error)
-      if (.not. allocated(error) .and. solves_mechanics(step%analysis)) call take_laws( &
-         bodies%points, bodies%contact)
-      self%mechanics_is_reduced = self%mechanics_is_reduced .or. (mechanics .and. &
-         .not. allocated(error))
-      self%heat_is_reduced = self%heat_is_reduced .or. (heat .and. .not. allocated(error))
+      mechanics = solves_mechanics(step%analysis) .and. &
+         bodies%equilibrium%numbering /= bodies%mechanical%numbering
+      if (mechanics) call bodies%equilibrium%release()
+      call heat%renumber_both(bodies)
+      ! Where it fails, heat%reduce fails again and says so.
+      if (solves_heat(step%analysis)) call heat%eliminate(model, bodies, film, of_elimination)
+      if (mechanics) call bodies%reduce(model, heat%node_rank, error)
+      if (allocated(error)) return
+      if (solves_mechanics(step%analysis)) call take_laws(bodies%points, bodies%equilibrium%contact)
+      if (solves_heat(step%analysis)) call heat%reduce(model, bodies, film, error)
       seconds%reduce = seconds%reduce + (wall_seconds() - since)
-   end subroutine reduce
+   end subroutine reduce_bodies
 
    !> Whether temperatures that differ from the initial ones ever meet mechanics.
    pure function temperatures_strain(model) result(strain)
@@ -194,14 +193,15 @@ contains
    end function temperatures_strain
 
    !> Notes the memory of the factors that are, and their smallest pivot.
-   subroutine measure_factors(bodies, sizes)
+   subroutine measure_factors(bodies, heat, sizes)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(run_size_type), intent(inout) :: sizes               !! receives both
       integer(long) :: bytes
 
       bytes = 0
-      if (allocated(bodies%mechanical%solver)) call measure(bodies%mechanical%solver)
-      if (allocated(bodies%thermal%solver)) call measure(bodies%thermal%solver)
+      if (allocated(bodies%equilibrium%solver)) call measure(bodies%equilibrium%solver)
+      if (allocated(heat%solver)) call measure(heat%solver)
       sizes%factor_bytes = max(sizes%factor_bytes, bytes)
    contains
       subroutine measure(solver)

@@ -1,28 +1,56 @@
-!> The contact system of the reduced bodies: the Schur complement of equilibrium on the contact
-!> points.
-module contact_reduction
+!> Equilibrium reduced to the contact points: factors, and the contact system from their Schur
+!> complement.
+module equilibrium_reduction
    use contact_constraints, only: in_cycle, cycle_compliance, stiffness_alone
    use contact_system, only: contact_system_type
    use dense, only: column_space
-   use field_problem, only: field_problem_type
+   use errors, only: error_type
+   use field_problem, only: field_problem_type, field_reduction_type
    use kinds, only: dp
    use linear_constraints, only: node_stiffness
+   use sparse_matrix, only: sparse_matrix_type
    use all_contact_points, only: all_contact_points_type
    implicit none
    private
 
    !> Part of the bodies' stiffness at its nodes below which a contact point's is rounding.
    real(dp), parameter :: strainless = 1.0e-10_dp
-   public :: contact_system_of, take_laws
+   public :: equilibrium_reduction_type, take_laws
+
+   !> Equilibrium, (2.4), reduced for a set of supports.
+   type, extends(field_reduction_type) :: equilibrium_reduction_type
+      type(contact_system_type) :: contact                !! partial solution of (2.4)
+   contains
+      procedure :: reduce
+   end type equilibrium_reduction_type
 
 contains
 
-   !> The contact system from the mechanical Schur complement.
-   pure function contact_system_of(mechanical, points, rigid) result(contact)
-      type(field_problem_type), intent(in) :: mechanical !! equilibrium, reduced
+   !> Factors the stiffness, and forms the contact system.
+   !> Errors: unconstrained bodies, a failure of the solver.
+   subroutine reduce(self, mechanical, points, rigid, solver_kind, node_rank, error)
+      class(equilibrium_reduction_type), intent(inout) :: self
+      type(field_problem_type), intent(in) :: mechanical  !! equilibrium, numbered
       type(all_contact_points_type), intent(in) :: points !! all contact points
       real(dp), intent(in) :: rigid(:, :) !! (2 nodes, motions) that the supports leave free
-      type(contact_system_type) :: contact               !! the system, nothing closed
+      integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
+      !> (nodes) ranks in nested dissection, where they are known
+      integer, allocatable, intent(in) :: node_rank(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%release()
+      call self%factor(mechanical, sparse_matrix_type(), solver_kind, node_rank, error)
+      if (allocated(error)) return
+      self%contact = contact_system_of(mechanical, self%solver%schur, points, rigid)
+   end subroutine reduce
+
+   !> The contact system, nothing closed, from the mechanical Schur complement.
+   pure function contact_system_of(mechanical, schur, points, rigid) result(contact)
+      type(field_problem_type), intent(in) :: mechanical
+      real(dp), intent(in) :: schur(:, :)
+      type(all_contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: rigid(:, :)
+      type(contact_system_type) :: contact
       integer :: m
 
       m = size(points%slave)
@@ -31,7 +59,7 @@ contains
          contact%normal(:) = map%tail_index(map%introduced(1::2))
          contact%tangent(:) = map%tail_index(map%introduced(2::2))
       end associate
-      contact%schur = mechanical%solver%schur
+      contact%schur = schur
       call take_laws(points, contact)
       call set_motions(points, rigid, contact)
       call set_cycles(mechanical, points, contact)
@@ -105,4 +133,4 @@ contains
       end associate
    end subroutine set_cycles
 
-end module contact_reduction
+end module equilibrium_reduction

@@ -1,0 +1,227 @@
+!> The heat of the bodies reduced to the jumps of the contact points, for given films. Nobody
+!> changes a reduction that others read: a run and each companion of it own one each, and reduce
+!> keeps what still serves.
+module heat_reduction
+   use contact_constraints, only: in_cycle, stiffness_alone
+   use controls, only: solver_mumps
+   use errors, only: error_type
+   use field_problem, only: field_reduction_type
+   use jump_loads, only: loads_by_elimination, loads_by_solves
+   use kinds, only: dp
+   use model, only: model_type
+   use reduced_bodies, only: reduced_bodies_type
+   use sparse_matrix, only: sparse_matrix_type
+   use unconstrained_bodies, only: undetermined_beside
+   use unconstrained_motions, only: balanced_load
+   implicit none
+   private
+   public :: heat_reduction_type
+
+   integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
+
+   !> Heat, (3.3), reduced.
+   type, extends(field_reduction_type) :: heat_reduction_type
+      !> (mechanical tail, thermal tail) condensed mechanical load per jump; formed where heat
+      !> depends on the mechanics of the step
+      real(dp), allocatable :: jump_load(:, :)
+      !> (m, thermal tail) mean temperature of the faces per jump; formed where laws vary with it
+      real(dp), allocatable :: jump_mean(:, :)
+      !> (nodes) ranks in nested dissection of both fields as numbered; known where one elimination
+      !> of both was made
+      integer, allocatable :: node_rank(:)
+      integer, private :: ranked_displacements = 0   !! numbering of those in node_rank
+      integer, private :: displacements = 0   !! numbering of those in jump_load, 0 without it
+      logical, private :: is_balanced = .false.   !! whether jump_load is
+   contains
+      procedure :: serves
+      procedure :: renumber_both
+      procedure :: share_order
+      procedure :: reduce
+      procedure :: eliminate
+      procedure :: conductors
+   end type heat_reduction_type
+
+contains
+
+   !> Whether this is the heat of bodies with given films, for their present supports and step.
+   pure logical function serves(self, bodies, film)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies  !! numbered
+      type(sparse_matrix_type), intent(in) :: film     !! (nodes, nodes) [power/temperature]
+
+      serves = self%is_of(bodies%thermal, film) .and. (.not. bodies%is_coupled .or. &
+         (has_loads(self, bodies) .and. self%is_balanced))
+   end function serves
+
+   !> Whether the loads of the jumps are those of the bodies' supports.
+   pure logical function has_loads(self, bodies)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+
+      has_loads = allocated(self%jump_load) .and. &
+         self%displacements == bodies%mechanical%numbering
+   end function has_loads
+
+   !> Reduces heat for given films, as far as it does not serve for films, supports and step.
+   !> Errors: bodies whose temperature nothing determines, a failure of the solver.
+   subroutine reduce(self, model, bodies, film, error)
+      class(heat_reduction_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies  !! equilibrium reduced, where it is solved
+      type(sparse_matrix_type), intent(in) :: film     !! (nodes, nodes) [power/temperature]
+      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: of_loads
+
+      if (self%serves(bodies, film)) return
+      call self%eliminate(model, bodies, film, of_loads)
+      if (.not. self%is_of(bodies%thermal, film)) then
+         call self%factor(bodies%thermal, film, model%solver, self%node_rank, error)
+         if (allocated(error)) then
+            ! Factors say better than an elimination what makes both fail.
+            call name_cold_bodies(model, bodies, film, error)
+            return
+         end if
+         if (allocated(self%jump_mean)) deallocate (self%jump_mean)
+         if (bodies%points%vary_with_temperature()) call form_jump_mean(self, bodies)
+      end if
+      if (allocated(of_loads)) call move_alloc(of_loads, error)
+      if (allocated(error) .or. .not. bodies%is_coupled) return
+      if (.not. has_loads(self, bodies)) call loads_by_solves(bodies%thermal, self, &
+         bodies%mechanical, bodies%equilibrium, bodies%thermal_load, self%jump_load)
+      self%displacements = bodies%mechanical%numbering
+      if (.not. self%is_balanced) call balance_jump_load(self, bodies)
+   end subroutine reduce
+
+   !> Forms the loads of the jumps by one elimination of both fields, where the solver is better at
+   !> that, and frees what does not serve. Called before equilibrium is factored, it leaves the
+   !> memory of both fields' factors to the elimination, and its ranks to them.
+   !> Errors: as loads_by_elimination.
+   subroutine eliminate(self, model, bodies, film, error)
+      class(heat_reduction_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies  !! numbered
+      type(sparse_matrix_type), intent(in) :: film     !! (nodes, nodes) [power/temperature]
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%renumber_both(bodies)
+      if (.not. self%is_for(bodies%thermal, film)) self%displacements = 0
+      if (has_loads(self, bodies) .or. .not. bodies%is_coupled) return
+      if (allocated(self%jump_load)) deallocate (self%jump_load)
+      self%is_balanced = .false.
+      if (model%solver /= solver_mumps) return
+      if (.not. self%is_of(bodies%thermal, film)) then
+         call self%release()
+         self%added = film
+      end if
+      self%ranked_displacements = bodies%mechanical%numbering
+      call loads_by_elimination(bodies%thermal, film, bodies%mechanical, bodies%thermal_load, &
+         self%node_rank, self%jump_load, error)
+      if (.not. allocated(error)) self%displacements = bodies%mechanical%numbering
+   end subroutine eliminate
+
+   !> Forgets what is of other numberings of the bodies.
+   subroutine renumber_both(self, bodies)
+      class(heat_reduction_type), intent(inout) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+
+      if (allocated(self%node_rank) .and. (self%numbering /= bodies%thermal%numbering .or. &
+         self%ranked_displacements /= bodies%mechanical%numbering)) deallocate (self%node_rank)
+      if (self%numbering /= bodies%thermal%numbering) self%displacements = 0
+      call self%renumber(bodies%thermal)
+   end subroutine renumber_both
+
+   !> Orders unknowns as another reduction of the same bodies does.
+   subroutine share_order(self, other, bodies)
+      class(heat_reduction_type), intent(inout) :: self
+      type(heat_reduction_type), intent(in) :: other
+      type(reduced_bodies_type), intent(in) :: bodies
+
+      call self%renumber_both(bodies)
+      if (other%numbering /= self%numbering) return
+      if (.not. allocated(self%rank) .and. allocated(other%rank)) self%rank = other%rank
+      if (allocated(self%node_rank) .or. .not. allocated(other%node_rank)) return
+      self%node_rank = other%node_rank
+      self%ranked_displacements = other%ranked_displacements
+   end subroutine share_order
+
+   !> Names the bodies that leave the heat problem singular: no prescribed temperature and no film
+   !> is on them or on a body that contact points join to them.
+   subroutine name_cold_bodies(model, bodies, film, error)
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(sparse_matrix_type), intent(in) :: film
+      type(error_type), intent(inout) :: error
+      logical :: warm(size(model%mesh%node_body))
+      character(:), allocatable :: words
+      integer :: i
+
+      warm = bodies%thermal%map%is_given([(i, i=1, size(warm))])
+      if (allocated(film%value)) warm(pack(film%column, film%value > 0.0_dp)) = .true.
+      words = undetermined_beside(model, bodies%points, warm)
+      if (len(words) > 0) error%message = words//': no *BOUNDARY on dof 11 and no *FILM with a '// &
+         'coefficient above 0 at this time fixes it'
+   end subroutine name_cold_bodies
+
+   !> Balances the condensed loads of the jumps, which have no resultant.
+   subroutine balance_jump_load(self, bodies)
+      class(heat_reduction_type), intent(inout) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp) :: none(size(bodies%rigid, 2))
+      integer :: k
+
+      none = 0.0_dp
+      associate (contact => bodies%equilibrium%contact)
+         do k = 1, size(self%jump_load, 2)
+            self%jump_load(:, k) = balanced_load(self%jump_load(:, k), contact%rigid, &
+               contact%motion, none)
+         end do
+      end associate
+      self%is_balanced = .true.
+   end subroutine balance_jump_load
+
+   !> Mean temperature of the faces at all contact points, of a unit jump at each.
+   subroutine form_jump_mean(self, bodies)
+      class(heat_reduction_type), intent(inout) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), allocatable :: temperature(:, :)
+      integer :: first, k, last, tail
+
+      tail = bodies%thermal%map%tail
+      allocate (self%jump_mean(size(bodies%points%slave), tail))
+      do first = 1, tail, columns_at_once
+         last = min(first + columns_at_once - 1, tail)
+         temperature = self%unit_responses(bodies%thermal, first, last)
+         do k = first, last
+            self%jump_mean(:, k) = bodies%points%means(temperature(:, k - first + 1))
+         end do
+      end do
+      ! Forces of links, which are unknowns of the tail too, act on jumps only.
+      do k = 1, tail
+         if (.not. any(bodies%jump_index == k)) self%jump_mean(:, k) = 0.0_dp
+      end do
+   end subroutine form_jump_mean
+
+   !> Conductance of the bodies about each contact point alone; 0 where both temperatures are
+   !> prescribed. A contact point that closes a cycle, whose jump only the others hold, has that of
+   !> the bodies at its nodes.
+   pure function conductors(self, bodies) result(conductance)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp) :: conductance(size(bodies%points%slave))     !! (m) [power/temperature]
+      logical :: cyclic(size(conductance))
+      integer :: k
+
+      conductance = 0.0_dp
+      cyclic = in_cycle(bodies%thermal%map, size(cyclic))
+      associate (index => bodies%jump_index)
+         do k = 1, size(conductance)
+            if (index(k) == 0) cycle
+            conductance(k) = self%solver%schur(index(k), index(k))
+            if (.not. cyclic(k)) cycle
+            conductance(k) = stiffness_alone(conductance(k), bodies%thermal%matrix, &
+               bodies%points%nodes_of(k), 1)
+         end do
+      end associate
+   end function conductors
+
+end module heat_reduction
