@@ -84,8 +84,8 @@ contains
       self%numbering = problem%numbering
    end subroutine renumber
 
-   !> Whether this is, or is to be, the reduction of a problem as it is numbered, with an addition to
-   !> its matrix.
+   !> Whether this is, or is to be, the reduction of a problem as it is numbered, with an addition
+   !> to its matrix.
    pure logical function is_for(self, problem, added)
       class(field_reduction_type), intent(in) :: self
       type(field_problem_type), intent(in) :: problem

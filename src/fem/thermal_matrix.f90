@@ -34,7 +34,7 @@ module thermal_matrix
    type :: heat_sources_type
       real(dp), allocatable :: load(:)              !! (nodes) Q of (3.3) [power]
       !> (nodes, nodes) F of films; without values where there is none [power/temperature]
-      type(sparse_matrix_type) :: film
+      type(sparse_matrix_type) :: film = sparse_matrix_type()
    contains
       procedure :: net_heat
    end type heat_sources_type
@@ -49,7 +49,8 @@ module thermal_matrix
    !> Eq. (3.4) of one increment, from what is known at its start.
    type :: heat_equation_type
       type(thermal_scheme_type) :: scheme = implicit_scheme
-      type(heat_sources_type) :: old, new           !! at t_i and at t_i+1
+      !> At t_i and at t_i+1.
+      type(heat_sources_type) :: old = heat_sources_type(), new = heat_sources_type()
       real(dp), allocatable :: temperature_old(:)   !! (nodes) T_i [temperature]
       real(dp), allocatable :: weight(:)            !! (m) tributary areas [length^2]
       real(dp), allocatable :: omega_old(:)         !! (m) omega_i
