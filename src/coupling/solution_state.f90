@@ -3,7 +3,6 @@ module solution_state
    use contact_states, only: contact_state_type
    use cut_hats, only: cut_hats_type
    use kinds, only: dp
-   use recovered_error, only: error_record_type
    use thermal_matrix, only: heat_sources_type
    implicit none
    private
@@ -22,12 +21,9 @@ module solution_state
       real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
       real(dp), allocatable :: displacement(:)      !! (2 nodes) [length]
       real(dp), allocatable :: smallest_gap(:)      !! (m) smallest gap so far [length]
-      !> (4, points) of the last increment that solved mechanics; unallocated before it, and where
-      !> nothing needs it [stress]
-      real(dp), allocatable :: stress(:, :)
-      type(error_record_type) :: stress_error       !! likewise
-      real(dp), allocatable :: reaction(:, :)       !! (2, nodes) likewise [force]
-      real(dp), allocatable :: stress_temperature(:)  !! (nodes) that stress is of [temperature]
+      !> (2, nodes) of the last increment that solved mechanics; unallocated before it [force]
+      real(dp), allocatable :: reaction(:, :)
+      real(dp), allocatable :: stress_temperature(:)  !! (nodes) of that increment [temperature]
       type(heat_sources_type) :: sources            !! Q of (3.3) and F of films
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
       real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]

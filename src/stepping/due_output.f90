@@ -45,7 +45,7 @@ contains
    end function is_judged
 
    !> Whether anything asks for stress, heat flux or their errors. The last increment of a step
-   !> always does: the listing tells its errors, and steps without mechanics keep its stress.
+   !> always does: the listing tells its errors.
    pure logical function needs_recovery(record, model)
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model

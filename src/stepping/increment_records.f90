@@ -64,21 +64,19 @@ contains
          end do
          record%fields%temperature = next%temperature
          if (solves_mechanics(step%analysis)) then
-            if (recovers) call recovery%recover_stress(model, reshape(next%displacement, [2, &
-               size(next%temperature)]), next%temperature - model%initial_temperature, &
-               record%fields%stress, record%stress_error)
             call balance_forces(bodies, model, loads, next, record)
          else
             record%force_imbalance = ieee_value(1.0_dp, ieee_quiet_nan)
             record%contact_violation = record%force_imbalance
-            if (allocated(next%stress)) record%fields%stress = next%stress
-            record%stress_error = next%stress_error
             if (next%has_mechanics) record%fields%reaction = next%reaction
          end if
          if (next%has_mechanics) then
             record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
             record%fields%external_force = record%fields%reaction + on_nodes( &
                bodies%points%partners, reshape(next%force_load, shape(record%fields%reaction)))
+            if (recovers) call recovery%recover_stress(model, record%fields%displacement, &
+               next%stress_temperature - model%initial_temperature, record%fields%stress, &
+               record%stress_error)
          end if
          call warn_of_floor(step, record)
          if (solves_heat(step%analysis)) then

@@ -200,9 +200,6 @@ contains
 
       state = next
       if (.not. present(record)) return
-      state%stress_error = record%stress_error
-      if (allocated(state%stress)) deallocate (state%stress)
-      if (allocated(record%fields%stress)) state%stress = record%fields%stress
       if (allocated(record%fields%reaction)) state%reaction = record%fields%reaction
       if (solves_heat(model%steps(record%step)%analysis)) state%is_out_of_balance = &
          record%heat_imbalance_pointwise > sound_imbalance
