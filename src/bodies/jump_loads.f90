@@ -14,9 +14,8 @@ module jump_loads
    use errors, only: error_type
    use field_problem, only: field_problem_type, field_reduction_type
    use kinds, only: dp
-   use metis, only: nested_dissection
    use mumps_solver, only: schur_complement
-   use ordering, only: adjacency
+   use ordering, only: adjacency, nested_dissection
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    implicit none
    private

@@ -18,8 +18,8 @@
 module linear_constraints
    use constraint_rows, only: row_origin_type
    use kinds, only: dp
-   use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
-   use sparse_products, only: between_spaces, congruent
+   use sparse_matrix, only: between_spaces, congruent, linear_combination, sparse_matrix_type, &
+      triplet_list_type
    use sum_lists, only: sum_list_type
    implicit none
    private

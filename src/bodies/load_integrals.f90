@@ -1,10 +1,9 @@
 !> Nodal forces, heat rates and film matrices of a unit load on one location.
 module load_integrals
-   use body_integrals, only: body_moments, body_weights, body_weights_radius
+   use element_integrals, only: body_moments, body_weights, side_mass, side_pressure, side_weights
    use element_kinds, only: axisymmetric, element_node_count, side_nodes
    use kinds, only: dp
    use model, only: model_type
-   use side_integrals, only: side_mass, side_pressure, side_weights
    use steps, only: load_body_force, load_body_heat, load_centrifugal, load_face_heat, load_force, &
       load_gravity, load_nodal_heat, load_pressure, load_traction
    implicit none
@@ -63,16 +62,17 @@ contains
       real(dp), intent(in) :: x(:, :), thickness
       logical, intent(in) :: round
       real(dp) :: forces(2, element_node_count(kind))
+      real(dp) :: moments(3, element_node_count(kind))
 
+      moments = body_moments(kind, x, thickness, round)
       forces = 0.0_dp
       select case (component)
       case (1, 2)
-         forces = body_moments(kind, x, thickness, round)
-         forces(3 - component, :) = 0.0_dp
+         forces(component, :) = moments(component + 1, :)
       case (3, 4)
-         forces(component - 2, :) = body_weights(kind, x, thickness, round)
+         forces(component - 2, :) = moments(1, :)
       case default
-         forces(1, :) = body_weights_radius(kind, x, thickness, round)
+         forces(1, :) = moments(2, :)
       end select
    end function turning_forces
 

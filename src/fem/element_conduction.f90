@@ -1,10 +1,10 @@
 !> Heat conduction in one element.
 module element_conduction
+   use element_integrals, only: area_factor
    use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
    use quadrature, only: integration_rule, point_count
    use shape_functions, only: element_gradients, element_shape
-   use side_integrals, only: area_factor
    implicit none
    private
    public :: conduction_matrix, heat_flux_at

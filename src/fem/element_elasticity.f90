@@ -7,11 +7,11 @@
 !> nearly incompressible materials do not lock them.
 module element_elasticity
    use blas_lapack, only: dgemm
+   use element_integrals, only: area_factor
    use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4
    use kinds, only: dp
    use quadrature, only: integration_rule, point_count
    use shape_functions, only: element_gradients, element_shape
-   use side_integrals, only: area_factor
    implicit none
    private
    public :: element_stiffness, element_thermal_load, element_stress_force, strain_at

@@ -4,6 +4,7 @@
 !> that the recovery of an increment takes. A rule of an odd number of points ends in one without
 !> weight.
 module point_fields
+   use element_integrals, only: area_factor
    use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain, &
       plane_stress, quad4
    use kinds, only: dp
@@ -12,7 +13,6 @@ module point_fields
    use orientations, only: material_axes, orientation_type
    use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
    use shape_functions, only: element_gradients, element_shape, node_position
-   use side_integrals, only: area_factor
    implicit none
    private
    public :: point_fields_type, point_rule_type, point_rule, point_material_type

@@ -81,7 +81,7 @@ contains
       type(section_type), intent(in) :: sections(:)
       real(dp) :: force(2*size(mesh%node_number))        !! (2 nodes) [force]
       integer, allocatable :: dofs(:)
-      integer :: element
+      integer :: element, i
 
       force = 0.0_dp
       do element = 1, size(mesh%element_number)
@@ -89,20 +89,11 @@ contains
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
-            dofs = element_dofs(nodes)
+            dofs = [(2*nodes(i) - 1, 2*nodes(i), i=1, size(nodes))]
             force(dofs) = force(dofs) + element_stress_force(kind, plane, &
                mesh%coordinates(:, nodes), mesh%initial_stress(:, element), section%thickness)
          end associate
       end do
    end function assemble_initial_force
-
-   !> Rows of an element's degrees of freedom.
-   pure function element_dofs(nodes) result(dofs)
-      integer, intent(in) :: nodes(:)
-      integer :: dofs(2*size(nodes))
-
-      dofs(1::2) = 2*nodes - 1
-      dofs(2::2) = 2*nodes
-   end function element_dofs
 
 end module stiffness_matrix

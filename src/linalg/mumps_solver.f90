@@ -8,8 +8,7 @@ module mumps_solver
    use errors, only: error_type, set_error, status_deck, status_internal
    use kinds, only: dp, long
    use linear_solver, only: check_pattern, linear_solver_type
-   use metis, only: nested_dissection
-   use ordering, only: adjacency, alike_unknowns, positions_by_rank
+   use ordering, only: adjacency, alike_unknowns, nested_dissection, positions_by_rank
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use system_processes, only: c_end_without_memory
    use text, only: to_text

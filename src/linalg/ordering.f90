@@ -1,14 +1,26 @@
-!> Profile order for the skyline: reverse Cuthill-McKee from a pseudo-peripheral start.
-!>
-!> Source: A. George and J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems,
-!> 1981, ch. 4.
+!> Orders of elimination. For a skyline: reverse Cuthill-McKee from a pseudo-peripheral start
+!> (A. George and J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981,
+!> ch. 4). For MUMPS: nested dissection by METIS.
 module ordering
-   use kinds, only: dp, long
+   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
+   use errors, only: error_type, set_error, status_internal
+   use kinds, only: dp
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: adjacency, alike_unknowns, positions_by_rank, profile_order, permuted_lower, &
-      profile_length
+   public :: adjacency, alike_unknowns, first_rows, nested_dissection, positions_by_rank, &
+      profile_order
+
+   interface
+      function metis_nodend(nvtxs, xadj, adjncy, vwgt, options, perm, iperm) &
+         result(status) bind(c, name='METIS_NodeND')
+         import :: c_int, c_ptr
+         integer(c_int), intent(in) :: nvtxs, xadj(*), adjncy(*)
+         type(c_ptr), value :: vwgt, options
+         integer(c_int), intent(out) :: perm(*), iperm(*)
+         integer(c_int) :: status
+      end function metis_nodend
+   end interface
 
 contains
 
@@ -167,51 +179,55 @@ contains
          vertex = list(i)
          j = i - 1
          do while (j >= 1)
-            if (degree(graph, list(j)) <= degree(graph, vertex)) exit
+            if (degree(list(j)) <= degree(vertex)) exit
             list(j + 1) = list(j)
             j = j - 1
          end do
          list(j + 1) = vertex
       end do
+   contains
+      pure integer function degree(i)
+         integer, intent(in) :: i
+
+         degree = graph%row_start(i + 1) - graph%row_start(i)
+      end function degree
    end subroutine sort_by_degree
 
-   pure function degree(graph, vertex) result(neighbours)
-      type(sparse_matrix_type), intent(in) :: graph
-      integer, intent(in) :: vertex
-      integer :: neighbours
+   !> Fill-reducing position of each vertex of a graph. METIS's default options fix its random seed.
+   !> Error: METIS fails.
+   subroutine nested_dissection(graph, position, error)
+      type(sparse_matrix_type), intent(in) :: graph !! both triangles without the diagonal
+      integer, allocatable, intent(out) :: position(:)    !! (rows) new position of each vertex
+      type(error_type), allocatable, intent(out) :: error
+      integer(c_int), allocatable :: order(:)
+      integer(c_int) :: status
+      integer(c_int), parameter :: metis_ok = 1
 
-      neighbours = graph%row_start(vertex + 1) - graph%row_start(vertex)
-   end function degree
+      allocate (order(graph%row_count), position(graph%row_count))
+      ! METIS divides by the number of vertices.
+      if (graph%row_count == 0) return
+      status = metis_nodend(int(graph%row_count, c_int), graph%row_start - 1, graph%column - 1, &
+         c_null_ptr, c_null_ptr, order, position)
+      position(:) = position + 1
+      if (status /= metis_ok) call set_error(error, status_internal, &
+         'METIS could not order the unknowns')
+   end subroutine nested_dissection
 
-   !> The lower triangle in a new order.
-   pure function permuted_lower(lower, position) result(permuted)
+   !> First row of each column of a symmetric matrix in another order, the skyline.
+   pure function first_rows(lower, position) result(first)
       type(sparse_matrix_type), intent(in) :: lower !! lower triangle by rows
-      integer, intent(in) :: position(:)            !! (rows) new position of each old index
-      type(sparse_matrix_type) :: permuted          !! lower triangle by rows
-      type(triplet_list_type) :: list
-      integer :: i, j, k
+      integer, intent(in) :: position(:)            !! (rows) new position of each row
+      integer :: first(size(position))              !! (new positions)
+      integer :: i, j, k, row
 
-      call list%reserve(size(lower%value))
-      do i = 1, lower%row_count
-         do k = lower%row_start(i), lower%row_start(i + 1) - 1
-            j = lower%column(k)
-            call list%add(max(position(i), position(j)), min(position(i), position(j)), &
-               lower%value(k))
+      first = [(j, j=1, size(first))]
+      do row = 1, size(position)
+         do k = lower%row_start(row), lower%row_start(row + 1) - 1
+            i = min(position(row), position(lower%column(k)))
+            j = max(position(row), position(lower%column(k)))
+            first(j) = min(first(j), i)
          end do
       end do
-      permuted = list%compress(lower%row_count, lower%row_count)
-   end function permuted_lower
-
-   !> Stored entries of a skyline in the given order.
-   pure function profile_length(lower) result(length)
-      type(sparse_matrix_type), intent(in) :: lower !! lower triangle by rows
-      integer(long) :: length !! entries from the first non-zero to the diagonal
-      integer :: i
-
-      length = 0
-      do i = 1, lower%row_count
-         length = length + i - lower%column(lower%row_start(i)) + 1
-      end do
-   end function profile_length
+   end function first_rows
 
 end module ordering

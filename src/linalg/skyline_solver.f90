@@ -1,20 +1,26 @@
-!> Direct solver on a skyline in profile order.
+!> Direct solver on a skyline in profile order: Crout's U^T D U of the leading block, and its Schur
+!> complement on the last columns, the tail, which tail_factors factors again and again.
+!>
+!> Columns are stored from their first non-zero row on, in panels that share it (column_panels),
+!> those of the tail to the last leading row.
 module skyline_solver
+   use column_panels, only: column_panels_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp, long
    use linear_solver, only: check_pattern, linear_solver_type
-   use ordering, only: adjacency, alike_unknowns, positions_by_rank, profile_order
-   use skyline, only: skyline_type
+   use ordering, only: adjacency, alike_unknowns, first_rows, positions_by_rank, profile_order
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
    public :: skyline_solver_type
 
+   real(dp), parameter :: lost = 64*epsilon(1.0_dp)   !! pivot over its diagonal entry: rounding
+
    !> Skyline factors behind the common interface.
    type, extends(linear_solver_type) :: skyline_solver_type
       private
       integer, allocatable :: position(:)   !! (order) new position of each unknown
-      type(skyline_type) :: skyline         !! the factors
+      type(column_panels_type) :: columns = column_panels_type() !! the matrix, then its factors
    contains
       procedure :: analyse
       procedure :: factor
@@ -34,20 +40,23 @@ contains
       integer, allocatable, intent(inout) :: rank(:)
       type(error_type), allocatable, intent(out) :: error   ! never
       integer, allocatable :: group(:), position(:)
+      integer :: first_row(lower%row_count), leading
 
+      leading = lower%row_count - tail
       self%order = lower%row_count
       self%tail = tail
       self%row_start = lower%row_start
       self%column = lower%column
       if (.not. allocated(rank)) then
-         group = alike_unknowns(lower, self%order - tail)
+         group = alike_unknowns(lower, leading)
          position = profile_order(adjacency(lower, group))
          rank = position(group)
       end if
       self%position = positions_by_rank(rank, self%order)
-      call self%skyline%set_pattern(lower, self%position, tail)
-      self%full_flops = self%skyline%leading_flops
-      self%factor_bytes = storage_size(1.0_dp)/8*(size(self%skyline%columns%value, kind=long) + &
+      first_row = min(first_rows(lower, self%position), leading + 1)
+      call self%columns%set_profile(first_row, leading)
+      self%full_flops = crout_flops(first_row, leading)
+      self%factor_bytes = storage_size(1.0_dp)/8*(size(self%columns%value, kind=long) + &
          int(tail, long)*(tail + 1)/2)
    end subroutine analyse
 
@@ -56,17 +65,64 @@ contains
       class(skyline_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       type(error_type), allocatable, intent(out) :: error
-      integer :: bad_column
+      integer :: bad_column, j
 
       call check_pattern(self, lower, error)
       if (allocated(error)) return
-      call self%skyline%set_values(lower, self%position)
-      call self%skyline%factor_leading(bad_column)
-      self%smallest_pivot = self%skyline%smallest_pivot
-      call move_alloc(self%skyline%schur, self%schur)
-      if (bad_column > 0) call set_error(error, status_deck, &
-         'singular matrix: a body is not held by its supports and contacts, or far too weakly')
+      call set_values(self, lower)
+      call self%columns%factor(1, lost, self%smallest_pivot, bad_column)
+      if (bad_column > 0) then
+         call set_error(error, status_deck, 'singular matrix: a body is not held by its '// &
+            'supports and contacts, or far too weakly')
+         return
+      end if
+      call self%columns%form_schur(self%tail, self%schur)
+      do j = 1, self%tail
+         self%schur(j, :j) = self%schur(:j, j)
+      end do
    end subroutine factor
+
+   !> Copies the values of a matrix in the pattern that was analysed.
+   pure subroutine set_values(self, lower)
+      type(skyline_solver_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: lower
+      integer :: i, j, k, leading, row
+
+      leading = self%order - self%tail
+      self%columns%value = 0.0_dp
+      if (.not. allocated(self%schur)) allocate (self%schur(self%tail, self%tail))
+      self%schur = 0.0_dp
+      do row = 1, self%order
+         do k = lower%row_start(row), lower%row_start(row + 1) - 1
+            i = min(self%position(row), self%position(lower%column(k)))
+            j = max(self%position(row), self%position(lower%column(k)))
+            if (i <= leading) then
+               self%columns%value(self%columns%place(self%columns%panel(j), i, j)) = lower%value(k)
+            else
+               self%schur(i - leading, j - leading) = lower%value(k)
+            end if
+         end do
+      end do
+   end subroutine set_values
+
+   !> Operations of Crout's method by columns.
+   pure function crout_flops(first_row, leading) result(flops)
+      integer, intent(in) :: first_row(:), leading
+      integer(long) :: flops
+      integer :: high, i, j
+
+      flops = 0
+      do j = 1, size(first_row)
+         high = min(j - 1, leading)
+         do i = first_row(j) + 1, high
+            flops = flops + 2*max(i - max(first_row(i), first_row(j)), 0)
+         end do
+         do i = leading + 1, j - 1
+            flops = flops + 2*max(leading + 1 - max(first_row(i), first_row(j)), 0)
+         end do
+         flops = flops + 3*max(high - first_row(j) + 1, 0)
+      end do
+   end function crout_flops
 
    !> As condense_interface of linear_solver says.
    subroutine condense(self, rhs, condensed, welded)
@@ -78,11 +134,11 @@ contains
 
       allocate (x, mold=rhs)
       x(self%position, :) = rhs
-      call self%skyline%condense(x)
+      call self%columns%eliminate(self%order, size(x, 2), x)
       condensed = x(self%order - self%tail + 1:, :)
       if (.not. present(welded)) return
       x(self%order - self%tail + 1:, :) = 0.0_dp
-      call self%skyline%recover(x)
+      call self%columns%substitute(self%order, size(x, 2), x)
       welded = x(self%position, :)
    end subroutine condense
 
@@ -96,9 +152,9 @@ contains
 
       allocate (x, mold=rhs)
       x(self%position, :) = rhs
-      call self%skyline%condense(x)
+      call self%columns%eliminate(self%order, size(x, 2), x)
       x(self%order - self%tail + 1:, :) = on_tail
-      call self%skyline%recover(x)
+      call self%columns%substitute(self%order, size(x, 2), x)
       solution = x(self%position, :)
    end subroutine recover
 
@@ -112,7 +168,7 @@ contains
       allocate (x, mold=solution)
       x(:self%order - self%tail, :) = 0.0_dp
       x(self%order - self%tail + 1:, :) = on_tail
-      call self%skyline%recover(x)
+      call self%columns%substitute(self%order, size(x, 2), x)
       solution = x(self%position, :)
    end subroutine extend
 
@@ -121,7 +177,7 @@ contains
       class(skyline_solver_type), intent(inout) :: self
 
       if (allocated(self%position)) deallocate (self%position)
-      self%skyline = skyline_type()
+      self%columns = column_panels_type()
    end subroutine release
 
 end module skyline_solver

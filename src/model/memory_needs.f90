@@ -10,7 +10,7 @@ module memory_needs
    use element_kinds, only: element_node_count, linear_kind
    use kinds, only: dp
    use model, only: model_type
-   use ordering, only: adjacency, permuted_lower, profile_length, profile_order
+   use ordering, only: adjacency, first_rows, profile_order
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use steps, only: planned_increments, solves_heat, solves_mechanics
    implicit none
@@ -113,7 +113,8 @@ contains
 
       lower = node_graph(model, kinds)
       associate (position => profile_order(adjacency(lower, [(i, i=1, lower%row_count)])))
-         entries = profile_length(permuted_lower(lower, position))*8.0_dp**levels
+         entries = sum([(i, i=1, size(position))] - first_rows(lower, position) + 1.0_dp)* &
+            8.0_dp**levels
          entries = entries + points*size(position)*4.0_dp**levels
       end associate
    end function profile

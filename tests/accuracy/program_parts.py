@@ -70,5 +70,5 @@ PARTS = {
                                 "listing_tables:print_contact_table"},
     "checks of the deck": {"deck_builder_verify", "interface_reports:check_arc_lengths",
                            "verification", "verify_values"},
-    "MUMPS": {"metis", "mumps_solver"},
+    "MUMPS": {"mumps_solver", "ordering:nested_dissection"},
 }

@@ -1,19 +1,21 @@
-!> Integrals over a side of an element: two nodes, or three with the midside node between the
-!> corners. The area dA is the thickness times ds, or 2 pi r ds in an axisymmetric model, where the
-!> thickness is not used. Three Gauss points.
-module side_integrals
+!> Integrals over an element or one of its sides: nodal shares of loads on it. A side has two nodes,
+!> or three with the midside node between the corners, and three Gauss points. The area dA is the
+!> thickness times ds, the volume dV the thickness times dA; in an axisymmetric model, where the
+!> thickness is not used, they are 2 pi r ds and 2 pi r dA.
+module element_integrals
+   use element_kinds, only: element_node_count
    use kinds, only: dp
-   use quadrature, only: gauss_point_3, gauss_weight_3
-   use shape_functions, only: side_shape, side_slope
+   use quadrature, only: gauss_point_3, gauss_weight_3, load_point_count, load_rule
+   use shape_functions, only: element_gradients, element_shape, side_shape, side_slope
    implicit none
    private
-   public :: side_weights, side_pressure, side_mass, area_factor
+   public :: side_weights, side_pressure, side_mass, body_weights, body_moments, area_factor
 
    real(dp), parameter :: two_pi = 2*acos(-1.0_dp)
 
 contains
 
-   !> What makes an area of a length, or a volume of an area: the thickness, or 2 pi r.
+   !> Factor from a length to an area, or from an area to a volume: the thickness, or 2 pi r.
    pure function area_factor(radius, thickness, axisymmetric) result(factor)
       real(dp), intent(in) :: radius         !! x of the point [length]
       real(dp), intent(in) :: thickness      !! thickness [length]
@@ -92,4 +94,44 @@ contains
       along = matmul(coordinates, side_slope(size(coordinates, 2), gauss_point_3(g)))
    end subroutine side_point
 
-end module side_integrals
+   !> Integral of psi^q dV: nodal forces or rates of a unit load per volume.
+   pure function body_weights(kind, coordinates, thickness, axisymmetric) result(weights)
+      integer, intent(in) :: kind                   !! kind of the element
+      real(dp), intent(in) :: coordinates(:, :)     !! (2, nodes of the kind) [length]
+      real(dp), intent(in) :: thickness             !! thickness [length]
+      logical, intent(in) :: axisymmetric           !! whether x is a radius
+      real(dp) :: weights(element_node_count(kind)) !! (nodes) [length^3]
+      real(dp) :: moments(3, element_node_count(kind))
+
+      moments = body_moments(kind, coordinates, thickness, axisymmetric)
+      weights = moments(1, :)
+   end function body_weights
+
+   !> Integrals of psi^q (1, x, y) dV: nodal forces of a unit load per volume, and those of a body
+   !> that turns round the origin in its plane, per density and squared angular speed; the second
+   !> row is that of a body that turns round the axis x = 0.
+   pure function body_moments(kind, coordinates, thickness, axisymmetric) result(moments)
+      integer, intent(in) :: kind                       !! kind of the element
+      real(dp), intent(in) :: coordinates(:, :)         !! (2, nodes of the kind) [length]
+      real(dp), intent(in) :: thickness                 !! thickness [length]
+      logical, intent(in) :: axisymmetric               !! whether x is a radius
+      real(dp) :: moments(3, element_node_count(kind))  !! (3, nodes) [length^3, length^4]
+      real(dp) :: points(2, load_point_count(kind)), weights(load_point_count(kind))
+      real(dp) :: gradients(2, element_node_count(kind)), psi(element_node_count(kind))
+      real(dp) :: position(2), jacobian, factor
+      integer :: g, q
+
+      call load_rule(kind, points, weights)
+      moments = 0.0_dp
+      do g = 1, size(weights)
+         call element_gradients(kind, coordinates, points(:, g), gradients, jacobian)
+         psi = element_shape(kind, points(:, g))
+         position = matmul(coordinates, psi)
+         factor = weights(g)*jacobian*area_factor(position(1), thickness, axisymmetric)
+         do q = 1, size(psi)
+            moments(:, q) = moments(:, q) + factor*psi(q)*[1.0_dp, position]
+         end do
+      end do
+   end function body_moments
+
+end module element_integrals
