@@ -2,7 +2,7 @@
 !> strain being an angle; degrees of freedom u_x, u_y of node 1, u_x, u_y of node 2, ... In an
 !> axisymmetric element x is the radius and zz the circumference: eps_zz = u_x/r.
 !>
-!> Four-node elements of plane strain and axisymmetric ones take the mean dilatation of the element
+!> Four-node elements of plane strain and axisymmetric ones use the mean dilatation of the element
 !> in place of that at each point (B-bar: Hughes, Int. J. Num. Meth. Eng. 15 (1980) 1413), so that
 !> nearly incompressible materials do not lock them.
 module element_elasticity
@@ -18,7 +18,7 @@ module element_elasticity
 
 contains
 
-   !> Whether elements of a kind take the mean dilatation in a plane.
+   !> Whether elements of a kind use the mean dilatation in a plane.
    pure logical function has_mean_dilatation(kind, plane)
       integer, intent(in) :: kind, plane
 
@@ -131,7 +131,7 @@ contains
       dilatation = dot_product(mean_dilatation(b, volumes), reshape(displacement, [size(b, 3)]))
    end function dilatation_of
 
-   !> B at all integration points, with the mean dilatation where the element takes it, and the
+   !> B at all integration points, with the mean dilatation where the element uses it, and the
    !> volumes that the points stand for.
    pure subroutine strain_matrices(kind, plane, coordinates, thickness, b, volumes)
       integer, intent(in) :: kind, plane

@@ -82,7 +82,7 @@ contains
       end if
    end subroutine load_rule
 
-   !> Points at which stress and flux are best taken: 2 x 2 on the square, the three of
+   !> Points at which stress and flux are most accurate: 2 x 2 on the square, the three of
    !> integration_rule in the six-node triangle, the centre of the three-node one.
    pure function recovery_points(kind) result(points)
       integer, intent(in) :: kind                   !! kind of the element

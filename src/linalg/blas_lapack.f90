@@ -108,7 +108,7 @@ module blas_lapack
       end subroutine ilaver
    end interface
 
-   !> What it takes, and some room for what is taken between the question and its use [byte].
+   !> Memory of OpenBLAS, and room for allocations between the question and its use [byte].
    integer(c_size_t), parameter :: needed = 144_c_size_t*1048576_c_size_t
 
    interface

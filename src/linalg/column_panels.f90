@@ -228,7 +228,7 @@ contains
       end do
    end subroutine factor_diagonal
 
-   !> Takes U^T D U of the border from the upper triangle of a matrix.
+   !> Subtracts U^T D U of the border from the upper triangle of a matrix.
    pure subroutine form_schur(self, border, schur)
       class(column_panels_type), intent(in) :: self      !! factors
       integer, intent(in) :: border                      !! columns of the border

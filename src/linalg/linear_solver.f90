@@ -34,7 +34,7 @@ module linear_solver
    end type linear_solver_type
 
    abstract interface
-      !> Takes over a pattern, once for all values in it. Orders the leading unknowns, unless the
+      !> Analyses a pattern, once for all values in it. Orders the leading unknowns, unless the
       !> caller knows their order.
       !> Error: the solver failed.
       subroutine analyse_interface(self, lower, tail, rank, error)

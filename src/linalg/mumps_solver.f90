@@ -86,7 +86,7 @@ contains
       allocate (self%mumps%a(size(lower%value)))
       self%mumps%a(:) = lower%value
       call factor_values(self, error)
-      ! What follows works on the factors alone.
+      ! Solutions need the factors alone.
       deallocate (self%mumps%irn, self%mumps%jcn, self%mumps%a)
       if (allocated(error) .or. self%order == self%tail) return
       self%full_flops = int(self%mumps%rinfog(3), long)
@@ -151,7 +151,7 @@ contains
          'MUMPS did not take the order of METIS')
    end subroutine analyse_positions
 
-   !> Factors the values that are in place and takes their Schur complement over.
+   !> Factors the values that are in place and copies their Schur complement.
    subroutine factor_values(self, error)
       type(mumps_solver_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error

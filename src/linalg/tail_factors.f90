@@ -2,7 +2,7 @@
 !> the present diagonal. If the diagonal changes, only the columns from the first changed one on are
 !> factored again, by Crout's U^T D U, as the paper requires below eq. (3.4).
 !> A few sums of tail unknowns may have a conductance of their own beside the diagonal, A + V W V^T;
-!> solutions then take the heats W V^T x as unknowns too, however large W is (Woodbury).
+!> solutions then have the heats W V^T x as unknowns too, however large W is (Woodbury).
 module tail_factors
    use column_panels, only: column_panels_type
    use dense, only: lu_type
