@@ -5,7 +5,6 @@
 !> It serves where the finer mesh cannot be relaxed (refinement_error): with mortar points and ties.
 !> Only few elements are divided, so its factors take little.
 module divided_faces
-   use bodies, only: find_bodies
    use companion_steps, only: implicit_state, implicit_step
    use contact_states, only: contact_open
    use errors, only: error_type
@@ -19,7 +18,7 @@ module divided_faces
    use mesh_division, only: divide, division_type
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type
-   use refinement, only: refine_chosen
+   use refinement, only: divide_model
    use solution_state, only: solution_state_type
    use steps, only: step_type
    implicit none
@@ -57,8 +56,7 @@ contains
       call choose_neighbours(model, chosen)
       self%division = divide(model%mesh, chosen)
       self%model = model
-      call refine_chosen(self%model, chosen)
-      call find_bodies(self%model%mesh)
+      call divide_model(self%model, chosen)
       call self%run%bodies%prepare(self%model, error)
       if (allocated(error)) return
       call self%run%loads%prepare(self%model)

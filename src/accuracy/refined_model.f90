@@ -2,7 +2,6 @@
 !> matrices of its bodies, its contact points and loads, and the maps between both meshes. The old
 !> mesh's fields are fields of the new one.
 module refined_model
-   use bodies, only: find_bodies
    use contact_points, only: contact_points_type
    use errors, only: error_type
    use hanging_nodes, only: at_level_changes
@@ -12,7 +11,7 @@ module refined_model
    use mesh_division, only: divide, division_type, refined_members
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type, match_surfaces, joined_points
-   use refinement, only: refine_chosen
+   use refinement, only: divide_model
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
@@ -65,8 +64,7 @@ contains
 
       self%division = divide(model%mesh, is_divided)
       self%model = model
-      call refine_chosen(self%model, is_divided)
-      call find_bodies(self%model%mesh)
+      call divide_model(self%model, is_divided)
       allocate (self%interfaces(size(model%contacts)))
       do i = 1, size(self%interfaces)
          call match_surfaces(self%model, i, self%interfaces(i), error)

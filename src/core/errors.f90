@@ -21,6 +21,7 @@ module errors
       character(:), allocatable :: message     !! one sentence in plain words
       logical :: lacks_memory = .false.        !! whether it is that there is too little memory
       integer :: card = 0                      !! card image of the deck where it lies, if known
+      integer :: column = 1                    !! byte in that image
    end type error_type
 
 contains

@@ -47,6 +47,11 @@ module mesh
       !> middle node, corner, and the midside nodes of the small elements between them, or 0, 0;
       !> the latter hang, or the middle node if there are none. Not allocated: none
       integer, allocatable :: hanging_sides(:, :)
+      integer :: deck_nodes = 0   !! of a divided mesh: nodes before its first division, its first
+      !> (elements) element before the first division of which each is a part. Not allocated: itself
+      integer, allocatable :: deck_element(:)
+      !> (4, elements) whether sides are parts of those of deck_element. Not allocated: all
+      logical, allocatable :: on_deck_side(:, :)
       type(set_type), allocatable :: node_sets(:)     !! node sets
       type(set_type), allocatable :: element_sets(:)  !! element sets
       type(surface_type), allocatable :: surfaces(:)  !! surfaces

@@ -1,15 +1,19 @@
-!> The model: all that the deck says, built once by the deck builder and read-only afterwards.
+!> The model: all that the deck says. The deck builder makes it on the deck's mesh; `variations`
+!> makes of it the models that are solved. It is read-only afterwards.
 module model
    use accuracy_targets, only: accuracy_request_type
    use amplitudes, only: amplitude_type
+   use card_places, only: place_type
    use contact_definitions, only: contact_definition_type, interaction_type, tie_definition_type
    use controls, only: solver_skyline
    use couplings, only: coupling_type
    use equations, only: equation_type
    use kinds, only: dp
+   use load_requests, only: nodal_field_type, requests_type
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
    use orientations, only: orientation_type
+   use refined_regions, only: refined_region_type
    use steps, only: step_type
    use text, only: string_type
    use transforms, only: partner_type, transform_type
@@ -59,12 +63,17 @@ module model
       type(interaction_type), allocatable :: interactions(:)     !! surface interactions
       type(contact_definition_type), allocatable :: contacts(:)  !! interfaces
       type(tie_definition_type), allocatable :: ties(:)          !! tied faces
-      type(equation_type), allocatable :: equations(:)           !! those of couplings among them
+      !> the deck's, then those of couplings and partners on the mesh
+      type(equation_type), allocatable :: equations(:)
+      integer :: deck_equations = 0                              !! how many are the deck's
       type(transform_type), allocatable :: transforms(:)         !! axes of nodes
       type(partner_type), allocatable :: partners(:)             !! what stands for these nodes
       type(coupling_type), allocatable :: couplings(:)           !! kinematic couplings
       real(dp), allocatable :: initial_temperature(:)            !! (nodes) [temperature]
-      type(step_type), allocatable :: steps(:)                   !! steps in their order
+      !> steps in their order, with the loads and supports on the mesh
+      type(step_type), allocatable :: steps(:)
+      type(requests_type), allocatable :: requests               !! loads and supports on any mesh
+      type(nodal_field_type), allocatable :: fields(:)           !! *TEMPERATURE
       !> (data cards of *BOUNDARY, by their running numbers) where each is, in words
       type(string_type), allocatable :: boundary_places(:)
       type(verify_type), allocatable :: verifications(:)         !! *VERIFY cards
@@ -74,10 +83,12 @@ module model
       logical :: estimates_errors = .true.                       !! ERRORS= of *OPTIONS
       type(accuracy_request_type) :: accuracy                    !! *ACCURACY
       real(dp) :: memory_needed = 0.0_dp                         !! estimate for a run [byte]
-      integer :: refinement_levels = 0                           !! *REFINE, already applied
-      integer :: element_order = 2                               !! *OPTIONS, ORDER=, applied
-      integer :: written_levels = 0                              !! *REFINE, where it was varied
-      integer :: written_order = 2                               !! ORDER=, where it was varied
+      integer :: written_levels = 0                              !! *REFINE, LEVELS=
+      type(refined_region_type), allocatable :: regions(:)       !! *REFINE of surfaces and sets
+      integer :: written_order = 2                               !! *OPTIONS, ORDER=
+      type(place_type) :: order_place                            !! where it is in the deck
+      integer :: refinement_levels = 0                           !! refinements that were made
+      integer :: element_order = 2                               !! order that the elements have
       integer :: load_node = 0                                   !! LOAD=: node index, 0 for time
       integer :: load_dof = 0                                    !! LOAD=: 1, 2, dof_temperature
       character(:), allocatable :: load_label                    !! label of the load axis

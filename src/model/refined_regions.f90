@@ -1,10 +1,9 @@
-!> Parts of a model that are refined: what a *REFINE card with a surface or a set says, or the
-!> divisions that a round of a requested accuracy asks for.
+!> Parts of a model that are refined: what a *REFINE card with a surface or a set says.
 module refined_regions
    use kinds, only: dp
    implicit none
    private
-   public :: refined_region_type, division_type
+   public :: refined_region_type
 
    !> Where a model is refined locally, and how often.
    type :: refined_region_type
@@ -14,12 +13,5 @@ module refined_regions
       real(dp) :: distance = 0.0_dp      !! DISTANCE=; 0 where it is not given [length]
       integer :: card = 0                !! card image of the *REFINE
    end type refined_region_type
-
-   !> How often each element is divided, and then those that are left at some points.
-   type :: division_type
-      integer, allocatable :: levels(:)         !! (elements) >= 0
-      real(dp), allocatable :: points(:, :)     !! (2, n) [length]
-      integer, allocatable :: point_levels(:)   !! (n) divisions at them
-   end type division_type
 
 end module refined_regions

@@ -10,7 +10,7 @@ module steps
    public :: load_type, load_kind_count
    public :: load_force, load_pressure, load_traction, load_body_force, load_gravity
    public :: load_centrifugal, centrifugal_round, load_nodal_heat, load_face_heat, load_body_heat
-   public :: load_film_coefficient, load_film_sink, load_temperature
+   public :: load_film_coefficient, load_film_sink, load_temperature, acts_on_nodes, loaded_side
    public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
    public :: solves_heat, solves_mechanics, least_increment, increment_growth, planned_increments
 
@@ -113,6 +113,28 @@ contains
       end do
       planned = planned + ceiling(max((step%period - time)/increment - remainder, 0.0_dp))
    end function planned_increments
+
+   !> Whether the item of a kind of load is a node.
+   elemental logical function acts_on_nodes(kind)
+      integer, intent(in) :: kind            !! one of the load_* constants
+
+      acts_on_nodes = any(kind == [load_force, load_nodal_heat, load_temperature])
+   end function acts_on_nodes
+
+   !> The side of its element that a load acts on; 0 for a load on a node or a whole element.
+   elemental integer function loaded_side(kind, component)
+      integer, intent(in) :: kind            !! one of the load_* constants
+      integer, intent(in) :: component       !! as said at the kind
+
+      select case (kind)
+      case (load_pressure, load_face_heat, load_film_coefficient, load_film_sink)
+         loaded_side = component
+      case (load_traction)
+         loaded_side = (component + 1)/2
+      case default
+         loaded_side = 0
+      end select
+   end function loaded_side
 
    !> Whether an analysis solves heat.
    elemental function solves_heat(analysis) result(heat)

@@ -28,7 +28,7 @@ module deck_preparation
    use support_names, only: join_name, support_name
    use text, only: string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
-   use variations, only: variation_type
+   use variations, only: variation_type, vary
    implicit none
    private
    public :: prepare_deck, read_deck_type
@@ -37,20 +37,19 @@ module deck_preparation
    character(*), parameter, public :: not_a_deck = 'it has no *STEP; it is taken as a file '// &
       'that decks include'
 
-   !> A deck as it was read.
+   !> A deck that was read, from which any number of variations can be made.
    type :: read_deck_type
       type(cards_type) :: cards
-      !> Where several runs may be made of it: a pipe can be read only once, and a file may change
+      type(model_type), private :: model                  !! on the deck's mesh
       type(deck_report_type), allocatable, private :: report
    end type read_deck_type
 
 contains
 
-   !> Reads a deck, unless that is done, and prepares its run. Warnings and errors are printed on
-   !> stderr.
-   !> Warnings of a variation are those of the deck, and are not printed.
+   !> Reads a deck, unless that is done, and prepares the run of it or of a variation. Warnings and
+   !> errors are printed on stderr; warnings of a variation are those of the deck, and are not.
    !> Of several decks, a file without errors and without *STEP is none: its model stays empty.
-   !> Errors: status_deck, with the first of the deck's errors; as simulation_type's start.
+   !> Errors: status_deck, with the first of the deck's errors; as vary and simulation_type's start.
    subroutine prepare_deck(path, command, deck, model, simulation, error, variation)
       character(*), intent(in) :: path                    !! the deck as given
       type(command_type), intent(in) :: command           !! options of the command line
@@ -64,21 +63,21 @@ contains
 
       call progress%start(command%quiet)
       call progress%say('reading')
-      if (allocated(deck%report)) then
-         report = deck%report
-      else
-         call read_deck(path, command%width, command%settings, deck%cards, report)
-         if (command%accuracy > 0.0_dp .or. has_card('ACCURACY', deck%cards)) deck%report = report
-      end if
-      if (size(command%decks) > 1 .and. .not. (report%has_errors() .or. &
-         has_card('STEP', deck%cards))) then
+      if (.not. allocated(deck%report)) call read_model(path, command, deck)
+      report = deck%report
+      if (is_skipped(command, deck)) then
          call progress%clear()
          call print_line(error_unit, path//': note: skipped: '//not_a_deck)
          return
       end if
-      call build_model(deck%cards, verifiable, estimated, model, report, error, variation)
-      if (command%accuracy > 0.0_dp .and. .not. report%has_errors()) call request_accuracy( &
-         deck%cards%last, command%accuracy, model, report)
+      if (.not. report%has_errors()) then
+         if (present(variation)) then
+            call vary(deck%model, variation, model, error)
+         else
+            call vary(deck%model, variation_type(), model, error)
+         end if
+         call report_at_card(error, report)
+      end if
       if (.not. (report%has_errors() .or. allocated(error))) then
          call make_interfaces(model, simulation%bodies%interfaces, report)
          call make_ties(model, simulation%bodies%ties, model%notes, report)
@@ -99,6 +98,29 @@ contains
          call print_error(path, error%message)
       end if
    end subroutine prepare_deck
+
+   !> Reads a deck and builds its model.
+   subroutine read_model(path, command, deck)
+      character(*), intent(in) :: path
+      type(command_type), intent(in) :: command
+      type(read_deck_type), intent(inout) :: deck         ! fresh
+
+      allocate (deck%report)
+      call read_deck(path, command%width, command%settings, deck%cards, deck%report)
+      if (is_skipped(command, deck)) return
+      call build_model(deck%cards, verifiable, estimated, deck%model, deck%report)
+      if (command%accuracy > 0.0_dp .and. .not. deck%report%has_errors()) call request_accuracy( &
+         deck%cards%last, command%accuracy, deck%model, deck%report)
+   end subroutine read_model
+
+   !> Whether a file is no deck but one that decks include.
+   pure logical function is_skipped(command, deck)
+      type(command_type), intent(in) :: command
+      type(read_deck_type), intent(in) :: deck            ! read
+
+      is_skipped = size(command%decks) > 1 .and. .not. (deck%report%has_errors() .or. &
+         has_card('STEP', deck%cards))
+   end function is_skipped
 
    !> What --accuracy asks for takes the place of the deck's targets.
    subroutine request_accuracy(last, bound, model, report)
@@ -132,7 +154,8 @@ contains
 
       if (.not. allocated(error)) return
       if (error%card == 0) return
-      if (.not. report%has_errors()) call report%error(place_type(image=error%card), error%message)
+      if (.not. report%has_errors()) call report%error(place_type(error%card, error%column), &
+         error%message)
       deallocate (error)
    end subroutine report_at_card
 

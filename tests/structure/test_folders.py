@@ -8,10 +8,10 @@ import pytest
 SOURCES = Path(__file__).resolve().parents[2] / "src"
 # In the order in which data flow; folders of one line know nothing of each other.
 ORDER = (
-    ("core",), ("linalg",), ("laws",), ("model",), ("fem",),
+    ("core",), ("linalg",), ("laws",), ("model",), ("division",), ("fem",),
     ("deck/reading",), ("deck/checking",), ("deck/building",),
     ("contact",), ("bodies",), ("coupling",), ("records",), ("stepping",), ("accuracy",),
-    ("output",), ("run",), ("trade",), ("driver",), (".",),
+    ("adaptivity",), ("output",), ("run",), ("trade",), ("driver",), (".",),
 )
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
 MODULE = re.compile(r"^\s*module\s+(\w+)\s*$", re.MULTILINE)

@@ -3,10 +3,10 @@
 module deck_builder
    use bodies, only: find_bodies
    use cards, only: cards_type
-   use controls, only: default_solver, method_names, mumps_from, solver_by_size, solver_mumps
+   use controls, only: method_names
    use deck_builder_accuracy, only: build_accuracy
    use deck_builder_contact, only: build_contacts, build_ties
-   use deck_builder_couplings, only: apply_couplings, build_couplings
+   use deck_builder_couplings, only: build_couplings
    use deck_builder_equations, only: build_equations
    use deck_builder_histories, only: build_amplitudes, build_temperatures
    use deck_builder_interactions, only: build_interactions
@@ -14,50 +14,45 @@ module deck_builder
    use deck_builder_materials, only: build_materials
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_options, only: build_load_axis, build_options
-   use deck_builder_order, only: apply_order, find_dropped
-   use deck_builder_refinement, only: build_regions, refine_model
+   use deck_builder_refinement, only: build_regions
    use deck_builder_sections, only: build_orientations, build_sections
    use deck_builder_sets, only: build_sets
    use deck_builder_steps, only: build_steps
    use deck_builder_stresses, only: build_initial_stresses
    use deck_builder_surfaces, only: build_surfaces
-   use deck_builder_transforms, only: apply_transforms, build_transforms, turn_equations
+   use deck_builder_transforms, only: build_transforms
    use deck_builder_verify, only: build_verifications, check_heat_quantities, heatless
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
-   use errors, only: error_type
    use heat_checks, only: check_constants, check_heat_paths, check_starts
    use shape_checks, only: check_folds
-   use load_application, only: apply_boundaries, apply_loads, apply_temperatures
-   use load_checks, only: first_heat
-   use kinds, only: dp
+   use load_application, only: apply_requests, collect_fields
+   use load_checks, only: check_amplitudes, first_heat
+   use local_axes, only: turn_equations
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use quantity_types, only: quantity_type
+   use order_reduction, only: side_corners
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
    use text, only: to_text
    use touch_checks, only: check_touches
    use usage_checks, only: check_usage
-   use variations, only: add_contact_levels, apply_variation, variation_type
    implicit none
    private
    public :: build_model
 
 contains
 
-   !> Builds the model that a deck describes; it is usable only if the report then has no errors.
-   !> Error: status_internal, when a run would need more memory than there is.
-   subroutine build_model(cards, verifiable, estimated, model, report, error, variation)
+   !> Builds the model that a deck describes, on the mesh of the deck, from which `vary` makes those
+   !> that are solved. It is usable only if the report then has no errors.
+   subroutine build_model(cards, verifiable, estimated, model, report)
       type(cards_type), intent(in) :: cards               !! the cards, as read_deck left them
       type(quantity_type), intent(in) :: verifiable(:)    !! what *VERIFY may name
       type(quantity_type), intent(in) :: estimated(:)     !! what *ACCURACY may name
       type(model_type), intent(out) :: model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
-      type(error_type), allocatable, intent(out) :: error
-      !> What is to be other than the cards say, once they are found sound
-      type(variation_type), intent(in), optional :: variation
       type(deck_context_type) :: context
       integer :: i
 
@@ -71,7 +66,7 @@ contains
       call check_structure(cards, report)
       call build_options(cards, context, model, report)
       call build_mesh(cards, context, model%mesh, report)
-      call build_regions(cards, context, model%mesh, report)
+      call build_regions(cards, model, report)
       call build_materials(cards, context, model, report)
       call build_orientations(cards, model, report)
       call build_sections(cards, context, model, report)
@@ -89,16 +84,8 @@ contains
       call build_accuracy(cards, estimated, model, report)
       call build_load_axis(cards%last, context, model, report)
       call check_model(context, model, report)
-      if (.not. report%has_errors()) then
-         if (present(variation)) then
-            call apply_variation(variation, context%order, context%levels, model)
-            call add_contact_levels(variation, model, context%regions)
-            if (allocated(variation%divisions)) context%divisions = variation%divisions
-         end if
-         call complete_model(cards, context, model, report, error)
-         if (allocated(error)) return
-      end if
-      if (.not. allocated(context%notes)) allocate(context%notes(0))
+      if (.not. report%has_errors()) call complete_model(cards, context, model, report)
+      if (.not. allocated(context%notes)) allocate (context%notes(0))
       call move_alloc(context%notes, model%notes)
       model%warnings = report%warnings()
    end subroutine build_model
@@ -130,42 +117,67 @@ contains
          .not. report%has_lost('node set')
    end subroutine build_mesh
 
-   !> Refines the sound model of a deck, and puts its loads on the mesh.
-   !> Error: as refine_model.
-   subroutine complete_model(cards, context, model, report, error)
+   !> Finds the nodes of the deck that ORDER=1 drops. Refined elements have the midside nodes of the
+   !> deck at their corners: then all of them stay.
+   subroutine find_dropped(context, mesh)
+      type(deck_context_type), intent(inout) :: context
+      type(mesh_type), intent(in) :: mesh
+      integer :: corners(2, size(mesh%node_number))
+
+      corners = 0
+      if (context%order == 1 .and. context%levels == 0) corners = side_corners(mesh)
+      context%dropped = corners(1, :) > 0
+   end subroutine find_dropped
+
+   !> Puts the loads and supports of a sound deck on its mesh, and checks what that shows.
+   subroutine complete_model(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context
       type(model_type), intent(inout) :: model
       type(deck_report_type), intent(inout) :: report
-      type(error_type), allocatable, intent(out) :: error
-      integer :: deck_nodes
 
       call find_bodies(model%mesh)
       call check_folds(context, model%mesh, report)
       call check_touches(context, model, report)
       call drop_idle_heat(context, model, report)
       call check_heat_quantities(context%verifiable, model, report)
-      call apply_loads(context, model, report)
       call turn_equations(model)
-      deck_nodes = size(model%mesh%node_number)
-      call apply_temperatures(context, deck_nodes, .true., model)
+      model%deck_equations = size(model%equations)
+      model%written_levels = context%levels
+      model%written_order = context%order
+      call take_requests(context, report, model)
+      call apply_requests(model)
+      call check_amplitudes(context, model, report)
       call check_starts(context, model, report)
-      call refine_model(context, model, report, error)
-      if (allocated(error)) return
-      call apply_temperatures(context, deck_nodes, .false., model)
-      call apply_couplings(model)
-      call apply_boundaries(context, model, report)
-      call apply_order(context, model, report)
-      call apply_transforms(model)
       if (.not. report%has_errors()) then
          call check_usage(cards, context, model, report)
          call check_heat_paths(cards, model, report)
          call check_constants(cards, model, report)
       end if
-      call find_bodies(model%mesh)
-      if (model%solver == solver_by_size) call choose_solver(context, model)
       call note_defaults(cards, context, model)
    end subroutine complete_model
+
+   !> Gives a model what its deck asks for, and the places of the supports in words.
+   subroutine take_requests(context, report, model)
+      type(deck_context_type), intent(in) :: context
+      type(deck_report_type), intent(in) :: report
+      type(model_type), intent(inout) :: model
+      integer :: i, n
+
+      allocate (model%requests)
+      model%requests%supports = context%boundaries
+      model%requests%loads = context%loads
+      model%requests%temperatures = context%temperatures
+      call collect_fields(model)
+      n = 0
+      if (context%boundaries%count > 0) n = context%boundaries%items(context%boundaries%count)%card
+      allocate (model%boundary_places(n))
+      do i = 1, context%boundaries%count
+         associate (request => context%boundaries%items(i))
+            model%boundary_places(request%card)%value = report%source%words_of(request%place)
+         end associate
+      end do
+   end subroutine take_requests
 
    !> A step in which, and before which, no temperature is prescribed and no heat loaded solves
    !> none. That is rarely meant.
@@ -183,30 +195,6 @@ contains
             'with degree of freedom 11, or take *STATIC', heatless)
       end do
    end subroutine drop_idle_heat
-
-   !> Chooses the solver of a deck without *SOLVER by the size of its model, and notes why.
-   subroutine choose_solver(context, model)
-      type(deck_context_type), intent(inout) :: context
-      type(model_type), intent(inout) :: model
-      character(:), allocatable :: reason
-      integer :: unknowns
-
-      unknowns = size(model%mesh%node_number)
-      reason = ' temperatures'
-      if (any(solves_mechanics(model%steps%analysis))) then
-         unknowns = 2*unknowns
-         reason = ' displacements'
-      end if
-      reason = ', because the nodes have '//to_text(unknowns)//reason
-      model%solver = default_solver(real(unknowns, dp))
-      if (model%solver == solver_mumps) then
-         call context%note('no *SOLVER: MUMPS'//reason//' (SKYLINE below '// &
-            to_text(mumps_from)//')')
-      else
-         call context%note('no *SOLVER: SKYLINE'//reason//' (MUMPS from '// &
-            to_text(mumps_from)//' on)')
-      end if
-   end subroutine choose_solver
 
    !> Notes the defaults of what the deck does not say at all.
    subroutine note_defaults(cards, context, model)

@@ -3,7 +3,7 @@ module deck_builder_couplings
    use card_parameters, only: need_parameter, parameter_place
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
-   use couplings, only: coupling_equations, coupling_type
+   use couplings, only: coupling_type
    use deck_context, only: deck_context_type, need_named
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count
@@ -12,7 +12,7 @@ module deck_builder_couplings
    use text, only: read_integer, to_text
    implicit none
    private
-   public :: build_couplings, apply_couplings
+   public :: build_couplings
 
 contains
 
@@ -159,15 +159,5 @@ contains
          end select
       end do
    end subroutine read_range
-
-   !> Puts the equations of the couplings behind those of the deck, once the mesh is final.
-   subroutine apply_couplings(model)
-      type(model_type), intent(inout) :: model
-      integer :: i
-
-      do i = 1, size(model%couplings)
-         model%equations = [model%equations, coupling_equations(model%couplings(i), model%mesh)]
-      end do
-   end subroutine apply_couplings
 
 end module deck_builder_couplings

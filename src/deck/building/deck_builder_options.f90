@@ -86,7 +86,7 @@ contains
       if (plane == 'STRAIN') context%plane = plane_strain
       if (plane == 'STRESS') context%plane = plane_stress
       if (plane == 'AXISYMMETRIC') context%plane = axisymmetric
-      if (has_parameter(card, 'ORDER')) call build_order(card, context, report)
+      if (has_parameter(card, 'ORDER')) call build_order(card, context, model, report)
       call choose(card, 'ERRORS', 'YES/NO', report, errors)
       if (has_parameter(card, 'ERRORS')) model%estimates_errors = errors == 'YES'
       if (has_parameter(card, 'UNITS')) call build_units(card, model, report)
@@ -95,17 +95,18 @@ contains
       context%load_place = parameter_place(card, 'LOAD')
    end subroutine build_option_card
 
-   subroutine build_order(card, context, report)
+   subroutine build_order(card, context, model, report)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
+      type(model_type), intent(inout) :: model
       type(deck_report_type), intent(inout) :: report
       integer :: errors
 
       errors = report%error_count()
-      context%order_place = parameter_place(card, 'ORDER')
+      model%order_place = parameter_place(card, 'ORDER')
       call take_parameter(card, 'ORDER', report, context%order)
       if (any(context%order == [1, 2])) return
-      if (report%error_count() == errors) call report%error(context%order_place, &
+      if (report%error_count() == errors) call report%error(model%order_place, &
          'ORDER= must be 1 (elements without midside nodes) or 2 (elements as they are)')
       context%order = 2
    end subroutine build_order

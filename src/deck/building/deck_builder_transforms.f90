@@ -6,18 +6,14 @@ module deck_builder_transforms
    use deck_context, only: need_named
    use deck_report, only: deck_report_type
    use deck_structure, only: cards_of
-   use equations, only: equation_type
-   use hanging_nodes, only: hanging_rows
    use kinds, only: dp
-   use mesh, only: add_node, extent_of
+   use mesh, only: extent_of
    use model, only: model_type
-   use steps, only: dof_temperature, load_force
-   use sum_lists, only: sum_list_type
    use text, only: to_text
-   use transforms, only: along_axes, axes_at, partner_type, transform_type
+   use transforms, only: transform_type
    implicit none
    private
-   public :: build_transforms, turn_equations, apply_transforms
+   public :: build_transforms
 
    real(dp), parameter :: negligible = 1.0e-9_dp   !! part of a direction or of the model
 
@@ -123,133 +119,5 @@ contains
          end do
       end associate
    end subroutine check_nodes
-
-   !> The transform of each node, or 0.
-   pure function transform_of(model) result(of_node)
-      type(model_type), intent(in) :: model
-      integer :: of_node(size(model%mesh%node_number))
-      integer :: i
-
-      of_node = 0
-      do i = 1, size(model%transforms)
-         of_node(model%mesh%node_sets(model%transforms(i)%set)%members) = i
-      end do
-   end function transform_of
-
-   !> Writes the equations of a sound deck along x and y.
-   subroutine turn_equations(model)
-      type(model_type), intent(inout) :: model
-      integer :: i, of_node(size(model%mesh%node_number))
-
-      if (size(model%transforms) == 0) return
-      of_node = transform_of(model)
-      do i = 1, size(model%equations)
-         model%equations(i) = along_axes(model%equations(i), model%mesh, model%transforms, of_node)
-      end do
-   end subroutine turn_equations
-
-   !> Puts what cards prescribe or load along axes of nodes on the partners of the nodes. The mesh
-   !> is final.
-   subroutine apply_transforms(model)
-      type(model_type), intent(inout) :: model
-      integer :: of_node(size(model%mesh%node_number)), partner(size(model%mesh%node_number))
-      logical :: named(2, size(model%mesh%node_number))
-      integer :: i, s
-
-      allocate (model%partners(0))
-      if (size(model%transforms) == 0) return
-      of_node = transform_of(model)
-      call drop_hanging(model, of_node)
-      named = .false.
-      do s = 1, size(model%steps)
-         associate (boundaries => model%steps(s)%boundaries, loads => model%steps(s)%loads)
-            do i = 1, size(boundaries)
-               if (boundaries(i)%dof == dof_temperature) cycle
-               named(boundaries(i)%dof, boundaries(i)%node) = .true.
-            end do
-            do i = 1, size(loads)
-               if (loads(i)%kind /= load_force) cycle
-               named(2 - modulo(loads(i)%component, 2), loads(i)%item) = .true.
-            end do
-         end associate
-      end do
-      partner = 0
-      do i = 1, size(of_node)
-         if (of_node(i) > 0 .and. any(named(:, i))) call add_partner(model, i, of_node(i), &
-            named(:, i), partner(i))
-      end do
-      do s = 1, size(model%steps)
-         associate (boundaries => model%steps(s)%boundaries, loads => model%steps(s)%loads)
-            do i = 1, size(boundaries)
-               if (boundaries(i)%dof /= dof_temperature) call move(boundaries(i)%node)
-            end do
-            do i = 1, size(loads)
-               if (loads(i)%kind == load_force) call move(loads(i)%item)
-            end do
-         end associate
-      end do
-      if (model%load_node > 0 .and. model%load_dof /= dof_temperature) call move(model%load_node)
-
-   contains
-      subroutine move(node)
-         integer, intent(inout) :: node
-
-         if (partner(node) > 0) node = partner(node)
-      end subroutine move
-   end subroutine apply_transforms
-
-   !> Drops what is prescribed along axes of nodes that hang: they follow the nodes of their side,
-   !> which are in the same set.
-   subroutine drop_hanging(model, of_node)
-      type(model_type), intent(inout) :: model
-      integer, intent(in) :: of_node(:)
-      type(sum_list_type) :: rows
-      logical :: follows(size(of_node))
-      integer :: i, s
-
-      rows = hanging_rows(model%mesh)
-      follows = .false.
-      do i = 1, rows%count
-         follows(rows%value(rows%start(i))) = .true.
-      end do
-      follows = follows .and. of_node > 0
-      do s = 1, size(model%steps)
-         model%steps(s)%boundaries = pack(model%steps(s)%boundaries, &
-            model%steps(s)%boundaries%dof == dof_temperature .or. &
-            .not. follows(model%steps(s)%boundaries%node))
-      end do
-   end subroutine drop_hanging
-
-   !> Adds the partner of a node, and the equations of the components that cards name.
-   subroutine add_partner(model, node, transform, named, partner)
-      type(model_type), intent(inout) :: model
-      integer, intent(in) :: node, transform
-      logical, intent(in) :: named(2)
-      integer, intent(out) :: partner
-      type(equation_type) :: equation
-      type(partner_type) :: pair
-      real(dp) :: place(2)
-      integer :: c
-
-      place = model%mesh%coordinates(:, node)
-      call add_node(model%mesh, place)
-      partner = size(model%mesh%node_number)
-      pair%node = node
-      pair%partner = partner
-      pair%axes = axes_at(model%transforms(transform), place)
-      model%initial_temperature = [model%initial_temperature, model%initial_temperature(node)]
-      model%partners = [model%partners, pair]
-      do c = 1, 2
-         if (.not. named(c)) cycle
-         equation%title = model%transforms(transform)%title
-         equation%card = model%transforms(transform)%card
-         equation%node = [partner]
-         equation%dof = [c]
-         equation%coefficient = [1.0_dp]
-         call equation%add_term(node, 1, -pair%axes(1, c))
-         call equation%add_term(node, 2, -pair%axes(2, c))
-         model%equations = [model%equations, equation]
-      end do
-   end subroutine add_partner
 
 end module deck_builder_transforms

@@ -3,7 +3,6 @@
 module deck_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use deck_source, only: place_type
    use elasticity, only: equivalent_poisson
    use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
    use shape_checks, only: check_jacobians, check_slenderness
@@ -12,14 +11,12 @@ module deck_checks
    use mesh, only: mesh_type
    use mesh_checks, only: check_planes, check_sides
    use model, only: model_type
+   use refinement, only: numbering_fault
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
    private
-   public :: check_model, check_numbers
-
-   !> The entries of all elements' 16 x 16 matrices are numbered in default integers.
-   integer, parameter :: most_elements = 2**23 - 1
+   public :: check_model
 
    !> Largest equivalent Poisson's ratio that is not warned of where elements lock: 0.49, which the
    !> entries of the stiffness give but for rounding.
@@ -34,10 +31,11 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: uses(4, size(model%mesh%element_number))
       logical :: inverted(size(model%mesh%element_number))
+      character(:), allocatable :: fault
 
       ! The mesh once it is refined.
-      call check_numbers(context%levels_place, &
-         size(model%mesh%element_number)*4_long**context%levels, model%mesh, report)
+      fault = numbering_fault(model%mesh, size(model%mesh%element_number)*4_long**context%levels)
+      if (len(fault) > 0) call report%error(context%levels_place, fault)
       call check_sections(context, model, report)
       call check_materials(context, model, report)
       call check_planes(context, model%mesh, report)
@@ -48,27 +46,6 @@ contains
       call check_loads(context, model, uses, report)
    end subroutine check_model
 
-   !> A mesh with more elements, its matrices and the new numbers of its nodes fit into default
-   !> integers.
-   subroutine check_numbers(place, elements, mesh, report)
-      type(place_type), intent(in) :: place                !! card that adds them
-      integer(long), intent(in) :: elements                !! elements that there will be
-      type(mesh_type), intent(in) :: mesh                  !! the mesh before
-      type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer(long) :: largest
-
-      if (elements > most_elements) then
-         call report%error(place, 'the mesh would have '//to_text(elements)// &
-            ' elements, more than the '//to_text(most_elements)//' that can be numbered')
-         return
-      end if
-      if (elements == size(mesh%element_number) .or. size(mesh%node_number) == 0) return
-      ! An element brings at most its eight nodes.
-      largest = max(maxval(mesh%node_number), maxval(mesh%element_number)) + 8*elements
-      if (largest > huge(1)) call report%error(place, &
-         'the numbers of new nodes and elements, behind the largest of the deck, would exceed '// &
-         to_text(huge(1)))
-   end subroutine check_numbers
 
    !> Every element has a section.
    subroutine check_sections(context, model, report)
@@ -177,6 +154,5 @@ contains
          end associate
       end do
    end subroutine check_orientations
-
 
 end module deck_checks

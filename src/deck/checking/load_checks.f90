@@ -15,7 +15,7 @@ module load_checks
    use text, only: counted, others, to_text
    implicit none
    private
-   public :: check_loads, first_heat
+   public :: check_loads, check_amplitudes, first_heat
 
 contains
 
@@ -61,6 +61,27 @@ contains
       end do
       call check_boundaries(context, model, used, report)
    end subroutine check_loads
+
+   !> Loads of a step that add up at one location have the same time history.
+   subroutine check_amplitudes(context, model, report)
+      type(deck_context_type), intent(in) :: context       !! requests
+      type(model_type), intent(in) :: model                !! its loads on the mesh of the deck
+      type(deck_report_type), intent(inout) :: report      !! receives an error
+      integer :: i, s
+
+      do s = 1, size(model%steps)
+         associate (loads => model%steps(s)%loads, requests => context%loads%items)
+            do i = 2, size(loads)
+               if (loads(i)%kind /= loads(i - 1)%kind .or. loads(i)%item /= loads(i - 1)%item .or. &
+                  loads(i)%component /= loads(i - 1)%component) cycle
+               if (loads(i)%amplitude == loads(i - 1)%amplitude) cycle
+               call report%error(requests(findloc(requests%card, loads(i)%card, dim=1))%place, &
+                  'two loads of one step at one location have different amplitudes')
+               exit
+            end do
+         end associate
+      end do
+   end subroutine check_amplitudes
 
    !> Index of the first step in which heat is loaded or a temperature prescribed; that behind the
    !> last step when there is none.

@@ -6,7 +6,6 @@
 module shape_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use deck_source, only: place_type
    use element_kinds, only: element_corner_count, element_node_count, linear_kind, side_node_count
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -15,7 +14,7 @@ module shape_checks
    use text, only: others, to_text
    implicit none
    private
-   public :: check_jacobians, check_corners, check_folds, check_slenderness
+   public :: check_jacobians, check_folds, check_slenderness, point_jacobians
 
    !> Negative Jacobian at a node, as a part of the largest at the nodes of its element, and part of
    !> a side past a quarter point, from which on an element is warned of. At quarter points and at
@@ -160,21 +159,6 @@ contains
          if (part > 1 - quarter + folded) folded_node = mod(i, corners) + 1
       end do
    end function folded_node
-
-   !> The Jacobian of elements that lost their midside nodes; the first that is not sound is named.
-   subroutine check_corners(place, mesh, report)
-      type(place_type), intent(in) :: place                !! where the order of elements is
-      type(mesh_type), intent(in) :: mesh                  !! the mesh, of linear elements
-      type(deck_report_type), intent(inout) :: report      !! receives an error
-      integer :: e
-
-      do e = 1, size(mesh%element_number)
-         if (all(point_jacobians(mesh, e) > 0.0_dp)) cycle
-         call report%error(place, 'the Jacobian of element '//to_text(mesh%element_number(e))// &
-            ' is not positive without midside nodes: its sides are too curved for ORDER=1')
-         return
-      end do
-   end subroutine check_corners
 
    !> No side of an element is far shorter than the others. Corners in one place are left to the
    !> Jacobian.

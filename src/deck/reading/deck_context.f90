@@ -12,7 +12,6 @@ module deck_context
    use mesh, only: set_type
    use named_items, only: find_named, named_type
    use quantity_types, only: quantity_type
-   use refined_regions, only: division_type, refined_region_type
    use sorting, only: number_index_type
    use spelling, only: is_slip, nearest_known
    use text, only: read_integer, string_type, to_upper
@@ -51,13 +50,9 @@ module deck_context
       !> PLANE=, a plane of element_kinds
       integer :: plane = plane_by_element
       integer :: order = 2                                !! ORDER= of the elements, 1 or 2
-      type(place_type) :: order_place                     !! where it is
       logical, allocatable :: dropped(:)                  !! (nodes) whether ORDER=1 drops them
       integer :: levels = 0                               !! *REFINE, LEVELS=
       type(place_type) :: levels_place                    !! where it is
-      type(refined_region_type), allocatable :: regions(:)   !! *REFINE with a surface or a set
-      !> divisions that follow, as those of a variation
-      type(division_type), allocatable :: divisions(:)
       character(:), allocatable :: load_set   !! LOAD=: node set; unallocated when not given
       type(place_type) :: load_place                      !! where it is
       type(request_list_type) :: boundaries               !! *BOUNDARY

@@ -1,6 +1,7 @@
 !> The lines of a deck as they are in its files: the deck itself and, where they are included, the
 !> others.
 module deck_source
+   use card_places, only: place_type
    use file_calls, only: read_file
    use text, only: string_type, to_text
    use utf8, only: as_utf8
@@ -10,12 +11,6 @@ module deck_source
 
    integer, parameter :: first_capacity = 1024   !! images before the list grows for the first time
    integer, parameter :: most_bytes = 1000000000   !! of a file
-
-   !> A place in a deck.
-   type :: place_type
-      integer :: image = 0    !! running number of the card image; 0 for the deck as a whole
-      integer :: column = 1   !! byte in the image
-   end type place_type
 
    !> All card images of a deck in the order in which they are read.
    type :: deck_source_type

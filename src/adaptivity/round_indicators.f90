@@ -22,8 +22,7 @@ module round_indicators
    use model, only: model_type
    use quantity_types, only: quantity_type
    use records, only: contact_record_type, increment_record_type
-   use refined_regions, only: division_type
-   use variations, only: variation_type
+   use variations, only: marked_elements_type, variation_type
    implicit none
    private
    public :: round_indicators_type
@@ -38,7 +37,7 @@ module round_indicators
    !> What the ends of the steps of a round ask for.
    type :: round_indicators_type
       private
-      type(division_type) :: division           !! of the elements
+      type(marked_elements_type) :: division           !! of the elements
       integer :: halvings = 0                   !! of the increments
    contains
       procedure :: start
@@ -236,7 +235,7 @@ contains
    subroutine add_to(self, variation)
       class(round_indicators_type), intent(in) :: self
       type(variation_type), intent(inout) :: variation
-      type(division_type), allocatable :: divisions(:)
+      type(marked_elements_type), allocatable :: divisions(:)
       integer :: n
 
       variation%increments = variation%increments*0.5_dp**self%halvings

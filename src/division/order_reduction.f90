@@ -5,20 +5,22 @@ module order_reduction
    use element_kinds, only: element_corner_count, linear_kind, side_node_count, side_nodes
    use hanging_nodes, only: hanging_count, place_hanging
    use kinds, only: dp
+   use load_application, only: make_explicit
+   use load_requests, only: request_list_type, request_type
    use mesh, only: mesh_type
    use model, only: model_type
-   use steps, only: boundary_type, load_force, load_nodal_heat, load_temperature, load_type, &
-      step_type
+   use steps, only: acts_on_nodes
    implicit none
    private
    public :: reduce_order, side_corners
 
 contains
 
-   !> Makes all elements of a model linear ones; its bodies must be found anew afterwards.
-   !> Refinement comes before it, so that new corners lie on the curved sides of the deck.
+   !> Makes all elements of a model linear ones. Its loads and supports must be applied, and its
+   !> bodies found, anew afterwards. Refinement comes before it, so that new corners lie on the
+   !> curved sides of the deck.
    pure subroutine reduce_order(model)
-      type(model_type), intent(inout) :: model   !! model with a conforming mesh
+      type(model_type), intent(inout) :: model   !! with its loads, without partners of nodes
       integer :: corners(2, size(model%mesh%node_number))
       integer :: new_index(size(model%mesh%node_number))
       integer :: i, n
@@ -31,19 +33,20 @@ contains
          n = n + 1
          new_index(i) = n
       end do
-      if (allocated(model%steps)) then
-         do i = 1, size(model%steps)
-            call reduce_step(corners, new_index, model%steps(i))
-         end do
-      end if
-      if (allocated(model%initial_temperature)) then
-         model%initial_temperature = pack(model%initial_temperature, new_index > 0)
-      end if
-      if (allocated(model%equations)) then
-         do i = 1, size(model%equations)
-            call model%equations(i)%replace(corners, new_index)
-         end do
-      end if
+      call make_explicit(model)
+      call share_loads(corners, new_index, model%requests%loads)
+      call drop_requests(new_index, model%requests%supports)
+      call drop_requests(new_index, model%requests%temperatures)
+      do i = 1, size(model%fields)
+         model%fields(i)%values = pack(model%fields(i)%values, new_index > 0)
+         model%fields(i)%given = pack(model%fields(i)%given, new_index > 0)
+      end do
+      model%initial_temperature = pack(model%initial_temperature, new_index > 0)
+      do i = 1, model%deck_equations
+         call model%equations(i)%replace(corners, new_index)
+      end do
+      model%couplings%reference = new_index(model%couplings%reference)
+      model%couplings%rotation = new_index(model%couplings%rotation)
       if (model%load_node > 0) model%load_node = new_index(model%load_node)
       call reduce_mesh(new_index, model%mesh)
       model%element_order = 1
@@ -103,49 +106,52 @@ contains
       call place_hanging(mesh)
    end subroutine reduce_mesh
 
-   pure subroutine reduce_step(corners, new_index, step)
+   !> Drops what is given for single nodes that drop out.
+   pure subroutine drop_requests(new_index, list)
+      integer, intent(in) :: new_index(:)    ! (nodes) zero for those that drop out
+      type(request_list_type), intent(inout) :: list
+      type(request_list_type) :: kept
+      integer :: i
+
+      do i = 1, list%count
+         associate (request => list%items(i))
+            if (request%set == 0) request%item = new_index(request%item)
+            if (request%set > 0 .or. request%item > 0) call kept%add(request)
+         end associate
+      end do
+      list = kept
+   end subroutine drop_requests
+
+   !> Loads of single nodes follow them, or are shared; those of elements stay. A share is a
+   !> location of its own, told by the node that it comes from, so that what a later step gives
+   !> there replaces it.
+   pure subroutine share_loads(corners, new_index, loads)
       integer, intent(in) :: corners(:, :)   ! (2, nodes) as of side_corners
       integer, intent(in) :: new_index(:)    ! (nodes) zero for those that drop out
-      type(step_type), intent(inout) :: step
+      type(request_list_type), intent(inout) :: loads
+      type(request_list_type) :: shared
+      type(request_type) :: share
+      integer :: i, k
 
-      if (allocated(step%boundaries)) then
-         step%boundaries%node = new_index(step%boundaries%node)
-         step%boundaries = pack(step%boundaries, step%boundaries%node > 0)
-      end if
-      if (allocated(step%loads)) call reduce_loads(corners, new_index, step%loads)
-   end subroutine reduce_step
-
-   !> Loads of nodes follow them, or are shared; those of elements stay. A share is a location
-   !> of its own, told by the node that it comes from, so that what a later step gives there
-   !> replaces it.
-   pure subroutine reduce_loads(corners, new_index, loads)
-      integer, intent(in) :: corners(:, :)
-      integer, intent(in) :: new_index(:)
-      type(load_type), allocatable, intent(inout) :: loads(:)
-      type(load_type), allocatable :: reduced(:)
-      integer :: i, n
-
-      allocate(reduced(2*size(loads)))
-      n = 0
-      do i = 1, size(loads)
-         associate (load => loads(i))
-            if (all(load%kind /= [load_force, load_nodal_heat, load_temperature])) then
-               n = n + 1
-               reduced(n) = load
+      do i = 1, loads%count
+         associate (load => loads%items(i))
+            share = load
+            if (.not. acts_on_nodes(load%kind)) then
+               call shared%add(load)
             else if (new_index(load%item) > 0) then
-               n = n + 1
-               reduced(n) = load
-               reduced(n)%item = new_index(load%item)
-            else if (load%kind /= load_temperature) then
-               reduced(n + 1:n + 2) = load
-               reduced(n + 1:n + 2)%item = new_index(corners(:, load%item))
-               reduced(n + 1:n + 2)%component = load%component + 2*load%item
-               reduced(n + 1:n + 2)%value = 0.5_dp*load%value
-               n = n + 2
+               share%item = new_index(load%item)
+               call shared%add(share)
+            else
+               share%component = load%component + 2*load%item
+               share%value = 0.5_dp*load%value
+               do k = 1, 2
+                  share%item = new_index(corners(k, load%item))
+                  call shared%add(share)
+               end do
             end if
          end associate
       end do
-      loads = reduced(:n)
-   end subroutine reduce_loads
+      loads = shared
+   end subroutine share_loads
 
 end module order_reduction

@@ -1,16 +1,17 @@
-!> Cards of the form "node or set, component, value", kept until the mesh is final.
+!> Loads, supports and initial temperatures as a deck asks for them: a node, an element or a set of
+!> the deck's mesh, a component and a value. They hold for any division of that mesh.
 module load_requests
-   use deck_source, only: place_type
+   use card_places, only: place_type
    use kinds, only: dp
    implicit none
    private
-   public :: request_type, request_list_type
+   public :: request_type, request_list_type, requests_type, nodal_field_type
 
    !> What one data card asks for, for one component.
    type :: request_type
       integer :: step = 0           !! index of the step; 0 before the first
       integer :: kind = 0           !! kind of the load; 0 for prescribed and initial values
-      integer :: item = 0           !! index of the node or element, 0 for a set
+      integer :: item = 0           !! index of the deck's node or element, 0 for a set
       integer :: set = 0            !! index of the set, 0 for a single item
       integer :: component = 0      !! degree of freedom, face, ...: as said at the kind
       real(dp) :: value = 0.0_dp    !! value
@@ -27,10 +28,27 @@ module load_requests
       procedure :: add
    end type request_list_type
 
+   !> All that a deck asks for.
+   type :: requests_type
+      type(request_list_type) :: supports       !! *BOUNDARY
+      type(request_list_type) :: loads          !! all other loads but *TEMPERATURE
+      type(request_list_type) :: temperatures   !! *INITIAL CONDITIONS, TYPE=TEMPERATURE
+   end type requests_type
+
+   !> Temperatures that *TEMPERATURE gives in a step, on one amplitude. The division of a mesh gives
+   !> new nodes those between the nodes of their side.
+   type :: nodal_field_type
+      integer :: step = 0                       !! index of the step
+      integer :: amplitude = 0                  !! index into model%amplitudes, or 0
+      integer :: card = 0                       !! running number of its last data card
+      logical, allocatable :: given(:)          !! (nodes) whether a node has a value
+      real(dp), allocatable :: values(:)        !! (nodes) 0 where not given [temperature]
+   end type nodal_field_type
+
 contains
 
    !> Adds a request.
-   subroutine add(self, request)
+   pure subroutine add(self, request)
       class(request_list_type), intent(inout) :: self
       type(request_type), intent(in) :: request         !! what is added
       type(request_type), allocatable :: more(:)

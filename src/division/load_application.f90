@@ -1,0 +1,284 @@
+!> What a deck asks for -> initial temperatures, loads, supports and equations of couplings on the
+!> mesh of a model, which may be any division of the deck's.
+!>
+!> Node sets and surfaces are those of the mesh at hand. A load on an element acts on all of its
+!> parts, one on a side on the parts along it. What is given for a single node stays on it, and so
+!> do forces and heat of the nodes of a set.
+module load_application
+   use couplings, only: coupling_equations
+   use kinds, only: dp
+   use load_requests, only: nodal_field_type, request_type
+   use mesh, only: mesh_type
+   use model, only: model_type
+   use sorting, only: sort_order
+   use steps, only: acts_on_nodes, boundary_type, load_film_coefficient, load_film_sink, &
+      load_temperature, load_type, loaded_side
+   implicit none
+   private
+   public :: apply_requests, collect_fields, make_explicit
+
+   !> The elements of a mesh by the elements of the deck that they are parts of.
+   type :: parts_type
+      integer, allocatable :: start(:)       !! (deck elements + 1) first one of each
+      integer, allocatable :: element(:)     !! (elements) in the order of the deck's
+   end type parts_type
+
+contains
+
+   !> Applies all requests of a model to its mesh.
+   pure subroutine apply_requests(model)
+      type(model_type), intent(inout) :: model
+      type(parts_type) :: parts
+      integer :: s
+
+      call apply_temperatures(model)
+      model%equations = model%equations(:model%deck_equations)
+      do s = 1, size(model%couplings)
+         model%equations = [model%equations, coupling_equations(model%couplings(s), model%mesh)]
+      end do
+      parts = parts_of(model%mesh)
+      do s = 1, size(model%steps)
+         call apply_loads(parts, s, model)
+         call apply_supports(s, model)
+      end do
+   end subroutine apply_requests
+
+   !> Initial temperatures. Nodes that a division added have those between their neighbours, unless
+   !> a set that they are in has another one.
+   pure subroutine apply_temperatures(model)
+      type(model_type), intent(inout) :: model
+      integer, allocatable :: nodes(:)
+      integer :: first_new, i
+
+      first_new = deck_node_count(model%mesh) + 1
+      if (.not. allocated(model%initial_temperature)) then
+         allocate (model%initial_temperature(size(model%mesh%node_number)), source=0.0_dp)
+         first_new = 1
+      end if
+      do i = 1, model%requests%temperatures%count
+         associate (request => model%requests%temperatures%items(i))
+            nodes = nodes_of(request, model%mesh)
+            model%initial_temperature(pack(nodes, nodes >= first_new)) = request%value
+         end associate
+      end do
+   end subroutine apply_temperatures
+
+   !> Number of nodes of the deck's mesh, which are the first ones.
+   pure integer function deck_node_count(mesh)
+      type(mesh_type), intent(in) :: mesh
+
+      deck_node_count = size(mesh%node_number)
+      if (allocated(mesh%deck_element)) deck_node_count = mesh%deck_nodes
+   end function deck_node_count
+
+   !> Nodes that a request names.
+   pure function nodes_of(request, mesh) result(nodes)
+      type(request_type), intent(in) :: request
+      type(mesh_type), intent(in) :: mesh
+      integer, allocatable :: nodes(:)
+
+      if (request%set > 0) then
+         nodes = mesh%node_sets(request%set)%members
+      else
+         nodes = [request%item]
+      end if
+   end function nodes_of
+
+   pure function parts_of(mesh) result(parts)
+      type(mesh_type), intent(in) :: mesh
+      type(parts_type) :: parts
+      integer :: e, k
+
+      if (allocated(mesh%deck_element)) then
+         parts%element = sort_order(mesh%deck_element)
+         allocate (parts%start(maxval(mesh%deck_element) + 1), source=1)
+         do e = 1, size(mesh%deck_element)
+            k = mesh%deck_element(e) + 1
+            parts%start(k) = parts%start(k) + 1
+         end do
+         do k = 2, size(parts%start)
+            parts%start(k) = parts%start(k) + parts%start(k - 1) - 1
+         end do
+      else
+         parts%element = [(e, e=1, size(mesh%element_kind))]
+         parts%start = [(e, e=1, size(mesh%element_kind) + 1)]
+      end if
+   end function parts_of
+
+   !> Nodes or elements that a load of a request acts on.
+   pure function targets_of(request, parts, mesh) result(items)
+      type(request_type), intent(in) :: request
+      type(parts_type), intent(in) :: parts
+      type(mesh_type), intent(in) :: mesh
+      integer, allocatable :: items(:)
+      integer :: side
+
+      if (acts_on_nodes(request%kind)) then
+         items = nodes_of(request, mesh)
+         items = pack(items, items <= deck_node_count(mesh))
+         return
+      else if (request%set > 0) then
+         items = mesh%element_sets(request%set)%members
+      else
+         items = parts%element(parts%start(request%item):parts%start(request%item + 1) - 1)
+      end if
+      side = loaded_side(request%kind, request%component)
+      if (side > 0 .and. allocated(mesh%on_deck_side)) items = pack(items, &
+         mesh%on_deck_side(side, items))
+   end function targets_of
+
+   !> Loads of a step, by kind, item and component.
+   pure subroutine apply_loads(parts, step, model)
+      type(parts_type), intent(in) :: parts
+      integer, intent(in) :: step
+      type(model_type), intent(inout) :: model
+      type(load_type), allocatable :: loads(:)
+      logical, allocatable :: stays(:)
+      integer, allocatable :: order(:)
+      integer :: i
+
+      call collect_loads(parts, step, model, loads)
+      order = sort_order(loads%component)
+      order = order(sort_order(loads(order)%item))
+      order = order(sort_order(loads(order)%kind))
+      loads = loads(order)
+      allocate (stays(size(loads)), source=.true.)
+      do i = 1, size(loads) - 1
+         if (all(loads(i)%kind /= [load_film_coefficient, load_film_sink])) cycle
+         ! As in CalculiX the last card holds, while other loads add up.
+         stays(i) = loads(i)%kind /= loads(i + 1)%kind .or. loads(i)%item /= loads(i + 1)%item &
+            .or. loads(i)%component /= loads(i + 1)%component
+      end do
+      model%steps(step)%loads = pack(loads, stays)
+   end subroutine apply_loads
+
+   !> Loads of a step in the order of the cards, behind them those of the nodal fields.
+   pure subroutine collect_loads(parts, step, model, loads)
+      type(parts_type), intent(in) :: parts
+      integer, intent(in) :: step
+      type(model_type), intent(in) :: model
+      type(load_type), allocatable, intent(out) :: loads(:)
+      integer, allocatable :: items(:)
+      integer :: i, j, n, pass
+
+      do pass = 1, 2
+         n = 0
+         do i = 1, model%requests%loads%count
+            associate (request => model%requests%loads%items(i))
+               if (request%step /= step) cycle
+               items = targets_of(request, parts, model%mesh)
+               if (pass == 2) loads(n + 1:n + size(items)) = [(load_type(request%kind, items(j), &
+                  request%component, request%value, request%amplitude, request%card), &
+                  j=1, size(items))]
+               n = n + size(items)
+            end associate
+         end do
+         do i = 1, size(model%fields)
+            associate (field => model%fields(i))
+               if (field%step /= step) cycle
+               items = pack([(j, j=1, size(field%given))], field%given)
+               if (pass == 2) loads(n + 1:n + size(items)) = [(load_type(load_temperature, &
+                  items(j), 1, field%values(items(j)), field%amplitude, field%card), &
+                  j=1, size(items))]
+               n = n + size(items)
+            end associate
+         end do
+         if (pass == 1) allocate (loads(n))
+      end do
+   end subroutine collect_loads
+
+   !> Prescribed values of a step. What is before the first step belongs to it, unless OP=NEW of
+   !> that step ends it.
+   pure subroutine apply_supports(step, model)
+      integer, intent(in) :: step
+      type(model_type), intent(inout) :: model
+      type(boundary_type), allocatable :: supports(:)
+      integer, allocatable :: nodes(:)
+      logical :: is_new
+      integer :: i, j, n, pass
+
+      is_new = model%steps(1)%ends_boundaries
+      do pass = 1, 2
+         n = 0
+         do i = 1, model%requests%supports%count
+            associate (request => model%requests%supports%items(i))
+               if (max(1, request%step) /= step .or. (request%step == 0 .and. is_new)) cycle
+               nodes = nodes_of(request, model%mesh)
+               if (pass == 2) supports(n + 1:n + size(nodes)) = [(boundary_type(nodes(j), &
+                  request%component, request%value, request%amplitude, request%card), &
+                  j=1, size(nodes))]
+               n = n + size(nodes)
+            end associate
+         end do
+         if (pass == 1) allocate (supports(n))
+      end do
+      call move_alloc(supports, model%steps(step)%boundaries)
+   end subroutine apply_supports
+
+   !> Takes the temperatures of the steps out of the loads of a deck, as fields on its mesh. The
+   !> last card that names a node in a step holds.
+   pure subroutine collect_fields(model)
+      type(model_type), intent(inout) :: model       !! on the deck's mesh
+      type(nodal_field_type) :: field
+      integer, allocatable :: nodes(:)
+      integer :: f, i, k
+
+      allocate (model%fields(0))
+      do i = 1, model%requests%loads%count
+         associate (request => model%requests%loads%items(i))
+            if (request%kind /= load_temperature) cycle
+            k = findloc(model%fields%step == request%step .and. model%fields%amplitude == &
+               request%amplitude, .true., dim=1)
+            if (k == 0) then
+               field%step = request%step
+               field%amplitude = request%amplitude
+               field%given = spread(.false., 1, size(model%mesh%node_number))
+               field%values = spread(0.0_dp, 1, size(model%mesh%node_number))
+               model%fields = [model%fields, field]
+               k = size(model%fields)
+            end if
+            nodes = nodes_of(request, model%mesh)
+            do f = 1, size(model%fields)
+               if (model%fields(f)%step /= request%step) cycle
+               model%fields(f)%given(nodes) = f == k
+               model%fields(f)%values(nodes) = merge(request%value, 0.0_dp, f == k)
+            end do
+            model%fields(k)%card = request%card
+         end associate
+      end do
+      associate (loads => model%requests%loads)
+         if (loads%count == 0) return
+         loads%items = pack(loads%items(:loads%count), &
+            loads%items(:loads%count)%kind /= load_temperature)
+         loads%count = size(loads%items)
+      end associate
+   end subroutine collect_fields
+
+   !> Replaces the loads that a model requests by those on its mesh, which is the one that further
+   !> divisions begin with.
+   pure subroutine make_explicit(model)
+      type(model_type), intent(inout) :: model       !! requests applied
+      type(request_type) :: request
+      integer :: i, s
+
+      model%requests%loads%count = 0
+      do s = 1, size(model%steps)
+         request%step = s
+         do i = 1, size(model%steps(s)%loads)
+            associate (load => model%steps(s)%loads(i))
+               if (load%kind == load_temperature) cycle
+               request%kind = load%kind
+               request%item = load%item
+               request%component = load%component
+               request%value = load%value
+               request%amplitude = load%amplitude
+               request%card = load%card
+               call model%requests%loads%add(request)
+            end associate
+         end do
+      end do
+      if (allocated(model%mesh%deck_element)) deallocate (model%mesh%deck_element, &
+         model%mesh%on_deck_side)
+   end subroutine make_explicit
+
+end module load_application

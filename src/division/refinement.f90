@@ -1,0 +1,333 @@
+!> Refinement of a model: elements become four of their kind. A child's map is its parent's on a
+!> quarter of the element, so the geometry does not change. Sets, surfaces, sections and given
+!> temperatures follow; loads and supports are applied anew.
+module refinement
+   use bodies, only: find_bodies
+   use element_kinds, only: element_corner_count, quad4, quad8, quad8_reduced, triangle6
+   use kinds, only: dp, long
+   use load_application, only: apply_requests
+   use local_axes, only: apply_transforms
+   use mesh, only: mesh_type
+   use mesh_division, only: child_element, divide, division_type, hanging_after, inner_node, &
+      refined_members, side_node
+   use model, only: model_type
+   use text, only: to_text
+   implicit none
+   private
+   public :: refine, refine_chosen, divide_model, numbering_fault
+
+   !> The entries of all elements' 16 x 16 matrices are numbered in default integers.
+   integer, parameter :: most_elements = 2**23 - 1
+
+contains
+
+   !> Why a mesh with more elements, its matrices and the new numbers of its nodes do not fit into
+   !> default integers; empty if they do.
+   pure function numbering_fault(mesh, elements) result(fault)
+      type(mesh_type), intent(in) :: mesh                  !! the mesh before
+      integer(long), intent(in) :: elements                !! elements that there will be
+      character(:), allocatable :: fault
+      integer(long) :: largest
+
+      fault = ''
+      if (elements > most_elements) then
+         fault = 'the mesh would have '//to_text(elements)//' elements, more than the '// &
+            to_text(most_elements)//' that can be numbered'
+         return
+      end if
+      if (elements == size(mesh%element_number) .or. size(mesh%node_number) == 0) return
+      ! An element brings at most its eight nodes.
+      largest = max(maxval(mesh%node_number), maxval(mesh%element_number)) + 8*elements
+      if (largest > huge(1)) fault = 'the numbers of new nodes and elements, behind the '// &
+         'largest of the deck, would exceed '//to_text(huge(1))
+   end function numbering_fault
+
+   !> Divides all elements of a model, without its loads and supports.
+   subroutine refine(model, levels)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: levels   !! number of refinements, each with four times the elements
+      integer :: e, level
+
+      do level = 1, levels
+         call refine_chosen(model, [(.true., e=1, size(model%mesh%element_number))])
+      end do
+      model%refinement_levels = model%refinement_levels + levels
+   end subroutine refine
+
+   !> Divides some elements of a model that is complete, and puts its loads and supports on the new
+   !> mesh.
+   subroutine divide_model(model, chosen)
+      type(model_type), intent(inout) :: model
+      logical, intent(in) :: chosen(:)   !! (elements) as in divide
+
+      call refine_chosen(model, chosen)
+      if (allocated(model%requests)) then
+         call apply_requests(model)
+         call apply_transforms(model)
+      end if
+      call find_bodies(model%mesh)
+   end subroutine divide_model
+
+   !> Divides some elements of a model, without its loads and supports.
+   subroutine refine_chosen(model, chosen, levels)
+      type(model_type), intent(inout) :: model
+      logical, intent(in) :: chosen(:)   !! (elements) as in divide
+      !> (elements) how often they are still to be divided; afterwards of the children
+      integer, allocatable, intent(inout), optional :: levels(:)
+      type(division_type) :: division
+      integer :: i
+
+      division = divide(model%mesh, chosen)
+      if (allocated(model%initial_temperature)) then
+         model%initial_temperature = division%weights%multiply(model%initial_temperature)
+      end if
+      if (allocated(model%fields)) then
+         do i = 1, size(model%fields)
+            associate (field => model%fields(i))
+               field%values = division%weights%multiply(field%values)
+               field%given = refined_members(division, field%given)
+            end associate
+         end do
+      end if
+      if (present(levels)) levels = max(levels(parents_of(division)) - 1, 0)
+      call refine_mesh(division, model%mesh)
+   end subroutine refine_chosen
+
+   subroutine refine_mesh(division, mesh)
+      type(division_type), intent(in) :: division
+      type(mesh_type), intent(inout) :: mesh
+      real(dp), allocatable :: coordinates(:, :)
+      integer :: i, first, parent(division%elements_after)
+
+      do i = 1, size(mesh%node_sets)
+         call refine_node_set(division, mesh%node_sets(i)%members)
+      end do
+      do i = 1, size(mesh%element_sets)
+         call refine_element_set(division, mesh%element_sets(i)%members)
+      end do
+      do i = 1, size(mesh%surfaces)
+         call refine_faces(division, mesh%element_kind, mesh%surfaces(i)%faces)
+      end do
+      mesh%hanging_sides = hanging_after(division, mesh)
+      call follow_deck(division, mesh)
+      allocate(coordinates(2, division%nodes_after))
+      coordinates(1, :) = division%weights%multiply(mesh%coordinates(1, :))
+      coordinates(2, :) = division%weights%multiply(mesh%coordinates(2, :))
+      call move_alloc(coordinates, mesh%coordinates)
+      first = maxval(mesh%node_number) - division%nodes
+      mesh%node_number = [mesh%node_number, &
+         (first + i, i=division%nodes + 1, division%nodes_after)]
+      first = maxval(mesh%element_number) - division%elements
+      mesh%element_number = [mesh%element_number, &
+         (first + i, i=division%elements + 1, division%elements_after)]
+      call refine_elements(division, mesh%element_kind, mesh%element_nodes)
+      parent = parents_of(division)
+      mesh%element_section = mesh%element_section(parent)
+      mesh%element_kind = mesh%element_kind(parent)
+      mesh%element_plane = mesh%element_plane(parent)
+      if (allocated(mesh%initial_stress)) mesh%initial_stress = mesh%initial_stress(:, parent)
+   end subroutine refine_mesh
+
+   !> Which elements of the deck those of the divided mesh are parts of, and along which of their
+   !> sides.
+   subroutine follow_deck(division, mesh)
+      type(division_type), intent(in) :: division
+      type(mesh_type), intent(inout) :: mesh         ! with the element kinds before
+      integer :: child, corners, e, parent(division%elements_after)
+      logical :: along(4)
+
+      if (.not. allocated(mesh%deck_element)) then
+         mesh%deck_nodes = division%nodes
+         mesh%deck_element = [(e, e=1, division%elements)]
+         allocate (mesh%on_deck_side(4, division%elements), source=.true.)
+      end if
+      parent = parents_of(division)
+      mesh%deck_element = mesh%deck_element(parent)
+      mesh%on_deck_side = mesh%on_deck_side(:, parent)
+      do e = 1, division%elements
+         if (division%rank(e) == 0) cycle
+         corners = element_corner_count(mesh%element_kind(e))
+         do child = 1, 4
+            ! A child lies at its corner, between the sides before and behind it; the fourth one of
+            ! a triangle lies inside.
+            along = .false.
+            if (child <= corners) along([child, modulo(child - 2, corners) + 1]) = .true.
+            associate (on_side => mesh%on_deck_side(:, child_element(division, e, child)))
+               on_side = on_side .and. along
+            end associate
+         end do
+      end do
+   end subroutine follow_deck
+
+   !> The element that each one was before; children have their section and kind from it.
+   pure function parents_of(division) result(parent)
+      type(division_type), intent(in) :: division
+      integer :: parent(division%elements_after)
+      integer :: e, child
+
+      parent(:division%elements) = [(e, e=1, division%elements)]
+      do e = 1, division%elements
+         if (division%rank(e) == 0) cycle
+         do child = 2, 4
+            parent(child_element(division, e, child)) = e
+         end do
+      end do
+   end function parents_of
+
+   subroutine refine_node_set(division, members)
+      type(division_type), intent(in) :: division
+      integer, allocatable, intent(inout) :: members(:)
+      logical :: member(division%nodes)
+      integer :: i
+
+      member = .false.
+      member(members) = .true.
+      members = pack([(i, i=1, division%nodes_after)], refined_members(division, member))
+   end subroutine refine_node_set
+
+   subroutine refine_element_set(division, members)
+      type(division_type), intent(in) :: division
+      integer, allocatable, intent(inout) :: members(:)
+      integer, allocatable :: divided(:)
+      integer :: i, child
+
+      divided = pack(members, division%rank(members) > 0)
+      members = [members, ((child_element(division, divided(i), child), child=2, 4), &
+         i=1, size(divided))]
+   end subroutine refine_element_set
+
+   !> A face of a divided element becomes the faces of the same name of the two children at it.
+   subroutine refine_faces(division, kinds, faces)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: kinds(:)
+      integer, allocatable, intent(inout) :: faces(:, :)
+      integer, allocatable :: after(:, :)
+      integer :: i, n
+
+      allocate(after(2, 2*size(faces, 2)))
+      n = 0
+      do i = 1, size(faces, 2)
+         associate (element => faces(1, i), f => faces(2, i), &
+            corners => element_corner_count(kinds(faces(1, i))))
+            if (division%rank(element) == 0) then
+               n = n + 1
+               after(:, n) = faces(:, i)
+            else
+               after(:, n + 1) = [child_element(division, element, f), f]
+               after(:, n + 2) = [child_element(division, element, mod(f, corners) + 1), f]
+               n = n + 2
+            end if
+         end associate
+      end do
+      faces = after(:, :n)
+   end subroutine refine_faces
+
+   !> Puts the children in the place of the elements that are divided.
+   subroutine refine_elements(division, kinds, element_nodes)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: kinds(:)                           !! (elements) before
+      integer, allocatable, intent(inout) :: element_nodes(:, :) !! (8, elements) as in mesh_type
+      integer, allocatable :: children(:, :)
+      integer :: e, nodes(8, 4), child
+
+      allocate(children(8, division%elements_after))
+      children(:, :division%elements) = element_nodes
+      do e = 1, division%elements
+         if (division%rank(e) == 0) cycle
+         nodes = 0
+         select case (kinds(e))
+         case (quad8, quad8_reduced)
+            nodes = quad8_children(division, element_nodes(:, e), e)
+         case (quad4)
+            nodes(:4, :) = quad4_children(division, element_nodes(:, e), e)
+         case (triangle6)
+            nodes(:6, :) = triangle6_children(division, element_nodes(:, e), e)
+         case default
+            nodes(:3, :) = triangle3_children(division, element_nodes(:, e), e)
+         end select
+         do child = 1, 4
+            children(:, child_element(division, e, child)) = nodes(:, child)
+         end do
+      end do
+      call move_alloc(children, element_nodes)
+   end subroutine refine_elements
+
+   !> Nodes of the four children of an eight-node element.
+   pure function quad8_children(division, nodes, e) result(children)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: nodes(8), e
+      integer :: children(8, 4)
+      integer :: f, centre, inner(4), near_first(4), near_second(4)
+
+      centre = inner_node(division, e, 1)
+      do f = 1, 4
+         near_first(f) = side_node(division, e, f, nodes(f))
+         near_second(f) = side_node(division, e, f, nodes(mod(f, 4) + 1))
+         inner(f) = inner_node(division, e, 1 + f)
+      end do
+      associate (c => nodes(1:4), m => nodes(5:8))
+         children(:, 1) = [c(1), m(1), centre, m(4), &
+            near_first(1), inner(1), inner(4), near_second(4)]
+         children(:, 2) = [m(1), c(2), m(2), centre, &
+            near_second(1), near_first(2), inner(2), inner(1)]
+         children(:, 3) = [centre, m(2), c(3), m(3), &
+            inner(2), near_second(2), near_first(3), inner(3)]
+         children(:, 4) = [m(4), centre, m(3), c(4), &
+            inner(4), inner(3), near_second(3), near_first(4)]
+      end associate
+   end function quad8_children
+
+   !> Nodes of the four children of a four-node element.
+   pure function quad4_children(division, nodes, e) result(children)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: nodes(8), e
+      integer :: children(4, 4)
+      integer :: f, centre, m(4)
+
+      centre = inner_node(division, e, 1)
+      m = [(side_node(division, e, f, nodes(f)), f=1, 4)]
+      associate (c => nodes(1:4))
+         children(:, 1) = [c(1), m(1), centre, m(4)]
+         children(:, 2) = [m(1), c(2), m(2), centre]
+         children(:, 3) = [centre, m(2), c(3), m(3)]
+         children(:, 4) = [m(4), centre, m(3), c(4)]
+      end associate
+   end function quad4_children
+
+   !> Nodes of the four children of a six-node triangle; the fourth lies between its midside nodes.
+   pure function triangle6_children(division, nodes, e) result(children)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: nodes(8), e
+      integer :: children(6, 4)
+      integer :: f, inner(3), near_first(3), near_second(3)
+
+      do f = 1, 3
+         near_first(f) = side_node(division, e, f, nodes(f))
+         near_second(f) = side_node(division, e, f, nodes(mod(f, 3) + 1))
+         inner(f) = inner_node(division, e, f)
+      end do
+      associate (c => nodes(1:3), m => nodes(4:6))
+         children(:, 1) = [c(1), m(1), m(3), near_first(1), inner(1), near_second(3)]
+         children(:, 2) = [m(1), c(2), m(2), near_second(1), near_first(2), inner(2)]
+         children(:, 3) = [m(3), m(2), c(3), inner(3), near_second(2), near_first(3)]
+         children(:, 4) = [m(1), m(2), m(3), inner(2), inner(3), inner(1)]
+      end associate
+   end function triangle6_children
+
+   !> Nodes of the four children of a three-node triangle; the fourth is in the middle.
+   pure function triangle3_children(division, nodes, e) result(children)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: nodes(8), e
+      integer :: children(3, 4)
+      integer :: f, m(3)
+
+      m = [(side_node(division, e, f, nodes(f)), f=1, 3)]
+      associate (c => nodes(1:3))
+         children(:, 1) = [c(1), m(1), m(3)]
+         children(:, 2) = [m(1), c(2), m(2)]
+         children(:, 3) = [m(3), m(2), c(3)]
+         children(:, 4) = m
+      end associate
+   end function triangle3_children
+
+end module refinement
