@@ -88,8 +88,8 @@ contains
 
    !> Varies all but the mesh.
    !> *VERIFY cards that increments land on still make them land; where the increments vary, the
-   !> others are left out, for a fixed increment of another size need not end there. Rounds of a requested accuracy leave all
-   !> out: the first one has judged them.
+   !> others are left out, for a fixed increment of another size need not end there. Rounds of a
+   !> requested accuracy leave all out: the first one has judged them.
    pure subroutine apply_variation(variation, model)
       type(variation_type), intent(in) :: variation   !! what is other
       type(model_type), intent(inout) :: model        !! as the deck builder made it
