@@ -8,7 +8,6 @@ module deck_checks
    use shape_checks, only: check_jacobians, check_slenderness
    use kinds, only: dp, long
    use load_checks, only: check_loads
-   use mesh, only: mesh_type
    use mesh_checks, only: check_planes, check_sides
    use model, only: model_type
    use refinement, only: numbering_fault
@@ -45,7 +44,6 @@ contains
       call check_sides(context, model%mesh, inverted, uses, report)
       call check_loads(context, model, uses, report)
    end subroutine check_model
-
 
    !> Every element has a section.
    subroutine check_sections(context, model, report)
