@@ -1,4 +1,4 @@
-!> What only shows once all cards are read: whether elements, materials, surfaces and steps fit
+!> Checks once all cards are read: whether elements, materials, surfaces and steps fit
 !> together.
 module deck_checks
    use deck_context, only: deck_context_type

@@ -110,7 +110,7 @@ contains
          load_film_coefficient])
    end function is_heat
 
-   !> What acts on nodes acts on elements.
+   !> Loads on nodes are on nodes of elements.
    subroutine check_nodes(request, model, used, report)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
@@ -214,14 +214,23 @@ contains
       type(model_type), intent(in) :: model
       logical, intent(in) :: used(0:)                      ! (0:nodes) whether elements have them
       type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: nodes(:)
       integer :: i, card
+      logical :: unknown   ! whether an element may have the nodes
 
+      unknown = report%has_lost('equation') .or. report%has_lost('element')
       card = 0
       do i = 1, context%boundaries%count
          associate (request => context%boundaries%items(i))
             if (context%analyses_sound) call check_support_effect(request, model, report)
-            if (request%card /= card) call check_supported(request, model, used, report)
+            if (request%card == card) cycle
             card = request%card
+            ! As CalculiX does.
+            nodes = nodes_of(request, model)
+            nodes = pack(nodes, .not. used(nodes))
+            if (size(nodes) > 0 .and. .not. unknown) call report%warning(request%place, 'node '// &
+               to_text(model%mesh%node_number(nodes(1)))//' belongs to no element: what is '// &
+               'prescribed there has no effect'//others(size(nodes), '; nodes without one: '))
          end associate
       end do
       if (any(context%dropped)) call check_dropped(context, model, report)
@@ -249,23 +258,6 @@ contains
          end if
       end associate
    end subroutine check_support_effect
-
-   !> Warns of nodes that no element has, as CalculiX does.
-   subroutine check_supported(request, model, used, report)
-      type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
-      logical, intent(in) :: used(0:)
-      type(deck_report_type), intent(inout) :: report
-      integer, allocatable :: nodes(:)
-
-      if (report%has_lost('equation') .or. report%has_lost('element')) return
-      nodes = nodes_of(request, model)
-      nodes = pack(nodes, .not. used(nodes))
-      if (size(nodes) == 0) return
-      call report%warning(request%place, 'node '//to_text(model%mesh%node_number(nodes(1)))// &
-         ' belongs to no element: what is prescribed there has no effect'// &
-         others(size(nodes), '; nodes without one: '))
-   end subroutine check_supported
 
    !> Where ORDER=1 drops all nodes of a data card, their corners have values in their place.
    subroutine check_dropped(context, model, report)

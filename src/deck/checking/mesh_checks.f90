@@ -1,4 +1,4 @@
-!> What only shows once all elements are read: whether their planes agree, whether they meet along
+!> Checks once all elements are read: whether their planes agree, whether they meet along
 !> whole sides.
 module mesh_checks
    use deck_context, only: deck_context_type

@@ -127,8 +127,11 @@ contains
          pairs(size(model%contacts) + i) = model%ties(i)%faces
       end do
       do k = 1, size(of_surface)
-         if (any(pairs%slave == k) .or. any(pairs%master == k)) call of_surface(k)%build( &
-            sides_of(model%mesh, sides, k))
+         if (all(pairs%slave /= k) .and. all(pairs%master /= k)) cycle
+         associate (faces => model%mesh%surfaces(k)%faces)
+            call of_surface(k)%build([(sides%of_element(faces(2, i), faces(1, i)), i=1, &
+               size(faces, 2))])
+         end associate
       end do
       constrained = constrained_of(model)
       do i = 1, size(touches)
@@ -154,19 +157,6 @@ contains
       end function is_paired
    end subroutine drop_related
 
-   !> The sides of a surface.
-   pure function sides_of(mesh, sides, surface) result(list)
-      type(mesh_type), intent(in) :: mesh
-      type(element_sides_type), intent(in) :: sides
-      integer, intent(in) :: surface
-      integer, allocatable :: list(:)
-      integer :: f
-
-      associate (faces => mesh%surfaces(surface)%faces)
-         list = [(sides%of_element(faces(2, f), faces(1, f)), f=1, size(faces, 2))]
-      end associate
-   end function sides_of
-
    !> Nodes of equations and of faces that follow a reference node.
    function constrained_of(model) result(constrained)
       type(model_type), intent(in) :: model
@@ -184,8 +174,8 @@ contains
       end do
    end function constrained_of
 
-   !> What each touch is told with: hanging nodes, or two faces of the same bodies. Nodes hang on a
-   !> side if both its corners are nodes of the sides that lie on it.
+   !> Keys by which touches share a message: hanging nodes, or two faces of the same bodies. Nodes
+   !> hang on a side if both its corners are nodes of the sides that lie on it.
    function keys_of(mesh, sides, touches) result(key)
       type(mesh_type), intent(in) :: mesh
       type(element_sides_type), intent(in) :: sides
@@ -374,7 +364,7 @@ contains
       integer :: step
       real(dp) :: along(2), apart(2), bulge(2), slope(2), change, xi
 
-      ! The side is centre + xi along/2 - xi^2 bulge, xi from -1 to 1; straight ones take one step.
+      ! The side is centre + xi along/2 - xi^2 bulge, xi from -1 to 1; straight ones need one step.
       bulge = 0.0_dp
       associate (a => mesh%coordinates(:, ends(1)), b => mesh%coordinates(:, ends(3)))
          along = 0.5_dp*(b - a)

@@ -1,4 +1,4 @@
-!> What a deck defines and does not use, or uses for a part of a step only: it may be a slip.
+!> Definitions that a deck does not use, or uses for a part of a step only: they may be slips.
 module usage_checks
    use amplitudes, only: amplitude_type, amplitude_value
    use card_parameters, only: parameter_text
@@ -46,7 +46,7 @@ contains
       character(*), intent(in) :: keyword, noun
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: name, names
-      integer :: count, first, k
+      integer :: count, first, i, k
       logical :: from_library
 
       from_library = keyword /= 'SURFACE'
@@ -56,7 +56,8 @@ contains
          if (cards%keywords(k)%name /= keyword) cycle
          if (from_library .and. report%source%file(cards%keywords(k)%place%image) > 1) cycle
          name = to_upper(parameter_text(cards%keywords(k), 'NAME'))
-         if (is_used(cards, keyword, name)) cycle
+         if (any([(refers(cards, cards%keywords(i), keyword, name), i=1, &
+            size(cards%keywords))])) cycle
          count = count + 1
          if (count == 1) first = k
          if (count <= most_names) names = names//', '//name
@@ -68,18 +69,6 @@ contains
    end subroutine check_names
 
    !> Whether a card refers to a name that a keyword defines.
-   pure logical function is_used(cards, keyword, name)
-      type(cards_type), intent(in) :: cards
-      character(*), intent(in) :: keyword, name
-      integer :: k
-
-      is_used = .true.
-      do k = 1, size(cards%keywords)
-         if (refers(cards, cards%keywords(k), keyword, name)) return
-      end do
-      is_used = .false.
-   end function is_used
-
    pure logical function refers(cards, card, keyword, name)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card

@@ -19,7 +19,7 @@ module assembly_cards
    ! Where a card is.
    integer, parameter :: at_model = 0, at_part = 1, at_assembly = 2, at_instance = 3
 
-   !> What is open while the cards are taken.
+   !> State of the conversion between two cards.
    type :: reading_type
       integer :: level = at_model
       integer :: opened = 0                              !! keyword card that opened it

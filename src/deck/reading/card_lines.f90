@@ -21,7 +21,7 @@ module card_lines
    integer, parameter :: default_width = 80   !! columns of a card
    integer, parameter :: most_fields = 9   !! of an *ELEMENT data card, that of eight nodes
 
-   !> What is open while lines are read.
+   !> State of the reader between two lines.
    type :: card_lines_type
       type(deck_parameters_type) :: parameters              !! *PARAMETER so far
       integer :: width = default_width                      !! columns of a card

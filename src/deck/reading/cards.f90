@@ -26,7 +26,7 @@ module cards
    !> One keyword card.
    type :: keyword_card_type
       character(:), allocatable :: name                    !! as in the table; empty when unknown
-      character(:), allocatable :: meant   !! what a misspelt or refused keyword is taken for
+      character(:), allocatable :: meant   !! keyword that a misspelt or refused one stands for
       integer :: known = 0                                 !! index into known_keywords, or 0
       character(:), allocatable :: refusal_of_data         !! the error if data cards follow
       type(place_type) :: place                            !! where it begins

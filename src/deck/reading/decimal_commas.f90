@@ -73,7 +73,7 @@ contains
          data%fields(i)%text, data%fields(i + 1)%text))
    end subroutine report_decimal_comma
 
-   !> What is said of a decimal comma.
+   !> Message on a decimal comma.
    pure function decimal_comma_words(whole, decimals) result(words)
       character(*), intent(in) :: whole       !! before the comma
       character(*), intent(in) :: decimals    !! behind it

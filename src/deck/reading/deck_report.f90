@@ -1,4 +1,4 @@
-!> What is wrong with a deck: all its errors and warnings, with their places, printed in one go.
+!> Errors and warnings of a deck with their places, printed in one go.
 module deck_report
    use alike_messages, only: first_alike
    use card_echo, only: column_of, print_card
@@ -295,29 +295,20 @@ contains
       told = told_by(self)
       errors = 0
       do i = 1, size(told)
-         associate (severity => self%diagnostics(told(i)%index)%severity)
+         associate (severity => self%diagnostics(told(i)%index)%severity, &
+            place => self%diagnostics(told(i)%index)%place)
             if (severity == severity_error) errors = errors + 1
             if (severity == severity_error .and. errors > most_errors) cycle
-            call print_diagnostic(self, told(i), unit)
+            call print_line(unit, first_line(self, told(i)))
+            if (place%image == 0) cycle
+            associate (image => self%source%images(place%image)%value)
+               call print_card(unit, image, min(place%column, len(image) + 1))
+            end associate
          end associate
       end do
       if (errors > most_errors) call print_line(unit, self%path//': error: '// &
          'errors that are not shown: '//to_text(errors - most_errors))
    end subroutine print_report
-
-   subroutine print_diagnostic(self, told, unit)
-      class(deck_report_type), intent(in) :: self
-      type(told_type), intent(in) :: told
-      integer, intent(in) :: unit
-
-      call print_line(unit, first_line(self, told))
-      associate (place => self%diagnostics(told%index)%place)
-         if (place%image == 0) return
-         associate (image => self%source%images(place%image)%value)
-            call print_card(unit, image, min(place%column, len(image) + 1))
-         end associate
-      end associate
-   end subroutine print_diagnostic
 
    !> `path:line:column: severity: message`, or `path: severity: message` for the deck as a whole.
    function first_line(self, told) result(line)

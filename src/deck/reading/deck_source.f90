@@ -121,9 +121,14 @@ contains
       character(:), allocatable, intent(out) :: contents
       character(:), allocatable, intent(out) :: fault
       character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+      logical :: there
 
       contents = ''
-      fault = path_fault(path)
+      fault = ''
+      inquire (file=path, exist=there)
+      if (.not. there) fault = 'there is no such file'
+      inquire (file=path//'/.', exist=there)
+      if (there) fault = 'it is a folder'
       if (len(fault) > 0) return
       call read_file(path, most_bytes, contents, fault)
       if (len(fault) == 0) fault = text_fault(contents)
@@ -132,22 +137,6 @@ contains
       if (index(contents, byte_order_mark) == 1) contents = contents(4:)
       contents = as_utf8(contents)
    end subroutine read_contents
-
-   !> Why there is no file to open at a path; empty where there is one.
-   function path_fault(path) result(fault)
-      character(*), intent(in) :: path
-      character(:), allocatable :: fault
-      logical :: there
-
-      fault = ''
-      inquire (file=path, exist=there)
-      if (.not. there) then
-         fault = 'there is no such file'
-         return
-      end if
-      inquire (file=path//'/.', exist=there)
-      if (there) fault = 'it is a folder'
-   end function path_fault
 
    !> Why the contents of a file are no text: a control character; empty where they are text.
    pure function text_fault(contents) result(fault)

@@ -79,6 +79,7 @@ contains
    subroutine check_structure(cards, report)
       type(cards_type), intent(in) :: cards
       type(deck_report_type), intent(inout) :: report     !! receives errors
+      type(place_type) :: place
       logical :: step_open, after_step, told
       integer :: k, step
 
@@ -110,10 +111,14 @@ contains
       if (step_open) call report%error(cards%keywords(step)%place, 'this step has no *END STEP')
       call need_card(cards, 'NODE', cards%last, report)
       call need_card(cards, 'ELEMENT', cards%last, report)
-      call need_card(cards, 'SOLID SECTION', first_place(cards, 'ELEMENT'), report)
+      place = cards%last
+      do k = size(cards%keywords), 1, -1
+         if (cards%keywords(k)%name == 'ELEMENT') place = cards%keywords(k)%place
+      end do
+      call need_card(cards, 'SOLID SECTION', place, report)
    end subroutine check_structure
 
-   !> What a card with an error in it defines may be missing elsewhere.
+   !> Definitions of a card with an error in it may be missing elsewhere.
    subroutine lose_definitions(card, report)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
@@ -271,17 +276,5 @@ contains
       call report%lose('*'//name)
       if (size(cards%keywords) > 0) call report%error(place, 'the deck has no *'//name)
    end subroutine need_card
-
-   !> The first card of a keyword, or the last line of a deck that has none.
-   pure type(place_type) function first_place(cards, name)
-      type(cards_type), intent(in) :: cards
-      character(*), intent(in) :: name
-      integer :: k
-
-      first_place = cards%last
-      do k = size(cards%keywords), 1, -1
-         if (cards%keywords(k)%name == name) first_place = cards%keywords(k)%place
-      end do
-   end function first_place
 
 end module deck_structure

@@ -24,7 +24,7 @@ contains
       integer, intent(out) :: kind               !! quad8, ...; quad8 after an error
       integer, intent(out) :: plane              !! plane_strain, ...; plane_strain after an error
       character(:), allocatable, intent(out) :: message   !! what is wrong, or empty
-      !> What the type is taken for, or empty
+      !> The type that is used in its place, or empty
       character(:), allocatable, intent(out), optional :: note
       type(string_type) :: names(size(plane_names)*size(kind_names))
       character(:), allocatable :: own

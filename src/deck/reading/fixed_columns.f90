@@ -25,7 +25,7 @@ module fixed_columns
 
    character(*), parameter :: digits = '0123456789'
 
-   !> What is wrong with a format that does not begin as one.
+   !> Fault of a format that does not begin as one.
    character(*), parameter :: unquoted_format = &
       'write a format in parentheses and quotes, as in FORMAT="(I5,2F10.0)"'
 
@@ -176,7 +176,7 @@ contains
       position = position + length
    end subroutine parse_number
 
-   !> What is wrong with a descriptor, and what to write in its place.
+   !> Message on an unknown descriptor, and what to write in its place.
    pure function edit_fault(words) result(fault)
       character(*), intent(in) :: words
       character(:), allocatable :: fault
@@ -298,9 +298,9 @@ contains
       if (.not. crosses) crosses = index(line(column:last), ' ') > 0
    end function crosses
 
-   !> What is wrong with the place of a number in its field. In Fortran before 1977 blanks behind a
-   !> number were zeros, later they count for nothing: such a number is taken only where its point
-   !> makes both the same.
+   !> Checks the place of a number in its field. In Fortran before 1977 blanks behind a
+   !> number were zeros, later they count for nothing: such a number is valid only where its
+   !> point makes both the same.
    pure subroutine find_misplaced(text, whole, bad, fault)
       character(*), intent(in) :: text                   ! all columns of the field
       logical, intent(in) :: whole                       ! whether the format is I

@@ -12,53 +12,48 @@ module generated_cards
    private
    public :: generate_cards, exact_text
 
-   integer, parameter :: most_nodes = 8              !! of an element
    integer, parameter :: most_generated = 10000000   !! nodes or elements of one data card
    character(*), parameter :: too_many = 'a card generates at most 10000000 nodes or elements'
 
-   !> Nodes and elements of the cards so far.
+   !> Nodes, or elements, of the cards so far.
    type :: given_type
-      integer :: nodes = 0                        !! number of nodes
-      integer, allocatable :: node(:)             !! (capacity) their numbers
-      real(dp), allocatable :: place(:, :)        !! (2, capacity) [length]
-      integer :: elements = 0                     !! number of elements
-      integer, allocatable :: element(:)          !! (capacity) their numbers
-      integer, allocatable :: corners(:, :)       !! (most_nodes, capacity) their nodes, 0 behind
-      integer, allocatable :: keyword(:)          !! (capacity) keyword card that gives the type
+      integer :: count = 0
+      integer, allocatable :: number(:)      !! (capacity) their numbers
+      integer, allocatable :: keyword(:)     !! (capacity) keyword card
+      integer, allocatable :: card(:)        !! (capacity) data card
    end type given_type
 
 contains
 
    !> Replaces each *NGEN by *NODE and each *ELGEN by *ELEMENT, with the data that they generate.
-   !> What is generated has the place of the data card that generates it.
+   !> Generated cards have the place of the data card that generates them.
    subroutine generate_cards(cards, report)
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report   !! receives errors
       type(cards_type) :: all
-      type(given_type) :: given
+      type(given_type) :: nodes, elements
       integer :: k, j
 
       do k = 1, size(cards%keywords)
          if (generates(cards%keywords(k))) exit
       end do
       if (k > size(cards%keywords)) return
-      allocate(given%node(0), given%place(2, 0), given%element(0), given%keyword(0))
-      allocate(given%corners(most_nodes, 0))
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (.not. generates(card)) then
                call add_keyword(all, card)
                do j = card%first_data, card%last_data
-                  call note(given, card%name, cards%data(j), all%keyword_count)
                   call add_data(all, cards%data(j)%fields, cards%data(j)%end)
+                  if (card%name == 'NODE') call keep_last(all, nodes)
+                  if (card%name == 'ELEMENT') call keep_last(all, elements)
                end do
             else if (card%name == 'NGEN') then
                do j = card%first_data, card%last_data
-                  call generate_nodes(card, cards%data(j), given, report, all)
+                  call generate_nodes(card, cards%data(j), nodes, report, all)
                end do
             else
                do j = card%first_data, card%last_data
-                  call generate_elements(card, cards%data(j), given, report, all)
+                  call generate_elements(card, cards%data(j), elements, report, all)
                end do
             end if
          end associate
@@ -75,15 +70,15 @@ contains
    end function generates
 
    !> First and last node, increment: the nodes between the two, at equal distances on a line.
-   subroutine generate_nodes(card, data, given, report, all)
+   subroutine generate_nodes(card, data, nodes, report, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
-      type(given_type), intent(inout) :: given
+      type(given_type), intent(inout) :: nodes
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: all
       type(string_type) :: words(3)
-      real(dp) :: place(2)
-      integer :: ends(2), at(2), step, i, n
+      real(dp) :: place(2), x(2, 2)
+      integer :: ends(2), at, step, i, n
       logical :: valid
 
       valid = .true.
@@ -94,11 +89,14 @@ contains
       call check_extra(data, 3, 'first node, last node, increment', report)
       do i = 1, 2
          if (.not. valid) exit
-         at(i) = position_of(ends(i), given%node(:given%nodes))
-         if (at(i) > 0) cycle
-         call report%error(field_place(data, i), 'no *NODE before this card has node '// &
-            to_text(ends(i)))
-         valid = .false.
+         at = position_of(ends(i), nodes)
+         valid = at > 0
+         if (valid) then
+            x(:, i) = coordinates_of(all%data(nodes%card(at)))
+         else
+            call report%error(field_place(data, i), 'no *NODE before this card has node '// &
+               to_text(ends(i)))
+         end if
       end do
       if (valid) call check_range(data, ends, step, report, valid)
       if (.not. valid) then
@@ -109,12 +107,12 @@ contains
       n = (ends(2) - ends(1))/step
       if (n > 1) call add_generated(card, 'NODE', '', all)
       do i = 1, n - 1
-         place = given%place(:, at(1)) + (given%place(:, at(2)) - given%place(:, at(1)))*i/n
-         call keep_node(given, ends(1) + i*step, place)
+         place = x(:, 1) + (x(:, 2) - x(:, 1))*i/n
          words(1)%value = to_text(ends(1) + i*step)
          words(2)%value = exact_text(place(1))
          words(3)%value = exact_text(place(2))
          call add_fields(data, words, all)
+         call keep_last(all, nodes)
       end do
    end subroutine generate_nodes
 
@@ -138,12 +136,13 @@ contains
 
    !> Master element; then for the elements of a row, and for the rows, their number and the
    !> increments of their nodes and of their own numbers.
-   subroutine generate_elements(card, data, given, report, all)
+   subroutine generate_elements(card, data, elements, report, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
-      type(given_type), intent(in) :: given
+      type(given_type), intent(in) :: elements
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: all
+      integer, allocatable :: corners(:)
       integer :: master, at, counts(2), steps(2, 2), i, j
       logical :: valid
 
@@ -151,20 +150,21 @@ contains
       call need_field(data, 1, 'master element', report, master, valid)
       call read_rows(data, counts, steps, report, valid)
       at = 0
-      if (valid) at = position_of(master, given%element(:given%elements))
+      if (valid) at = position_of(master, elements)
       if (valid .and. at == 0) call report%error(field_place(data, 1), &
          'no *ELEMENT before this card has element '//to_text(master))
       if (at == 0) then
          call report%lose('element')
          return
       end if
+      corners = corners_of(all%data(elements%card(at)))
       call add_set(card, 'ELSET', data, [master], all)
       if (product(counts) > 1) call add_generated(card, 'ELEMENT', &
-         parameter_text(all%keywords(given%keyword(at)), 'TYPE'), all)
+         parameter_text(all%keywords(elements%keyword(at)), 'TYPE'), all)
       do j = 0, counts(2) - 1
          do i = 0, counts(1) - 1
             if (i + j > 0) call add_element(data, master + i*steps(2, 1) + j*steps(2, 2), &
-               given%corners(:, at), i*steps(1, 1) + j*steps(1, 2), all)
+               corners, i*steps(1, 1) + j*steps(1, 2), all)
          end do
       end do
    end subroutine generate_elements
@@ -200,7 +200,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: number, corners(:), shift
       type(cards_type), intent(inout) :: all
-      type(string_type) :: words(1 + count(corners > 0))
+      type(string_type) :: words(1 + size(corners))
       integer :: i
 
       words(1)%value = to_text(number)
@@ -270,77 +270,65 @@ contains
       call add_data(all, fields, data%end)
    end subroutine add_fields
 
-   !> Remembers a node or an element; fields that are no numbers are reported elsewhere.
-   subroutine note(self, keyword, data, position)
-      type(given_type), intent(inout) :: self
-      character(*), intent(in) :: keyword          ! NODE, ELEMENT or another one
-      type(data_card_type), intent(in) :: data     ! its data card
-      integer, intent(in) :: position              ! of the keyword card
-      real(dp) :: place(2)
-      integer :: number, corners(most_nodes), i
+   !> Remembers the node or element of the last data card; fields that are no numbers are reported
+   !> elsewhere.
+   subroutine keep_last(all, given)
+      type(cards_type), intent(in) :: all
+      type(given_type), intent(inout) :: given
+      integer :: number
       logical :: valid
 
-      call read_integer(field_text(data, 1), number, valid)
+      call read_integer(field_text(all%data(all%data_count), 1), number, valid)
       if (.not. valid) return
-      if (keyword == 'NODE') then
-         do i = 1, 2
-            call read_real(field_text(data, i + 1), place(i), valid)
-            if (.not. valid) place(i) = 0.0_dp
-         end do
-         call keep_node(self, number, place)
-      else if (keyword == 'ELEMENT') then
-         corners = 0
-         do i = 1, min(most_nodes, size(data%fields) - 1)
-            call read_integer(field_text(data, i + 1), corners(i), valid)
-            if (.not. valid) corners(i) = 0
-         end do
-         call keep_element(self, number, corners, position)
+      if (.not. allocated(given%number)) allocate(given%number(0), given%keyword(0), given%card(0))
+      if (given%count == size(given%number)) then
+         given%number = [given%number, spread(0, 1, given%count + 64)]
+         given%keyword = [given%keyword, spread(0, 1, given%count + 64)]
+         given%card = [given%card, spread(0, 1, given%count + 64)]
       end if
-   end subroutine note
+      given%count = given%count + 1
+      given%number(given%count) = number
+      given%keyword(given%count) = all%keyword_count
+      given%card(given%count) = all%data_count
+   end subroutine keep_last
 
-   !> Remembers a node.
-   subroutine keep_node(self, number, place)
-      type(given_type), intent(inout) :: self
-      integer, intent(in) :: number            ! its number
-      real(dp), intent(in) :: place(2)         ! [length]
-      integer :: n
+   !> Position of a number in a list, the last one where there are several; 0 where it is not.
+   pure integer function position_of(number, given)
+      integer, intent(in) :: number
+      type(given_type), intent(in) :: given
 
-      n = self%nodes
-      if (n == size(self%node)) then
-         self%node = [self%node, spread(0, 1, n + 64)]
-         self%place = reshape(self%place, [2, 2*n + 64], pad=[0.0_dp])
-      end if
-      self%node(n + 1) = number
-      self%place(:, n + 1) = place
-      self%nodes = n + 1
-   end subroutine keep_node
-
-   subroutine keep_element(self, number, corners, position)
-      type(given_type), intent(inout) :: self
-      integer, intent(in) :: number, corners(most_nodes), position
-      integer :: n
-
-      n = self%elements
-      if (n == size(self%element)) then
-         self%element = [self%element, spread(0, 1, n + 64)]
-         self%keyword = [self%keyword, spread(0, 1, n + 64)]
-         self%corners = reshape(self%corners, [most_nodes, 2*n + 64], pad=[0])
-      end if
-      self%element(n + 1) = number
-      self%corners(:, n + 1) = corners
-      self%keyword(n + 1) = position
-      self%elements = n + 1
-   end subroutine keep_element
-
-   !> Position of a number in a list; 0 where it is not.
-   pure integer function position_of(number, list)
-      integer, intent(in) :: number    ! what is looked for
-      integer, intent(in) :: list(:)   ! the last one counts
-
-      do position_of = size(list), 1, -1
-         if (list(position_of) == number) return
-      end do
+      position_of = 0
+      if (given%count > 0) position_of = findloc(given%number(:given%count), number, dim=1, &
+         back=.true.)
    end function position_of
+
+   !> x and y of a node; 0 where a field is no number.
+   pure function coordinates_of(data) result(x)
+      type(data_card_type), intent(in) :: data
+      real(dp) :: x(2)         ! [length]
+      integer :: i
+      logical :: valid
+
+      do i = 1, 2
+         call read_real(field_text(data, i + 1), x(i), valid)
+         if (.not. valid) x(i) = 0.0_dp
+      end do
+   end function coordinates_of
+
+   !> Nodes of an element, up to the first field that is no number.
+   pure function corners_of(data) result(corners)
+      type(data_card_type), intent(in) :: data
+      integer, allocatable :: corners(:)
+      integer :: i, number
+      logical :: valid
+
+      allocate(corners(0))
+      do i = 2, size(data%fields)
+         call read_integer(data%fields(i)%text, number, valid)
+         if (.not. valid) exit
+         corners = [corners, number]
+      end do
+   end function corners_of
 
    !> A number with all of its digits.
    function exact_text(value) result(string)

@@ -136,6 +136,7 @@ contains
       integer, intent(in) :: position                       ! of the data card, from 1
       type(instance_type), intent(in) :: instance
       type(field_type), intent(inout) :: fields(:)
+      type(instance_type) :: motion
       integer :: i, n
 
       n = size(fields)
@@ -157,7 +158,12 @@ contains
       case ('TIE', 'CONTACT PAIR')
          call prefix_fields(1, min(2, n), 1)
       case ('ORIENTATION')
-         if (instance%moves .and. position == 1) call move_axes(card, data, instance, fields)
+         ! Points from the origin, or on the axis of a cylindrical system.
+         if (.not. instance%moves .or. position > 1) return
+         motion = instance
+         if (.not. has_parameter(card, 'SYSTEM')) motion%shift = 0.0_dp
+         call move_point(data, 1, motion, fields)
+         call move_point(data, 4, motion, fields)
       case default
          continue
       end select
@@ -171,20 +177,6 @@ contains
          end do
       end subroutine prefix_fields
    end subroutine convert
-
-   !> The points of an *ORIENTATION: from the origin, or on the axis of a cylindrical one.
-   subroutine move_axes(card, data, instance, fields)
-      type(keyword_card_type), intent(in) :: card
-      type(data_card_type), intent(in) :: data
-      type(instance_type), intent(in) :: instance
-      type(field_type), intent(inout) :: fields(:)
-      type(instance_type) :: motion
-
-      motion = instance
-      if (.not. has_parameter(card, 'SYSTEM')) motion%shift = 0.0_dp
-      call move_point(data, 1, motion, fields)
-      call move_point(data, 4, motion, fields)
-   end subroutine move_axes
 
    !> Turns and shifts the point whose x is a field; what is no number is reported elsewhere.
    subroutine move_point(data, at, instance, fields)

@@ -27,7 +27,7 @@ contains
       character(:), allocatable :: name
       integer :: equals, i
 
-      name = without_star(fields(1)%text)
+      name = trim(adjustl(fields(1)%text(2:)))
       card%name = ''
       card%meant = ''
       card%place = fields(1)%place
@@ -127,20 +127,6 @@ contains
       call report%error(card%place, 'unknown keyword *'//to_upper(name)//'; '//hint, &
          'keyword '//to_upper(name))
    end subroutine report_unknown_keyword
-
-   !> Blanks inside a keyword count once.
-   pure function without_star(string) result(name)
-      character(*), intent(in) :: string
-      character(:), allocatable :: name
-      integer :: double
-
-      name = trim(adjustl(string(2:)))
-      double = index(name, '  ')
-      do while (double > 0)
-         name = name(:double)//name(double + 2:)
-         double = index(name, '  ')
-      end do
-   end function without_star
 
    !> Takes the parameters; LOAD= of *OPTIONS takes the field behind it as well.
    subroutine take_parameters(fields, report, cards, card)

@@ -409,7 +409,7 @@ contains
       end do
    end function find_advice
 
-   !> What to write in place of an unknown keyword; empty where its words tell nothing.
+   !> Advice on an unknown keyword by the words in it; empty where they tell nothing.
    pure function word_advice(name) result(words)
       character(*), intent(in) :: name         !! without the star
       character(:), allocatable :: words       !! such as "forces are *CLOAD at nodes, ..."
