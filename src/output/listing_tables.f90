@@ -1,21 +1,27 @@
-!> Tables of the listing: *CONTACT PRINT, the iteration history, the *VERIFY verdicts.
+!> Tables of the listing: *CONTACT PRINT, *NODE PRINT, *EL PRINT, the iteration history, the *VERIFY
+!> verdicts.
 module listing_tables
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, geometry_values
+   use due_output, only: table_is_due
    use increment_quantities, only: pass_value
    use kinds, only: dp
-   use listing_text, only: column, table_cell, table_head
-   use model, only: verify_type
+   use listing_text, only: column, in_columns, table_cell, table_head
+   use model, only: model_type, verify_type
+   use print_requests, only: print_displacement, print_force, print_heat, print_heat_flux, &
+      print_position, print_request_type, print_stress, print_temperature
    use quantity_types, only: needs_heat, of_contact_points, of_passes, quantity_type
-   use records, only: contact_record_type
+   use records, only: contact_record_type, element_points_record_type, field_record_type, &
+      increment_record_type
    use reported_quantities, only: quantities
    use run_summaries, only: or_blank
    use solution_report, only: iteration_record_type
-   use text, only: to_text
+   use text, only: append, string_type, to_text
+   use transforms, only: axes_at
    use verification, only: bound_words, outcome_type
    implicit none
    private
-   public :: print_contact_table, print_iterations, print_verdicts
+   public :: print_contact_table, print_iterations, print_requested, print_verdicts
 
 contains
 
@@ -114,5 +120,240 @@ contains
       if (allocated(outcome%bound)) write (unit, '(8x, 3a)') 'found:  ', to_text(outcome%found), &
          bound_words(outcome)
    end subroutine print_verdict
+
+   !> Prints the tables that are due at an increment.
+   subroutine print_requested(unit, record, model)
+      integer, intent(in) :: unit                         !! unit of the listing
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
+      integer :: i
+
+      associate (step => model%steps(record%step))
+         if (allocated(step%node_prints)) then
+            do i = 1, size(step%node_prints)
+               if (table_is_due(step%node_prints(i)%frequency, record)) call print_nodes(unit, &
+                  step%node_prints(i), model, record%fields)
+            end do
+         end if
+         if (allocated(step%element_prints)) then
+            do i = 1, size(step%element_prints)
+               if (table_is_due(step%element_prints(i)%frequency, record)) call print_points( &
+                  unit, step%element_prints(i), model, record%element_points(i))
+            end do
+         end if
+      end associate
+   end subroutine print_requested
+
+   !> Table of the nodes of a set that elements have, and sums over them.
+   subroutine print_nodes(unit, request, model, fields)
+      integer, intent(in) :: unit
+      type(print_request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      type(field_record_type), intent(in) :: fields
+      real(dp), allocatable :: columns(:, :), sums(:, :)
+      type(string_type), allocatable :: names(:), sum_names(:)
+      integer, allocatable :: nodes(:)
+      integer :: i, k
+
+      associate (set => model%mesh%node_sets(request%set))
+         nodes = pack(set%members, model%mesh%node_body(set%members) > 0)
+         allocate(names(0), sum_names(0), columns(size(nodes), 6), sums(size(nodes), 3))
+         do i = 1, size(request%quantities)
+            associate (quantity => request%quantities(i))
+               if (.not. has_nodal(quantity, fields)) then
+                  call print_absence(unit, '   NODES OF '//set%name, nodal_key(quantity))
+                  cycle
+               end if
+               if (request%each_node .or. .not. is_summed(quantity)) then
+                  call add_nodal(quantity, fields, nodes, columns, names)
+                  if (request%local_axes .and. any(quantity == [print_displacement, &
+                     print_force])) call turn(model, nodes, columns(:, size(names) - 1:size(names)))
+               end if
+               if (request%totals .and. is_summed(quantity)) then
+                  call add_nodal(quantity, fields, nodes, sums, sum_names)
+               end if
+            end associate
+         end do
+         if (size(names) > 0) then
+            write (unit, '(/, 2a)') '   NODES OF ', set%name
+            call print_head(unit, '    node', names)
+            do k = 1, size(nodes)
+               write (unit, '(i8)', advance='no') model%mesh%node_number(nodes(k))
+               write (unit, '(2a)') in_columns(model%mesh%coordinates(:, nodes(k)), 12, 4), &
+                  in_columns(columns(k, :size(names)), 14, 6)
+            end do
+         end if
+         if (size(sum_names) > 0) then
+            write (unit, '(/, 2a)') '   TOTALS OF ', set%name
+            write (unit, '(*(a14))') (sum_names(i)%value, i=1, size(sum_names))
+            write (unit, '(a)') in_columns(sum(sums(:, :size(sum_names)), dim=1), 14, 6)
+         end if
+      end associate
+   end subroutine print_nodes
+
+   !> Takes the components of vectors along the axes of their nodes.
+   pure subroutine turn(model, nodes, vectors)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: nodes(:)
+      real(dp), intent(inout) :: vectors(:, :)    ! (nodes, 2)
+      integer :: i, k
+
+      if (.not. allocated(model%transforms)) return
+      do i = 1, size(model%transforms)
+         associate (transform => model%transforms(i))
+            do k = 1, size(nodes)
+               if (all(model%mesh%node_sets(transform%set)%members /= nodes(k))) cycle
+               vectors(k, :) = matmul(vectors(k, :), axes_at(transform, &
+                  model%mesh%coordinates(:, nodes(k))))
+            end do
+         end associate
+      end do
+   end subroutine turn
+
+   pure logical function is_summed(quantity)
+      integer, intent(in) :: quantity
+
+      is_summed = quantity == print_force .or. quantity == print_heat
+   end function is_summed
+
+   !> Whether a step has a nodal quantity.
+   pure logical function has_nodal(quantity, fields)
+      integer, intent(in) :: quantity
+      type(field_record_type), intent(in) :: fields
+
+      select case (quantity)
+      case (print_displacement)
+         has_nodal = allocated(fields%displacement)
+      case (print_temperature)
+         has_nodal = allocated(fields%temperature)
+      case (print_force)
+         has_nodal = allocated(fields%external_force)
+      case (print_heat)
+         has_nodal = allocated(fields%external_heat)
+      case default
+         has_nodal = .false.
+      end select
+   end function has_nodal
+
+   pure function nodal_key(quantity) result(key)
+      integer, intent(in) :: quantity
+      character(:), allocatable :: key
+      character(3), parameter :: keys(4) = ['U  ', 'NT ', 'RF ', 'RFL']
+
+      key = trim(keys(findloc([print_displacement, print_temperature, print_force, print_heat], &
+         quantity, dim=1)))
+   end function nodal_key
+
+   !> Appends the columns of a nodal quantity.
+   pure subroutine add_nodal(quantity, fields, nodes, columns, names)
+      integer, intent(in) :: quantity
+      type(field_record_type), intent(in) :: fields
+      integer, intent(in) :: nodes(:)
+      real(dp), intent(inout) :: columns(:, :)
+      type(string_type), allocatable, intent(inout) :: names(:)
+      integer :: n
+
+      n = size(names)
+      select case (quantity)
+      case (print_displacement)
+         columns(:, n + 1:n + 2) = transpose(fields%displacement(:, nodes))
+         call append_names(names, ['U1', 'U2'])
+      case (print_force)
+         columns(:, n + 1:n + 2) = transpose(fields%external_force(:, nodes))
+         call append_names(names, ['RF1', 'RF2'])
+      case (print_temperature)
+         columns(:, n + 1) = fields%temperature(nodes)
+         call append_names(names, ['NT'])
+      case default
+         columns(:, n + 1) = fields%external_heat(nodes)
+         call append_names(names, ['RFL'])
+      end select
+   end subroutine add_nodal
+
+   !> Table of the integration points of the elements of a set.
+   subroutine print_points(unit, request, model, points)
+      integer, intent(in) :: unit
+      type(print_request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      type(element_points_record_type), intent(in) :: points
+      real(dp), allocatable :: columns(:, :)
+      type(string_type), allocatable :: names(:)
+      character(:), allocatable :: title
+      integer :: i, k, n
+
+      title = '   INTEGRATION POINTS OF '//model%mesh%element_sets(request%set)%name
+      allocate(names(0), columns(6, size(points%element)))
+      do i = 1, size(request%quantities)
+         n = size(names)
+         select case (request%quantities(i))
+         case (print_stress)
+            if (allocated(points%stress)) then
+               columns(n + 1:n + 4, :) = points%stress
+               call append_names(names, ['S11', 'S22', 'S33', 'S12'])
+            else
+               call print_absence(unit, title, 'S')
+            end if
+         case (print_heat_flux)
+            if (allocated(points%heat_flux)) then
+               columns(n + 1:n + 2, :) = points%heat_flux
+               call append_names(names, ['HFL1', 'HFL2'])
+            else
+               call print_absence(unit, title, 'HFL')
+            end if
+         case default   ! places are in every table
+         end select
+      end do
+      n = size(names)
+      if (n == 0 .and. any(request%quantities /= print_position)) return
+      write (unit, '(/, a)') title
+      call print_head(unit, ' element point', names)
+      do k = 1, size(points%element)
+         write (unit, '(i8, i6)', advance='no') model%mesh%element_number(points%element(k)), &
+            points%point(k)
+         write (unit, '(2a)', advance='no') in_columns(points%position(:, k), 12, 4), &
+            in_columns(columns(:n, k), 14, 6)
+         write (unit, '(a)') axes_name(request, model, points%element(k))
+      end do
+   end subroutine print_points
+
+   !> Name of the orientation along whose axes an element's values are; empty for x and y.
+   pure function axes_name(request, model, element) result(name)
+      type(print_request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: element
+      character(:), allocatable :: name
+
+      name = ''
+      if (.not. request%local_axes) return
+      associate (orientation => model%sections(model%mesh%element_section(element))%orientation)
+         if (orientation > 0) name = ' '//model%orientations(orientation)%name
+      end associate
+   end function axes_name
+
+   subroutine print_absence(unit, title, key)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: title, key
+
+      write (unit, '(/, 3a)') title, ': there is no '//key, ' at this increment'
+   end subroutine print_absence
+
+   subroutine print_head(unit, items, names)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: items
+      type(string_type), intent(in) :: names(:)
+      integer :: i
+
+      write (unit, '(a, 2a12, *(a14))') items, 'x', 'y', (names(i)%value, i=1, size(names))
+   end subroutine print_head
+
+   pure subroutine append_names(names, more)
+      type(string_type), allocatable, intent(inout) :: names(:)
+      character(*), intent(in) :: more(:)
+      integer :: i
+
+      do i = 1, size(more)
+         call append(names, trim(more(i)))
+      end do
+   end subroutine append_names
 
 end module listing_tables

@@ -21,9 +21,8 @@ module results
    use reported_quantities, only: datasets
    use result_accuracy, only: write_accuracy
    use result_fields, only: field_results_type
-   use result_run, only: write_run
    use result_tables, only: error_results_type, result_table_type, write_geometry
-   use run_summaries, only: or_blank, run_summary_type
+   use run_summaries, only: or_blank, run_summary_type, write_run
    use solution_report, only: iteration_record_type
    use status_files, only: status_file_type
    use steps, only: planned_increments, solves_heat, solves_mechanics
@@ -257,13 +256,16 @@ contains
       type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in) :: ends_run
+      type(run_summary_type) :: until_now
       real(dp) :: since
       logical :: is_first
 
       since = wall_seconds()
       is_first = .not. self%file%in_place
       call flush_all(self, model, interfaces)
-      call write_run(self%file%content, run, model, wall_seconds() - since)
+      until_now = run
+      until_now%seconds_write = run%seconds_write + (wall_seconds() - since)
+      call write_run(self%file%content, until_now, model)
       if (ends_run) call write_accuracy(self%file%content, run%accuracy, interfaces, model%units)
       call self%file%close(error)
       if (allocated(error)) return

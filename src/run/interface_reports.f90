@@ -13,7 +13,7 @@ module interface_reports
    use model, only: model_type
    use text, only: append, read_real, string_type, to_text, to_upper
    use tie_points, only: distance_warning, tie_words
-   use verify_values, only: is_on_interface
+   use verification, only: is_on_interface
    implicit none
    private
    public :: make_interfaces, make_ties, first_repeated, check_arc_lengths

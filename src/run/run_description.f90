@@ -28,11 +28,7 @@ contains
       run%solver = 'SKYLINE'
       if (model%solver == solver_mumps) run%solver = 'MUMPS'
       call name_physics(model, run)
-      run%equations_thermal = simulation%sizes%equations_thermal
-      run%equations_mechanical = simulation%sizes%equations_mechanical
-      run%contact_unknowns = simulation%sizes%contact_unknowns
-      run%factor_bytes = simulation%sizes%factor_bytes
-      run%smallest_pivot = simulation%sizes%smallest_pivot
+      run%sizes = simulation%sizes
       if (any(solves_heat(model%steps%analysis))) call find_biot(model, simulation, run)
    end subroutine describe_run
 
