@@ -1,6 +1,5 @@
-!> What the program asks of the file system beyond Fortran's own statements, with the system's
-!> reason where it refuses. What is open has a descriptor, see open_files. The calls themselves are
-!> in file_calls.c.
+!> Calls of the file system beyond Fortran's own statements, with the system's reason where it
+!> refuses. Open files have descriptors, see open_files. The calls themselves are in file_calls.c.
 module file_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_long, c_null_char, c_ptr
    use errors, only: error_type, set_error, status_internal

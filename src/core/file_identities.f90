@@ -11,7 +11,7 @@ module file_identities
    integer, parameter :: longest_path = 4096           !! PATH_MAX of Linux
    character(*), parameter :: working_end = '.tmp'     !! of working files, as in file_calls.c
 
-   !> What two paths to one file have in common.
+   !> Identity of a file, which all paths to it share.
    type :: file_identity_type
       integer(c_long), private :: device = 0   !! both 0 where there is no regular file
       integer(c_long), private :: inode = 0

@@ -2,7 +2,7 @@
 !> within seconds.
 !>
 !> Signals are remembered in system_processes.c, and never taken back: whatever is still to be
-!> solved is not started. What must be done where an increment takes too long is prepared here.
+!> solved is not started. The end of an increment that takes too long is prepared here.
 module interruption
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use errors, only: error_type, set_error, status_interrupted
@@ -17,7 +17,7 @@ module interruption
    integer, parameter :: end_at_once = 1         !! anywhere: there is nothing to keep
    integer, parameter :: end_after_grace = 2     !! anywhere, seconds after the signal
 
-   !> What is said and done where the run is ended within an increment, or by a lack of memory.
+   !> Words and files for the case that the run is ended within an increment, or by a lack of memory.
    type :: run_end_type
       integer :: when = end_by_increments        !! one of the end_* constants
       logical :: shows_progress = .false.        !! whether there is a progress line to be cleared

@@ -15,7 +15,7 @@ module processes
    integer, parameter :: block_length = 65536             !! characters read at once
    integer(c_int), parameter :: brief_pause = 5000_c_int  !! [microseconds]
 
-   !> What a child does; an extension holds what it needs for that.
+   !> Work of a child; an extension holds its data.
    type, abstract :: task_type
    contains
       procedure(execute_task), deferred :: execute
@@ -59,7 +59,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(report_type) :: report
 
-      ! What is buffered here would be printed by the child as well.
+      ! Text that is buffered here would be printed by the child as well.
       flush (error_unit)
       self%process = c_start_child(self%messages, self%reports)
       self%is_running = self%process > 0_c_int
@@ -103,7 +103,7 @@ contains
       call c_signal_child(self%process, merge(1_c_int, 0_c_int, kills))
    end subroutine send_signal
 
-   !> What the child has said of itself so far.
+   !> The child's report so far.
    function report(self)
       class(child_type), intent(in) :: self
       type(report_type) :: report

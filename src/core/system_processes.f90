@@ -11,7 +11,7 @@ module system_processes
 
    integer, parameter :: longest_reason = 4096   !! characters, with the 0 at the end
 
-   !> What a child says of itself; all of it is 0 at first.
+   !> Report of a child; all of it is 0 at first.
    type, bind(c) :: report_type
       integer(c_int) :: is_whole = 0_c_int        !! 1 once the child has said all
       integer(c_int) :: lacks_memory = 0_c_int    !! 1 where memory ran out

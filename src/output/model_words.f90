@@ -95,7 +95,7 @@ contains
       end select
    end function plane_words
 
-   !> What contact points are.
+   !> Kind of the contact points, in the plural.
    pure function points_words(points) result(words)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       character(:), allocatable :: words
@@ -118,7 +118,7 @@ contains
       end if
    end function pairing_words
 
-   !> What the master leaves open of the slave; empty for nothing.
+   !> Corners of the slave that no master is opposite to; empty for none.
    pure function open_words(points) result(words)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       character(:), allocatable :: words

@@ -210,7 +210,7 @@ contains
       call self%passes%close()
    end subroutine give_up
 
-   !> What steps of a deck solve, by needs_*.
+   !> Fields that the steps of a deck solve, by needs_*.
    pure function what_is_solved(model, has_contact) result(has)
       type(model_type), intent(in) :: model
       logical, intent(in) :: has_contact

@@ -1,5 +1,4 @@
-!> What only a whole run shows of a deck that may not be meant so: contact that never closes, no
-!> load that acts, large strains and rotations, and the warnings of its increments by kinds.
+!> Warnings that only a whole run can give: contact that never closes, no load that acts, large strains and rotations, and the warnings of its increments by kinds.
 module run_judgement
    use contact_points, only: contact_points_type, past_end
    use contact_states, only: contact_open
@@ -37,7 +36,7 @@ module run_judgement
       procedure :: lines
    end type warning_summary_type
 
-   !> What was seen of a run so far.
+   !> Observations of a run so far.
    type :: run_judgement_type
       private
       logical :: moves = .false.                   !! whether a node was displaced
@@ -119,7 +118,7 @@ contains
       self%ended_early = .true.
    end subroutine fail
 
-   !> What is to be said of the run.
+   !> The warnings on the run.
    pure function warnings(self, model, interfaces) result(lines)
       class(run_judgement_type), intent(in) :: self       !! what was seen
       type(model_type), intent(in) :: model

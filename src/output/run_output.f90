@@ -222,7 +222,7 @@ contains
       call self%listing%close(keeps_lock)
    end subroutine close_output
 
-   !> What the run comes to at its last accepted increment.
+   !> Summary of the run at its last accepted increment.
    function summary_lines(self, model, interfaces) result(lines)
       class(run_output_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -295,7 +295,7 @@ contains
       if (self%published() > 0) written = merge(4, 3, self%results%has_contact)
    end function written
 
-   !> What the files hold if the run ends here.
+   !> Contents of the files if the run ends here.
    pure function kept(self) result(words)
       class(run_output_type), intent(in) :: self
       character(:), allocatable :: words           !! one sentence; empty if nothing

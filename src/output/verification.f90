@@ -17,7 +17,7 @@ module verification
    private
    public :: verifier_type, outcome_type, failure_words, bound_words, is_on_interface
 
-   !> What came of one check.
+   !> Outcome of one check.
    type :: outcome_type
       logical :: judged = .false.               !! whether its time was reached
       logical :: passed = .false.               !! the verdict
@@ -120,7 +120,7 @@ contains
       number = count(.not. self%outcomes%judged)
    end function unjudged_count
 
-   !> What is said of a check that failed, such as `deck.inp:36: check failed: heat_rate JOINT at
+   !> The message on a check that failed, such as `deck.inp:36: check failed: heat_rate JOINT at
    !> time 1: 3.6, expected 3.7 (off by 2.7027 %, allowed 1 %)`.
    pure function failure_words(check, outcome) result(words)
       type(verify_type), intent(in) :: check

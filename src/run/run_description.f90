@@ -1,4 +1,4 @@
-!> What a run models, in words and numbers, once it is started.
+!> Summary of a run once it is started: physics in words, sizes, Biot number.
 module run_description
    use contact_changes, only: brings_friction
    use conductance_laws, only: is_constant
