@@ -17,7 +17,7 @@ module interruption
    integer, parameter :: end_at_once = 1         !! anywhere: there is nothing to keep
    integer, parameter :: end_after_grace = 2     !! anywhere, seconds after the signal
 
-   !> Words and files for the case that the run is ended within an increment, or by a lack of memory.
+   !> Words and files for a run that is ended within an increment, or by a lack of memory.
    type :: run_end_type
       integer :: when = end_by_increments        !! one of the end_* constants
       logical :: shows_progress = .false.        !! whether there is a progress line to be cleared

@@ -1,4 +1,5 @@
-!> Warnings that only a whole run can give: contact that never closes, no load that acts, large strains and rotations, and the warnings of its increments by kinds.
+!> Warnings that only a whole run can give: contact that never closes, no load that acts, large
+!> strains and rotations, and the warnings of its increments by kinds.
 module run_judgement
    use contact_points, only: contact_points_type, past_end
    use contact_states, only: contact_open
