@@ -34,11 +34,10 @@ module file_identities
          character(kind=c_char), intent(out) :: real_path(length)
       end subroutine c_real_path
 
-      function c_is_at(path, descriptor) bind(c, name='file_is_at') result(answer)
+      integer(c_int) function c_is_at(path, descriptor) bind(c, name='file_is_at')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: descriptor
-         integer(c_int) :: answer
       end function c_is_at
    end interface
 

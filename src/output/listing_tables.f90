@@ -16,12 +16,21 @@ module listing_tables
    use reported_quantities, only: quantities
    use run_summaries, only: or_blank
    use solution_report, only: iteration_record_type
-   use text, only: append, string_type, to_text
+   use text, only: to_text
    use transforms, only: axes_at
    use verification, only: bound_words, outcome_type
    implicit none
    private
    public :: print_contact_table, print_iterations, print_requested, print_verdicts
+
+   ! Keys of the quantities of *NODE PRINT and *EL PRINT, by the print_* constants, and the heads of
+   ! their columns.
+   integer, parameter :: head_length = 4
+   character(*), parameter :: print_keys(print_displacement:print_heat_flux) = [character(3) :: &
+      'U', 'NT', 'RF', 'RFL', 'S', 'HFL']
+   character(*), parameter :: print_heads(4, print_displacement:print_heat_flux) = reshape([ &
+      character(head_length) :: 'U1', 'U2', '', '', 'NT', '', '', '', 'RF1', 'RF2', '', '', &
+      'RFL', '', '', '', 'S11', 'S22', 'S33', 'S12', 'HFL1', 'HFL2', '', ''], [4, 6])
 
 contains
 
@@ -150,52 +159,51 @@ contains
       type(print_request_type), intent(in) :: request
       type(model_type), intent(in) :: model
       type(field_record_type), intent(in) :: fields
-      real(dp), allocatable :: columns(:, :), sums(:, :)
-      type(string_type), allocatable :: names(:), sum_names(:)
+      real(dp), allocatable :: columns(:, :), sums(:, :), values(:, :)
+      character(head_length), allocatable :: heads(:), sum_heads(:)
       integer, allocatable :: nodes(:)
       integer :: i, k
+      logical :: is_summed
 
       associate (set => model%mesh%node_sets(request%set))
          nodes = pack(set%members, model%mesh%node_body(set%members) > 0)
-         allocate(names(0), sum_names(0), columns(size(nodes), 6), sums(size(nodes), 3))
+         allocate (columns(0, size(nodes)), sums(0, size(nodes)), heads(0), sum_heads(0))
          do i = 1, size(request%quantities)
             associate (quantity => request%quantities(i))
-               if (.not. has_nodal(quantity, fields)) then
-                  call print_absence(unit, '   NODES OF '//set%name, nodal_key(quantity))
+               values = nodal_values(quantity, fields, nodes)
+               if (size(values, 1) == 0) then
+                  call print_absence(unit, '   NODES OF '//set%name, quantity)
                   cycle
                end if
-               if (request%each_node .or. .not. is_summed(quantity)) then
-                  call add_nodal(quantity, fields, nodes, columns, names)
-                  if (request%local_axes .and. any(quantity == [print_displacement, &
-                     print_force])) call turn(model, nodes, columns(:, size(names) - 1:size(names)))
-               end if
-               if (request%totals .and. is_summed(quantity)) then
-                  call add_nodal(quantity, fields, nodes, sums, sum_names)
-               end if
+               is_summed = quantity == print_force .or. quantity == print_heat
+               if (is_summed .and. request%totals) call add(quantity, values, sums, sum_heads)
+               if (is_summed .and. .not. request%each_node) cycle
+               if (request%local_axes .and. size(values, 1) == 2) call turn(model, nodes, values)
+               call add(quantity, values, columns, heads)
             end associate
          end do
-         if (size(names) > 0) then
+         if (size(heads) > 0) then
             write (unit, '(/, 2a)') '   NODES OF ', set%name
-            call print_head(unit, '    node', names)
+            call print_head(unit, '    node', heads)
             do k = 1, size(nodes)
                write (unit, '(i8)', advance='no') model%mesh%node_number(nodes(k))
                write (unit, '(2a)') in_columns(model%mesh%coordinates(:, nodes(k)), 12, 4), &
-                  in_columns(columns(k, :size(names)), 14, 6)
+                  in_columns(columns(:, k), 14, 6)
             end do
          end if
-         if (size(sum_names) > 0) then
+         if (size(sum_heads) > 0) then
             write (unit, '(/, 2a)') '   TOTALS OF ', set%name
-            write (unit, '(*(a14))') (sum_names(i)%value, i=1, size(sum_names))
-            write (unit, '(a)') in_columns(sum(sums(:, :size(sum_names)), dim=1), 14, 6)
+            write (unit, '(*(a14))') (trim(sum_heads(i)), i=1, size(sum_heads))
+            write (unit, '(a)') in_columns(sum(sums, dim=2), 14, 6)
          end if
       end associate
    end subroutine print_nodes
 
-   !> Takes the components of vectors along the axes of their nodes.
+   !> Replaces the components of vectors by those along the axes of their nodes.
    pure subroutine turn(model, nodes, vectors)
       type(model_type), intent(in) :: model
       integer, intent(in) :: nodes(:)
-      real(dp), intent(inout) :: vectors(:, :)    ! (nodes, 2)
+      real(dp), intent(inout) :: vectors(:, :)    ! (2, nodes)
       integer :: i, k
 
       if (.not. allocated(model%transforms)) return
@@ -203,72 +211,50 @@ contains
          associate (transform => model%transforms(i))
             do k = 1, size(nodes)
                if (all(model%mesh%node_sets(transform%set)%members /= nodes(k))) cycle
-               vectors(k, :) = matmul(vectors(k, :), axes_at(transform, &
+               vectors(:, k) = matmul(vectors(:, k), axes_at(transform, &
                   model%mesh%coordinates(:, nodes(k))))
             end do
          end associate
       end do
    end subroutine turn
 
-   pure logical function is_summed(quantity)
-      integer, intent(in) :: quantity
-
-      is_summed = quantity == print_force .or. quantity == print_heat
-   end function is_summed
-
-   !> Whether a step has a nodal quantity.
-   pure logical function has_nodal(quantity, fields)
-      integer, intent(in) :: quantity
-      type(field_record_type), intent(in) :: fields
-
-      select case (quantity)
-      case (print_displacement)
-         has_nodal = allocated(fields%displacement)
-      case (print_temperature)
-         has_nodal = allocated(fields%temperature)
-      case (print_force)
-         has_nodal = allocated(fields%external_force)
-      case (print_heat)
-         has_nodal = allocated(fields%external_heat)
-      case default
-         has_nodal = .false.
-      end select
-   end function has_nodal
-
-   pure function nodal_key(quantity) result(key)
-      integer, intent(in) :: quantity
-      character(:), allocatable :: key
-      character(3), parameter :: keys(4) = ['U  ', 'NT ', 'RF ', 'RFL']
-
-      key = trim(keys(findloc([print_displacement, print_temperature, print_force, print_heat], &
-         quantity, dim=1)))
-   end function nodal_key
-
-   !> Appends the columns of a nodal quantity.
-   pure subroutine add_nodal(quantity, fields, nodes, columns, names)
+   !> A nodal quantity: (components, nodes), no component where the step does not have it.
+   pure function nodal_values(quantity, fields, nodes) result(values)
       integer, intent(in) :: quantity
       type(field_record_type), intent(in) :: fields
       integer, intent(in) :: nodes(:)
-      real(dp), intent(inout) :: columns(:, :)
-      type(string_type), allocatable, intent(inout) :: names(:)
-      integer :: n
+      real(dp), allocatable :: values(:, :)
 
-      n = size(names)
+      allocate (values(0, size(nodes)))
       select case (quantity)
       case (print_displacement)
-         columns(:, n + 1:n + 2) = transpose(fields%displacement(:, nodes))
-         call append_names(names, ['U1', 'U2'])
+         if (allocated(fields%displacement)) values = fields%displacement(:, nodes)
       case (print_force)
-         columns(:, n + 1:n + 2) = transpose(fields%external_force(:, nodes))
-         call append_names(names, ['RF1', 'RF2'])
+         if (allocated(fields%external_force)) values = fields%external_force(:, nodes)
       case (print_temperature)
-         columns(:, n + 1) = fields%temperature(nodes)
-         call append_names(names, ['NT'])
-      case default
-         columns(:, n + 1) = fields%external_heat(nodes)
-         call append_names(names, ['RFL'])
+         if (allocated(fields%temperature)) values = reshape(fields%temperature(nodes), &
+            [1, size(nodes)])
+      case (print_heat)
+         if (allocated(fields%external_heat)) values = reshape(fields%external_heat(nodes), &
+            [1, size(nodes)])
+      case default   ! of integration points
       end select
-   end subroutine add_nodal
+   end function nodal_values
+
+   !> Appends a quantity to the columns of a table.
+   pure subroutine add(quantity, values, columns, heads)
+      integer, intent(in) :: quantity
+      real(dp), intent(in) :: values(:, :)                    ! (components, rows)
+      real(dp), allocatable, intent(inout) :: columns(:, :)   ! (columns, rows)
+      character(head_length), allocatable, intent(inout) :: heads(:)
+      real(dp), allocatable :: more(:, :)
+
+      allocate (more(size(columns, 1) + size(values, 1), size(values, 2)))
+      more(:size(columns, 1), :) = columns
+      more(size(columns, 1) + 1:, :) = values
+      call move_alloc(more, columns)
+      heads = [heads, pack(print_heads(:, quantity), print_heads(:, quantity) /= '')]
+   end subroutine add
 
    !> Table of the integration points of the elements of a set.
    subroutine print_points(unit, request, model, points)
@@ -277,41 +263,31 @@ contains
       type(model_type), intent(in) :: model
       type(element_points_record_type), intent(in) :: points
       real(dp), allocatable :: columns(:, :)
-      type(string_type), allocatable :: names(:)
+      character(head_length), allocatable :: heads(:)
       character(:), allocatable :: title
-      integer :: i, k, n
+      integer :: i, k
 
       title = '   INTEGRATION POINTS OF '//model%mesh%element_sets(request%set)%name
-      allocate(names(0), columns(6, size(points%element)))
+      allocate (columns(0, size(points%element)), heads(0))
       do i = 1, size(request%quantities)
-         n = size(names)
-         select case (request%quantities(i))
-         case (print_stress)
-            if (allocated(points%stress)) then
-               columns(n + 1:n + 4, :) = points%stress
-               call append_names(names, ['S11', 'S22', 'S33', 'S12'])
-            else
-               call print_absence(unit, title, 'S')
+         associate (quantity => request%quantities(i))
+            if (quantity == print_stress .and. allocated(points%stress)) then
+               call add(quantity, points%stress, columns, heads)
+            else if (quantity == print_heat_flux .and. allocated(points%heat_flux)) then
+               call add(quantity, points%heat_flux, columns, heads)
+            else if (quantity /= print_position) then   ! positions are in every table
+               call print_absence(unit, title, quantity)
             end if
-         case (print_heat_flux)
-            if (allocated(points%heat_flux)) then
-               columns(n + 1:n + 2, :) = points%heat_flux
-               call append_names(names, ['HFL1', 'HFL2'])
-            else
-               call print_absence(unit, title, 'HFL')
-            end if
-         case default   ! places are in every table
-         end select
+         end associate
       end do
-      n = size(names)
-      if (n == 0 .and. any(request%quantities /= print_position)) return
+      if (size(heads) == 0 .and. any(request%quantities /= print_position)) return
       write (unit, '(/, a)') title
-      call print_head(unit, ' element point', names)
+      call print_head(unit, ' element point', heads)
       do k = 1, size(points%element)
          write (unit, '(i8, i6)', advance='no') model%mesh%element_number(points%element(k)), &
             points%point(k)
          write (unit, '(2a)', advance='no') in_columns(points%position(:, k), 12, 4), &
-            in_columns(columns(:n, k), 14, 6)
+            in_columns(columns(:, k), 14, 6)
          write (unit, '(a)') axes_name(request, model, points%element(k))
       end do
    end subroutine print_points
@@ -330,30 +306,20 @@ contains
       end associate
    end function axes_name
 
-   subroutine print_absence(unit, title, key)
-      integer, intent(in) :: unit
-      character(*), intent(in) :: title, key
+   subroutine print_absence(unit, title, quantity)
+      integer, intent(in) :: unit, quantity
+      character(*), intent(in) :: title
 
-      write (unit, '(/, 3a)') title, ': there is no '//key, ' at this increment'
+      write (unit, '(/, 4a)') title, ': there is no ', trim(print_keys(quantity)), &
+         ' at this increment'
    end subroutine print_absence
 
-   subroutine print_head(unit, items, names)
+   subroutine print_head(unit, items, heads)
       integer, intent(in) :: unit
-      character(*), intent(in) :: items
-      type(string_type), intent(in) :: names(:)
+      character(*), intent(in) :: items, heads(:)
       integer :: i
 
-      write (unit, '(a, 2a12, *(a14))') items, 'x', 'y', (names(i)%value, i=1, size(names))
+      write (unit, '(a, 2a12, *(a14))') items, 'x', 'y', (trim(heads(i)), i=1, size(heads))
    end subroutine print_head
-
-   pure subroutine append_names(names, more)
-      type(string_type), allocatable, intent(inout) :: names(:)
-      character(*), intent(in) :: more(:)
-      integer :: i
-
-      do i = 1, size(more)
-         call append(names, trim(more(i)))
-      end do
-   end subroutine append_names
 
 end module listing_tables

@@ -243,7 +243,7 @@ contains
 
       bytes = bytes_in(self%fields%sets) + bytes_in(self%history%sets) &
          + bytes_in(self%convergence%sets)
-      if (self%has_contact) bytes = bytes + self%contact_grid%waiting_bytes()
+      if (self%has_contact) bytes = bytes + bytes_in(self%contact_grid%sets)
       do i = 1, size(self%contacts)
          bytes = bytes + bytes_in(self%contacts(i)%sets)
       end do

@@ -35,9 +35,7 @@ module verification
    contains
       procedure :: start
       procedure :: judge
-      procedure :: passed_count
-      procedure :: failed_count
-      procedure :: unjudged_count
+      procedure :: counts
    end type verifier_type
 
 contains
@@ -96,29 +94,17 @@ contains
       end do
    end subroutine take_bound
 
-   !> Number of checks that passed.
-   pure function passed_count(self) result(number)
-      class(verifier_type), intent(in) :: self   !! the checks
-      integer :: number                          !! those that passed
+   !> Numbers of the checks that passed, that failed, and that could not be judged, because the run
+   !> ended before their times.
+   pure function counts(self)
+      class(verifier_type), intent(in) :: self
+      integer :: counts(3)
 
-      number = count(self%outcomes%passed)
-   end function passed_count
-
-   !> Number of checks that failed.
-   pure function failed_count(self) result(number)
-      class(verifier_type), intent(in) :: self   !! the checks
-      integer :: number                          !! those that failed
-
-      number = count(self%outcomes%judged .and. .not. self%outcomes%passed)
-   end function failed_count
-
-   !> Number of checks that could not be judged, because the run ended before their times.
-   pure function unjudged_count(self) result(number)
-      class(verifier_type), intent(in) :: self   !! the checks
-      integer :: number                          !! those that were never reached
-
-      number = count(.not. self%outcomes%judged)
-   end function unjudged_count
+      associate (outcomes => self%outcomes)
+         counts = [count(outcomes%passed), count(outcomes%judged .and. .not. outcomes%passed), &
+            count(.not. outcomes%judged)]
+      end associate
+   end function counts
 
    !> The message on a check that failed, such as `deck.inp:36: check failed: heat_rate JOINT at
    !> time 1: 3.6, expected 3.7 (off by 2.7027 %, allowed 1 %)`.

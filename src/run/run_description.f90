@@ -36,6 +36,7 @@ contains
    subroutine name_physics(model, run)
       type(model_type), intent(in) :: model
       type(run_summary_type), intent(inout) :: run
+      character(:), allocatable :: why_off
       logical :: has_heat, has_mechanics, has_contact, has_friction, has_law
       integer :: i
 
@@ -59,16 +60,16 @@ contains
       call name('heat', has_heat, steps_that(solves_heat(model%steps%analysis)), &
          'no step solves temperatures')
       call name('contact', has_contact, '*CONTACT PAIR', 'no *CONTACT PAIR')
-      if (has_contact .and. .not. has_mechanics) then
-         call name('friction', .false., '', 'no step solves mechanics')
-      else
-         call name('friction', has_friction, '*FRICTION', &
-            reason_of(has_contact, 'no *FRICTION above 0', 'no contact'))
-      end if
+      why_off = 'no *FRICTION above 0'
+      if (.not. has_contact) why_off = 'no contact'
+      if (has_contact .and. .not. has_mechanics) why_off = 'no step solves mechanics'
+      call name('friction', has_friction .and. (has_mechanics .or. .not. has_contact), &
+         '*FRICTION', why_off)
+      why_off = 'no conductance of gap, pressure or temperature'
+      if (has_law) why_off = 'no step solves heat and mechanics together'
       call name('coupling', has_law .and. any(model%steps%analysis == analysis_coupled), &
          '*COUPLED TEMPERATURE-DISPLACEMENT and a conductance of gap, pressure or temperature', &
-         reason_of(has_law, 'no step solves heat and mechanics together', &
-         'no conductance of gap, pressure or temperature'))
+         why_off)
    contains
       subroutine name(part, is_on, why_on, why_off)
          character(*), intent(in) :: part, why_on, why_off
@@ -85,16 +86,6 @@ contains
          run%reasons = run%reasons//part//reason
       end subroutine name
    end subroutine name_physics
-
-   !> One of two reasons.
-   pure function reason_of(condition, if_true, if_false) result(reason)
-      logical, intent(in) :: condition
-      character(*), intent(in) :: if_true, if_false
-      character(:), allocatable :: reason
-
-      reason = if_false
-      if (condition) reason = if_true
-   end function reason_of
 
    !> Names the steps for which something holds.
    pure function steps_that(holds) result(words)
