@@ -7,7 +7,7 @@ module csv_fields
 contains
 
    !> A text between double quotes, those inside it doubled; nothing for an empty text. An
-   !> apostrophe precedes what a spreadsheet would take for a formula.
+   !> apostrophe precedes text that a spreadsheet would read as a formula.
    pure function quoted(words) result(field)
       character(*), intent(in) :: words     !! the text
       character(:), allocatable :: field    !! as RFC 4180 has it

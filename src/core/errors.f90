@@ -15,7 +15,7 @@ module errors
    integer, parameter :: status_verify = 4          !! a *VERIFY check failed
    integer, parameter :: status_interrupted = 5     !! ended by SIGINT or SIGTERM
 
-   !> What went wrong, and the exit status that says so.
+   !> An error and its exit status.
    type :: error_type
       integer :: status = status_internal      !! one of the status_* constants
       character(:), allocatable :: message     !! one sentence in plain words

@@ -1,6 +1,5 @@
-!> What the program asks of the file system beyond Fortran's own statements, with the system's
-!> reason where it refuses. What is open has a descriptor, see open_files. The calls themselves are
-!> in file_calls.c.
+!> Calls of the file system beyond Fortran's own statements, with the system's reason where it
+!> refuses. Open files have descriptors, see open_files. The calls themselves are in file_calls.c.
 module file_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_long, c_null_char, c_ptr
    use errors, only: error_type, set_error, status_internal
@@ -24,35 +23,29 @@ module file_calls
          character(kind=c_char), intent(out) :: text(length)
       end subroutine c_reason
 
-      function c_rename(from, to) bind(c, name='file_rename') result(number)
+      integer(c_int) function c_rename(from, to) bind(c, name='file_rename')
          import :: c_char, c_int
-         character(kind=c_char), intent(in) :: from(*)
-         character(kind=c_char), intent(in) :: to(*)
-         integer(c_int) :: number
+         character(kind=c_char), intent(in) :: from(*), to(*)
       end function c_rename
 
-      function c_remove(path) bind(c, name='file_remove') result(number)
+      integer(c_int) function c_remove(path) bind(c, name='file_remove')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
-         integer(c_int) :: number
       end function c_remove
 
-      function c_make_folder(path) bind(c, name='file_make_folder') result(number)
+      integer(c_int) function c_make_folder(path) bind(c, name='file_make_folder')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
-         integer(c_int) :: number
       end function c_make_folder
 
-      function c_check_folder(path) bind(c, name='file_check_folder') result(number)
+      integer(c_int) function c_check_folder(path) bind(c, name='file_check_folder')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
-         integer(c_int) :: number
       end function c_check_folder
 
-      function c_is_terminal(descriptor) bind(c, name='file_is_terminal') result(answer)
+      integer(c_int) function c_is_terminal(descriptor) bind(c, name='file_is_terminal')
          import :: c_int
          integer(c_int), value :: descriptor
-         integer(c_int) :: answer
       end function c_is_terminal
 
       subroutine c_print(text, count) bind(c, name='file_print')
@@ -61,37 +54,32 @@ module file_calls
          integer(c_long), value :: count
       end subroutine c_print
 
-      function c_print_error() bind(c, name='file_print_error') result(number)
+      integer(c_int) function c_print_error() bind(c, name='file_print_error')
          import :: c_int
-         integer(c_int) :: number
       end function c_print_error
 
-      function c_is_stream(path) bind(c, name='file_is_stream') result(answer)
+      integer(c_int) function c_is_stream(path) bind(c, name='file_is_stream')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
-         integer(c_int) :: answer
       end function c_is_stream
 
-      function c_try(path) bind(c, name='file_try') result(number)
+      integer(c_int) function c_try(path) bind(c, name='file_try')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
-         integer(c_int) :: number
       end function c_try
 
-      function c_try_growth(path, count) bind(c, name='file_try_growth') result(number)
+      integer(c_int) function c_try_growth(path, count) bind(c, name='file_try_growth')
          import :: c_char, c_int, c_long
          character(kind=c_char), intent(in) :: path(*)
          integer(c_long), value :: count
-         integer(c_int) :: number
       end function c_try_growth
 
-      function c_create_working(stem, path, length) bind(c, name='file_create_working') &
-         result(number)
+      integer(c_int) function c_create_working(stem, path, length) &
+         bind(c, name='file_create_working')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: stem(*)
          integer(c_int), value :: length
          character(kind=c_char), intent(out) :: path(length)
-         integer(c_int) :: number
       end function c_create_working
 
       subroutine c_remove_working(stem) bind(c, name='file_remove_working')
@@ -99,21 +87,18 @@ module file_calls
          character(kind=c_char), intent(in) :: stem(*)
       end subroutine c_remove_working
 
-      function c_copy(from, to, is_source) bind(c, name='file_copy') result(number)
+      integer(c_int) function c_copy(from, to, is_source) bind(c, name='file_copy')
          import :: c_char, c_int
-         character(kind=c_char), intent(in) :: from(*)
-         character(kind=c_char), intent(in) :: to(*)
+         character(kind=c_char), intent(in) :: from(*), to(*)
          integer(c_int), intent(out) :: is_source
-         integer(c_int) :: number
       end function c_copy
 
-      function c_read(path, most, contents, count) bind(c, name='file_read') result(number)
+      integer(c_int) function c_read(path, most, contents, count) bind(c, name='file_read')
          import :: c_char, c_int, c_long, c_ptr
          character(kind=c_char), intent(in) :: path(*)
          integer(c_long), value :: most
          type(c_ptr), intent(out) :: contents
          integer(c_long), intent(out) :: count
-         integer(c_int) :: number
       end function c_read
 
       subroutine c_free(contents) bind(c, name='file_free')

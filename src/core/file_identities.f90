@@ -11,7 +11,7 @@ module file_identities
    integer, parameter :: longest_path = 4096           !! PATH_MAX of Linux
    character(*), parameter :: working_end = '.tmp'     !! of working files, as in file_calls.c
 
-   !> What two paths to one file have in common.
+   !> Identity of a file, which all paths to it share.
    type :: file_identity_type
       integer(c_long), private :: device = 0   !! both 0 where there is no regular file
       integer(c_long), private :: inode = 0
@@ -34,11 +34,10 @@ module file_identities
          character(kind=c_char), intent(out) :: real_path(length)
       end subroutine c_real_path
 
-      function c_is_at(path, descriptor) bind(c, name='file_is_at') result(answer)
+      integer(c_int) function c_is_at(path, descriptor) bind(c, name='file_is_at')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: descriptor
-         integer(c_int) :: answer
       end function c_is_at
    end interface
 

@@ -2,22 +2,21 @@
 !> within seconds.
 !>
 !> Signals are remembered in system_processes.c, and never taken back: whatever is still to be
-!> solved is not started. What must be done where an increment takes too long is prepared here.
+!> solved is not started. The end of an increment that takes too long is prepared here.
 module interruption
-   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_null_char
    use errors, only: error_type, set_error, status_interrupted
-   use system_processes, only: c_catch_signals, c_hold_end, c_prepare_end, c_prepare_summary, &
-      c_signals
    implicit none
    private
    public :: catch_signals, caught_signal, caught_times, check_overdue
+   public :: c_end_without_memory
    public :: run_end_type, end_by_increments, end_at_once, end_after_grace
 
    integer, parameter :: end_by_increments = 0   !! a signal ends the run where it asks for one
    integer, parameter :: end_at_once = 1         !! anywhere: there is nothing to keep
    integer, parameter :: end_after_grace = 2     !! anywhere, seconds after the signal
 
-   !> What is said and done where the run is ended within an increment, or by a lack of memory.
+   !> Words and files for a run that is ended within an increment, or by a lack of memory.
    type :: run_end_type
       integer :: when = end_by_increments        !! one of the end_* constants
       logical :: shows_progress = .false.        !! whether there is a progress line to be cleared
@@ -33,6 +32,42 @@ module interruption
       procedure, nopass :: prepare_summary
       procedure, nopass :: hold
    end type run_end_type
+
+   interface
+      subroutine c_catch_signals(outlives_pipes) bind(c, name='thercon_catch_signals')
+         import :: c_int
+         integer(c_int), value :: outlives_pipes
+      end subroutine c_catch_signals
+
+      subroutine c_signals(name, number, overdue) bind(c, name='thercon_signals')
+         import :: c_int
+         integer(c_int), intent(out) :: name, number, overdue
+      end subroutine c_signals
+
+      subroutine c_prepare_end(when, shows, deck, where, holds, listing, kept, working) &
+         bind(c, name='thercon_prepare_end')
+         import :: c_char, c_int
+         integer(c_int), value :: when, shows
+         character(c_char), intent(in) :: deck(*), where(*), holds(*), listing(*), kept(*), &
+            working(*)
+      end subroutine c_prepare_end
+
+      subroutine c_prepare_summary(words) bind(c, name='thercon_prepare_summary')
+         import :: c_char
+         character(c_char), intent(in) :: words(*)
+      end subroutine c_prepare_summary
+
+      subroutine c_hold_end(holds) bind(c, name='thercon_hold_end')
+         import :: c_int
+         integer(c_int), value :: holds
+      end subroutine c_hold_end
+
+      !> Ends the process because so many bytes more are not available, with what is prepared.
+      subroutine c_end_without_memory(bytes) bind(c, name='thercon_end_without_memory')
+         import :: c_double
+         real(c_double), value :: bytes
+      end subroutine c_end_without_memory
+   end interface
 
 contains
 

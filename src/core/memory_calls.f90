@@ -17,18 +17,16 @@ module memory_calls
    interface
       !> Least of the limits on resident memory [byte]: of the process (address space, less what of
       !> it is not resident), of its control groups, of the machine.
-      function c_limit(source, length) bind(c, name='memory_limit') result(bytes)
+      real(c_double) function c_limit(source, length) bind(c, name='memory_limit')
          import :: c_char, c_double, c_int
          integer(c_int), value :: length
          character(kind=c_char), intent(out) :: source(length)
-         real(c_double) :: bytes
       end function c_limit
 
       !> Lets the stack grow to so many bytes [byte]; returns what it may have.
-      function c_allow_stack(wanted) bind(c, name='memory_allow_stack') result(bytes)
+      real(c_double) function c_allow_stack(wanted) bind(c, name='memory_allow_stack')
          import :: c_double
          real(c_double), value :: wanted
-         real(c_double) :: bytes
       end function c_allow_stack
    end interface
 

@@ -14,18 +14,16 @@ module open_files
    integer(c_int), parameter :: not_lockable = -2_c_int        !! alike
 
    interface
-      function c_open_new(path, descriptor) bind(c, name='file_open_new') result(number)
+      integer(c_int) function c_open_new(path, descriptor) bind(c, name='file_open_new')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), intent(out) :: descriptor
-         integer(c_int) :: number
       end function c_open_new
 
-      function c_lock(path, descriptor) bind(c, name='file_lock') result(number)
+      integer(c_int) function c_lock(path, descriptor) bind(c, name='file_lock')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), intent(out) :: descriptor
-         integer(c_int) :: number
       end function c_lock
 
       subroutine c_unlock(path, descriptor) bind(c, name='file_unlock')
@@ -34,40 +32,35 @@ module open_files
          integer(c_int), value :: descriptor
       end subroutine c_unlock
 
-      function c_in_memory(descriptor) bind(c, name='file_in_memory') result(number)
+      integer(c_int) function c_in_memory(descriptor) bind(c, name='file_in_memory')
          import :: c_int
          integer(c_int), intent(out) :: descriptor
-         integer(c_int) :: number
       end function c_in_memory
 
-      function c_append(descriptor, text, count) bind(c, name='file_append') result(number)
+      integer(c_int) function c_append(descriptor, text, count) bind(c, name='file_append')
          import :: c_char, c_int, c_long
          integer(c_int), value :: descriptor
          character(kind=c_char), intent(in) :: text(*)
          integer(c_long), value :: count
-         integer(c_int) :: number
       end function c_append
 
-      function c_overwrite(descriptor, position, text, count) bind(c, name='file_overwrite') &
-         result(number)
+      integer(c_int) function c_overwrite(descriptor, position, text, count) &
+         bind(c, name='file_overwrite')
          import :: c_char, c_int, c_long
          integer(c_int), value :: descriptor
          integer(c_long), value :: position
          character(kind=c_char), intent(in) :: text(*)
          integer(c_long), value :: count
-         integer(c_int) :: number
       end function c_overwrite
 
-      function c_empty(descriptor) bind(c, name='file_empty') result(number)
+      integer(c_int) function c_empty(descriptor) bind(c, name='file_empty')
          import :: c_int
          integer(c_int), value :: descriptor
-         integer(c_int) :: number
       end function c_empty
 
-      function c_close(descriptor) bind(c, name='file_close') result(number)
+      integer(c_int) function c_close(descriptor) bind(c, name='file_close')
          import :: c_int
          integer(c_int), value :: descriptor
-         integer(c_int) :: number
       end function c_close
    end interface
 

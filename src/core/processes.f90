@@ -1,21 +1,44 @@
 !> Work in processes of its own: a crash, or memory that runs out, is that of the child alone, and
-!> the system says what the child took.
+!> the system says what the child took. The calls themselves are in system_processes.c.
 module processes
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char, c_sizeof
+   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, c_null_char, c_sizeof
    use, intrinsic :: iso_fortran_env, only: error_unit
    use errors, only: error_type, set_error, status_internal
-   use system_processes, only: c_close, c_collect_child, c_exit_at_once, c_file_report, c_read, &
-      c_signal_child, c_sleep, c_start_child, longest_reason, process_end_type, report_type
    use text, only: to_text
    implicit none
    private
    public :: task_type, child_type, report_type
    public :: file_report, set_reason, reason_of, pause_briefly
 
+   integer, parameter :: longest_reason = 4096            !! characters, with the 0 at the end
    integer, parameter :: block_length = 65536             !! characters read at once
    integer(c_int), parameter :: brief_pause = 5000_c_int  !! [microseconds]
 
-   !> What a child does; an extension holds what it needs for that.
+   !> Report of a child; all of it is 0 at first.
+   type, bind(c) :: report_type
+      integer(c_int) :: is_whole = 0_c_int        !! 1 once the child has said all
+      integer(c_int) :: lacks_memory = 0_c_int    !! 1 where memory ran out
+      integer(c_int) :: status = 0_c_int          !! exit status
+      integer(c_int) :: increments = 0_c_int      !! increments accepted so far
+      integer(c_int) :: iterations = 0_c_int      !! passes so far
+      integer(c_int) :: verify_passed = 0_c_int   !! *VERIFY checks
+      integer(c_int) :: verify_failed = 0_c_int   !! *VERIFY checks
+      integer(c_int) :: files = 0_c_int           !! how many of its files it has written so far
+      real(c_double) :: seconds = 0.0_c_double    !! time that the work took [s]
+      character(c_char) :: reason(longest_reason) = achar(0)   !! why, where the status is not 0
+   end type report_type
+
+   !> How a child ended, and what it took.
+   type, bind(c) :: process_end_type
+      integer(c_int) :: status = 0_c_int              !! exit status; 0 where a signal ended it
+      integer(c_int) :: signal = 0_c_int              !! number of the signal that ended it, or 0
+      integer(c_int) :: is_crash = 0_c_int            !! 1 for a signal that a fault raises
+      character(c_char) :: signal_name(16) = achar(0) !! such as SIGSEGV, ended by a 0
+      real(c_double) :: cpu_seconds = 0.0_c_double    !! its own and the system's [s]
+      real(c_double) :: peak_bytes = 0.0_c_double     !! largest resident memory [byte]
+   end type process_end_type
+
+   !> Work of a child; an extension holds its data.
    type, abstract :: task_type
    contains
       procedure(execute_task), deferred :: execute
@@ -49,6 +72,55 @@ module processes
       procedure :: signal_name
    end type child_type
 
+   interface
+      integer(c_int) function c_start_child(messages, report) bind(c, name='thercon_start_child')
+         import :: c_int
+         integer(c_int), intent(out) :: messages, report
+      end function c_start_child
+
+      integer(c_int) function c_collect_child(child, waits, end) &
+         bind(c, name='thercon_collect_child')
+         import :: c_int, process_end_type
+         integer(c_int), value :: child, waits
+         type(process_end_type), intent(inout) :: end
+      end function c_collect_child
+
+      subroutine c_signal_child(child, kills) bind(c, name='thercon_signal_child')
+         import :: c_int
+         integer(c_int), value :: child, kills
+      end subroutine c_signal_child
+
+      integer(c_int) function c_read(file, offset, length, bytes) bind(c, name='thercon_read')
+         import :: c_char, c_int, c_long
+         integer(c_int), value :: file, length
+         integer(c_long), value :: offset
+         character(c_char), intent(out) :: bytes(length)
+      end function c_read
+
+      subroutine c_file_report(report) bind(c, name='thercon_file_report')
+         import :: report_type
+         type(report_type), intent(in) :: report
+      end subroutine c_file_report
+
+      !> POSIX close(2).
+      integer(c_int) function c_close(file) bind(c, name='close')
+         import :: c_int
+         integer(c_int), value :: file
+      end function c_close
+
+      !> POSIX _exit(2): what the parent had open stays as it is.
+      subroutine c_exit_at_once(status) bind(c, name='_exit')
+         import :: c_int
+         integer(c_int), value :: status
+      end subroutine c_exit_at_once
+
+      !> usleep(3): sleeps for microseconds, or until a signal comes.
+      integer(c_int) function c_sleep(microseconds) bind(c, name='usleep')
+         import :: c_int
+         integer(c_int), value :: microseconds
+      end function c_sleep
+   end interface
+
 contains
 
    !> Starts a child.
@@ -59,7 +131,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(report_type) :: report
 
-      ! What is buffered here would be printed by the child as well.
+      ! Text that is buffered here would be printed by the child as well.
       flush (error_unit)
       self%process = c_start_child(self%messages, self%reports)
       self%is_running = self%process > 0_c_int
@@ -103,7 +175,7 @@ contains
       call c_signal_child(self%process, merge(1_c_int, 0_c_int, kills))
    end subroutine send_signal
 
-   !> What the child has said of itself so far.
+   !> The child's report so far.
    function report(self)
       class(child_type), intent(in) :: self
       type(report_type) :: report

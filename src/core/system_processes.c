@@ -1,5 +1,5 @@
 /* Children, signals and memory that runs out: what needs the system's headers, which Fortran
- * cannot read. Interfaces: system_processes.f90.
+ * cannot read. Interfaces: processes.f90, interruption.f90.
  *
  * A run may have to end within an increment: because a signal came, or because there is no memory
  * left. A signal handler may then call nothing but what POSIX.1-2017, 2.4.3 allows in one

@@ -276,8 +276,8 @@ contains
       if (has_form_of_real(string)) fault = 'is out of range'
    end function real_fault
 
-   !> Whether a text is written as a real; list-directed input alone would also take "1*2", "5/3" or
-   !> "1-5".
+   !> Whether a text is written as a real; list-directed input alone would also accept "1*2", "5/3"
+   !> or "1-5".
    pure function has_form_of_real(string) result(valid)
       character(*), intent(in) :: string
       logical :: valid

@@ -8,7 +8,7 @@ module utf8
 
 contains
 
-   !> Text in UTF-8 as it is; any other text is taken for Latin-1 and encoded in UTF-8.
+   !> Text in UTF-8 as it is; any other text is read as Latin-1 and encoded in UTF-8.
    pure function as_utf8(string) result(encoded)
       character(*), intent(in) :: string           !! any bytes
       character(:), allocatable :: encoded         !! UTF-8

@@ -7,8 +7,7 @@ module batch
    use command_line, only: command_type
    use deck_outcomes, only: deck_outcome_type
    use deck_reader, only: files_of_deck
-   use deck_run, only: base_name, outputs_of, results_of
-   use deck_task, only: deck_task_type
+   use deck_run, only: base_name, outputs_of, results_of, run_deck
    use errors, only: error_type, status_deck, status_internal, status_interrupted
    use file_calls, only: is_stream, make_folder
    use file_identities, only: file_identity_type, identity_of
@@ -17,7 +16,7 @@ module batch
    use kinds, only: dp
    use messages, only: pass_on, print_error, print_line
    use open_files, only: lock_file, unlock_file
-   use processes, only: child_type, pause_briefly, report_type
+   use processes, only: child_type, pause_briefly, report_type, task_type
    use progress, only: progress_type
    use text, only: counted, string_type, to_text
    implicit none
@@ -27,6 +26,14 @@ module batch
    real(dp), parameter :: table_pause = 1.0_dp    !! between two writings of the CSV file [s]
    real(dp), parameter :: shortest_pause = 0.1_dp !! where a deck was started or has ended [s]
    real(dp), parameter :: one_signal = 0.5_dp     !! time within which signals are one [s]
+
+   !> A deck, solved in a process of its own.
+   type, extends(task_type) :: deck_task_type
+      character(:), allocatable :: path   !! as given
+      type(command_type) :: command       !! options of the command line
+   contains
+      procedure :: execute
+   end type deck_task_type
 
    !> A deck that is running.
    type :: slot_type
@@ -353,5 +360,16 @@ contains
          end associate
       end do
    end subroutine leave_out_the_rest
+
+   !> Solves the deck.
+   subroutine execute(self, report)
+      class(deck_task_type), intent(inout) :: self
+      type(report_type), intent(inout) :: report   !! how the deck ended
+      type(deck_outcome_type) :: outcome
+
+      call run_deck(self%path, self%command, outcome)
+      call outcome%print_failed_checks()
+      report = outcome%as_report()
+   end subroutine execute
 
 end module batch

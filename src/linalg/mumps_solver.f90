@@ -6,11 +6,11 @@
 !> own Schur complement.
 module mumps_solver
    use errors, only: error_type, set_error, status_deck, status_internal
+   use interruption, only: c_end_without_memory
    use kinds, only: dp, long
    use linear_solver, only: check_pattern, linear_solver_type
    use ordering, only: adjacency, alike_unknowns, nested_dissection, positions_by_rank
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
-   use system_processes, only: c_end_without_memory
    use text, only: to_text
    implicit none
    private

@@ -205,7 +205,7 @@ contains
       end function with_unit
    end function target_words
 
-   !> What is the larger part of a bound, or why there is none.
+   !> The larger part of a bound, or why there is none.
    function reason(finding)
       type(finding_type), intent(in) :: finding
       character(:), allocatable :: reason

@@ -3,9 +3,9 @@
 module contact_grid
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
-   use growing_datasets, only: bytes_in, flush_sets, growing_dataset_type, quantity_dataset
+   use growing_datasets, only: flush_sets, growing_dataset_type, quantity_dataset
    use hdf5_writer, only: as_integer, hdf5_writer_type
-   use kinds, only: dp, long
+   use kinds, only: dp
    use model, only: unit_labels_type
    use quantity_types, only: of_contact_points, quantity_type
    use records, only: increment_record_type
@@ -24,13 +24,12 @@ module contact_grid
       private
       type(grid_steps_type) :: steps
       type(quantity_type), allocatable :: quantities(:)    !! those of contact points that grow
-      type(growing_dataset_type), allocatable :: sets(:)   !! one for each of them
+      type(growing_dataset_type), allocatable, public :: sets(:)   !! one for each of them
       type(unit_labels_type) :: labels                     !! units of the deck
       integer :: points = 0                                !! contact points of all interfaces
    contains
       procedure :: start
       procedure :: append
-      procedure :: waiting_bytes
       procedure :: write_head
       procedure :: flush => flush_grid
    end type contact_grid_type
@@ -75,14 +74,6 @@ contains
       end do
       call self%steps%append(record%time, self%points, 0)
    end subroutine append
-
-   !> Bytes that wait in memory.
-   pure function waiting_bytes(self) result(bytes)
-      class(contact_grid_type), intent(in) :: self
-      integer(long) :: bytes
-
-      bytes = bytes_in(self%sets)
-   end function waiting_bytes
 
    !> Writes the data that do not change: lines, numbers of nodes, arc lengths, weights.
    subroutine write_head(self, file, interfaces, node_number)

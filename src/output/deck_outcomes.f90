@@ -198,7 +198,7 @@ contains
       end do
    end subroutine print_outcome
 
-   !> What is printed of the last whole round behind `deck: interrupted`.
+   !> Lines on the last whole round, printed behind `deck: interrupted`.
    function round_summary(self, results) result(words)
       class(deck_outcome_type), intent(in) :: self    !! the run, whose last round was whole
       character(*), intent(in) :: results             !! path of its results without extension
@@ -213,7 +213,7 @@ contains
       end do
    end function round_summary
 
-   !> What the run comes to, where its results are, and how many checks passed.
+   !> Summary of the run, where its results are, and how many checks passed.
    function lines_below(self, results) result(lines)
       class(deck_outcome_type), intent(in) :: self
       character(*), intent(in) :: results

@@ -11,21 +11,19 @@ module listing
    use errors, only: error_type
    use file_calls, only: copy_file
    use file_identities, only: check_in_place
-   use listing_errors, only: print_body_errors, print_interface_errors
-   use listing_increments, only: print_attempts, print_balances, print_increment, print_interface
-   use listing_model, only: print_model
-   use listing_prints, only: print_requested
-   use listing_tables, only: print_contact_table, print_iterations, print_verdicts
-   use listing_summary, only: checks, ending, summary_block, warnings_below
+   use listing_head, only: checks, ending, print_model, summary_block
+   use listing_increments, only: print_attempts, print_balances, print_body_errors, &
+      print_increment, print_interface, print_interface_errors
+   use listing_tables, only: print_contact_table, print_iterations, print_requested, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
    use model, only: model_type, unit_labels_type
    use open_files, only: append_to_file, close_descriptor, empty_file, lock_file, open_in_memory, &
       overwrite_in_file, unlock_file
    use printed_text, only: printed_text_type
    use records, only: increment_record_type
-   use run_summaries, only: or_blank, run_summary_type
+   use run_summaries, only: in_times, or_blank, run_entries, run_entry_type, run_summary_type
    use summary, only: summary_type
-   use text, only: append, string_type, to_text
+   use text, only: append, counted, string_type, to_text
    use verification, only: verifier_type
    use zone_diagram, only: zone_diagram_type
    implicit none
@@ -260,7 +258,7 @@ contains
       end do
       call print_list(self%text%unit, 'WARNINGS', warnings)
       if (size(warnings) == 0) write (self%text%unit, '(/, a)') 'No warnings.'
-      call print_times(self%text%unit, run)
+      call print_times(self%text%unit, run_entries(run, model))
       call print_deck(self%text%unit, cards)
       call write_text(self, error)
       if (allocated(error)) return
@@ -270,7 +268,9 @@ contains
       call append(lines, ending(allocated(self%failure), self%summary%increment, &
          run%verify_failed, missed_words(run%accuracy, interfaces) /= '', later_round))
       call append(lines, checks(verifier, run))
-      call append(lines, warnings_below(size(warnings)))
+      if (size(warnings) == 0) call append(lines, 'no warnings')
+      if (size(warnings) > 0) call append(lines, counted(size(warnings), 'warning')// &
+         ', see WARNINGS below')
       call self%summary%add_lines(model, interfaces, lines)
       block = summary_block(lines, size(interfaces))
       call overwrite_in_file(self%descriptor, self%path, self%summary_start, block, error)
@@ -371,15 +371,17 @@ contains
       end do
    end subroutine print_unapproached
 
-   subroutine print_times(unit, run)
+   subroutine print_times(unit, entries)
       integer, intent(in) :: unit
-      type(run_summary_type), intent(in) :: run
+      type(run_entry_type), intent(in) :: entries(:)
+      integer :: i
+      logical :: is_time(size(entries))
 
+      is_time = [(entries(i)%is_told(in_times), i=1, size(entries))]
       call print_title(unit, 'SECONDS')
-      write (unit, '(3x, 6a12)') 'reading', 'assembling', 'reducing', 'iterating', 'recovering', &
-         'writing'
-      write (unit, '(3x, 6f12.4)') run%seconds_read, run%seconds_assemble, run%seconds_reduce, &
-         run%seconds_iterate, run%seconds_recover, run%seconds_write
+      write (unit, '(3x, *(a12))') (entries(i)%label, i=findloc(is_time, .true., dim=1), &
+         findloc(is_time, .true., dim=1, back=.true.))
+      write (unit, '(3x, *(f12.4))') pack(entries%number, is_time)
    end subroutine print_times
 
 end module listing

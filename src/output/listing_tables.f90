@@ -1,21 +1,36 @@
-!> Tables of the listing: *CONTACT PRINT, the iteration history, the *VERIFY verdicts.
+!> Tables of the listing: *CONTACT PRINT, *NODE PRINT, *EL PRINT, the iteration history, the *VERIFY
+!> verdicts.
 module listing_tables
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, geometry_values
+   use due_output, only: table_is_due
    use increment_quantities, only: pass_value
    use kinds, only: dp
-   use listing_text, only: column, table_cell, table_head
-   use model, only: verify_type
+   use listing_text, only: column, in_columns, table_cell, table_head
+   use model, only: model_type, verify_type
+   use print_requests, only: print_displacement, print_force, print_heat, print_heat_flux, &
+      print_position, print_request_type, print_stress, print_temperature
    use quantity_types, only: needs_heat, of_contact_points, of_passes, quantity_type
-   use records, only: contact_record_type
+   use records, only: contact_record_type, element_points_record_type, field_record_type, &
+      increment_record_type
    use reported_quantities, only: quantities
    use run_summaries, only: or_blank
    use solution_report, only: iteration_record_type
    use text, only: to_text
+   use transforms, only: axes_at
    use verification, only: bound_words, outcome_type
    implicit none
    private
-   public :: print_contact_table, print_iterations, print_verdicts
+   public :: print_contact_table, print_iterations, print_requested, print_verdicts
+
+   ! Keys of the quantities of *NODE PRINT and *EL PRINT, by the print_* constants, and the heads of
+   ! their columns.
+   integer, parameter :: head_length = 4
+   character(*), parameter :: print_keys(print_displacement:print_heat_flux) = [character(3) :: &
+      'U', 'NT', 'RF', 'RFL', 'S', 'HFL']
+   character(*), parameter :: print_heads(4, print_displacement:print_heat_flux) = reshape([ &
+      character(head_length) :: 'U1', 'U2', '', '', 'NT', '', '', '', 'RF1', 'RF2', '', '', &
+      'RFL', '', '', '', 'S11', 'S22', 'S33', 'S12', 'HFL1', 'HFL2', '', ''], [4, 6])
 
 contains
 
@@ -114,5 +129,197 @@ contains
       if (allocated(outcome%bound)) write (unit, '(8x, 3a)') 'found:  ', to_text(outcome%found), &
          bound_words(outcome)
    end subroutine print_verdict
+
+   !> Prints the tables that are due at an increment.
+   subroutine print_requested(unit, record, model)
+      integer, intent(in) :: unit                         !! unit of the listing
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
+      integer :: i
+
+      associate (step => model%steps(record%step))
+         if (allocated(step%node_prints)) then
+            do i = 1, size(step%node_prints)
+               if (table_is_due(step%node_prints(i)%frequency, record)) call print_nodes(unit, &
+                  step%node_prints(i), model, record%fields)
+            end do
+         end if
+         if (allocated(step%element_prints)) then
+            do i = 1, size(step%element_prints)
+               if (table_is_due(step%element_prints(i)%frequency, record)) call print_points( &
+                  unit, step%element_prints(i), model, record%element_points(i))
+            end do
+         end if
+      end associate
+   end subroutine print_requested
+
+   !> Table of the nodes of a set that elements have, and sums over them.
+   subroutine print_nodes(unit, request, model, fields)
+      integer, intent(in) :: unit
+      type(print_request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      type(field_record_type), intent(in) :: fields
+      real(dp), allocatable :: columns(:, :), sums(:, :), values(:, :)
+      character(head_length), allocatable :: heads(:), sum_heads(:)
+      integer, allocatable :: nodes(:)
+      integer :: i, k
+      logical :: is_summed
+
+      associate (set => model%mesh%node_sets(request%set))
+         nodes = pack(set%members, model%mesh%node_body(set%members) > 0)
+         allocate (columns(0, size(nodes)), sums(0, size(nodes)), heads(0), sum_heads(0))
+         do i = 1, size(request%quantities)
+            associate (quantity => request%quantities(i))
+               values = nodal_values(quantity, fields, nodes)
+               if (size(values, 1) == 0) then
+                  call print_absence(unit, '   NODES OF '//set%name, quantity)
+                  cycle
+               end if
+               is_summed = quantity == print_force .or. quantity == print_heat
+               if (is_summed .and. request%totals) call add(quantity, values, sums, sum_heads)
+               if (is_summed .and. .not. request%each_node) cycle
+               if (request%local_axes .and. size(values, 1) == 2) call turn(model, nodes, values)
+               call add(quantity, values, columns, heads)
+            end associate
+         end do
+         if (size(heads) > 0) then
+            write (unit, '(/, 2a)') '   NODES OF ', set%name
+            call print_head(unit, '    node', heads)
+            do k = 1, size(nodes)
+               write (unit, '(i8)', advance='no') model%mesh%node_number(nodes(k))
+               write (unit, '(2a)') in_columns(model%mesh%coordinates(:, nodes(k)), 12, 4), &
+                  in_columns(columns(:, k), 14, 6)
+            end do
+         end if
+         if (size(sum_heads) > 0) then
+            write (unit, '(/, 2a)') '   TOTALS OF ', set%name
+            write (unit, '(*(a14))') (trim(sum_heads(i)), i=1, size(sum_heads))
+            write (unit, '(a)') in_columns(sum(sums, dim=2), 14, 6)
+         end if
+      end associate
+   end subroutine print_nodes
+
+   !> Replaces the components of vectors by those along the axes of their nodes.
+   pure subroutine turn(model, nodes, vectors)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: nodes(:)
+      real(dp), intent(inout) :: vectors(:, :)    ! (2, nodes)
+      integer :: i, k
+
+      if (.not. allocated(model%transforms)) return
+      do i = 1, size(model%transforms)
+         associate (transform => model%transforms(i))
+            do k = 1, size(nodes)
+               if (all(model%mesh%node_sets(transform%set)%members /= nodes(k))) cycle
+               vectors(:, k) = matmul(vectors(:, k), axes_at(transform, &
+                  model%mesh%coordinates(:, nodes(k))))
+            end do
+         end associate
+      end do
+   end subroutine turn
+
+   !> A nodal quantity: (components, nodes), no component where the step does not have it.
+   pure function nodal_values(quantity, fields, nodes) result(values)
+      integer, intent(in) :: quantity
+      type(field_record_type), intent(in) :: fields
+      integer, intent(in) :: nodes(:)
+      real(dp), allocatable :: values(:, :)
+
+      allocate (values(0, size(nodes)))
+      select case (quantity)
+      case (print_displacement)
+         if (allocated(fields%displacement)) values = fields%displacement(:, nodes)
+      case (print_force)
+         if (allocated(fields%external_force)) values = fields%external_force(:, nodes)
+      case (print_temperature)
+         if (allocated(fields%temperature)) values = reshape(fields%temperature(nodes), &
+            [1, size(nodes)])
+      case (print_heat)
+         if (allocated(fields%external_heat)) values = reshape(fields%external_heat(nodes), &
+            [1, size(nodes)])
+      case default   ! of integration points
+      end select
+   end function nodal_values
+
+   !> Appends a quantity to the columns of a table.
+   pure subroutine add(quantity, values, columns, heads)
+      integer, intent(in) :: quantity
+      real(dp), intent(in) :: values(:, :)                    ! (components, rows)
+      real(dp), allocatable, intent(inout) :: columns(:, :)   ! (columns, rows)
+      character(head_length), allocatable, intent(inout) :: heads(:)
+      real(dp), allocatable :: more(:, :)
+
+      allocate (more(size(columns, 1) + size(values, 1), size(values, 2)))
+      more(:size(columns, 1), :) = columns
+      more(size(columns, 1) + 1:, :) = values
+      call move_alloc(more, columns)
+      heads = [heads, pack(print_heads(:, quantity), print_heads(:, quantity) /= '')]
+   end subroutine add
+
+   !> Table of the integration points of the elements of a set.
+   subroutine print_points(unit, request, model, points)
+      integer, intent(in) :: unit
+      type(print_request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      type(element_points_record_type), intent(in) :: points
+      real(dp), allocatable :: columns(:, :)
+      character(head_length), allocatable :: heads(:)
+      character(:), allocatable :: title
+      integer :: i, k
+
+      title = '   INTEGRATION POINTS OF '//model%mesh%element_sets(request%set)%name
+      allocate (columns(0, size(points%element)), heads(0))
+      do i = 1, size(request%quantities)
+         associate (quantity => request%quantities(i))
+            if (quantity == print_stress .and. allocated(points%stress)) then
+               call add(quantity, points%stress, columns, heads)
+            else if (quantity == print_heat_flux .and. allocated(points%heat_flux)) then
+               call add(quantity, points%heat_flux, columns, heads)
+            else if (quantity /= print_position) then   ! positions are in every table
+               call print_absence(unit, title, quantity)
+            end if
+         end associate
+      end do
+      if (size(heads) == 0 .and. any(request%quantities /= print_position)) return
+      write (unit, '(/, a)') title
+      call print_head(unit, ' element point', heads)
+      do k = 1, size(points%element)
+         write (unit, '(i8, i6)', advance='no') model%mesh%element_number(points%element(k)), &
+            points%point(k)
+         write (unit, '(2a)', advance='no') in_columns(points%position(:, k), 12, 4), &
+            in_columns(columns(:, k), 14, 6)
+         write (unit, '(a)') axes_name(request, model, points%element(k))
+      end do
+   end subroutine print_points
+
+   !> Name of the orientation along whose axes an element's values are; empty for x and y.
+   pure function axes_name(request, model, element) result(name)
+      type(print_request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: element
+      character(:), allocatable :: name
+
+      name = ''
+      if (.not. request%local_axes) return
+      associate (orientation => model%sections(model%mesh%element_section(element))%orientation)
+         if (orientation > 0) name = ' '//model%orientations(orientation)%name
+      end associate
+   end function axes_name
+
+   subroutine print_absence(unit, title, quantity)
+      integer, intent(in) :: unit, quantity
+      character(*), intent(in) :: title
+
+      write (unit, '(/, 4a)') title, ': there is no ', trim(print_keys(quantity)), &
+         ' at this increment'
+   end subroutine print_absence
+
+   subroutine print_head(unit, items, heads)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: items, heads(:)
+      integer :: i
+
+      write (unit, '(a, 2a12, *(a14))') items, 'x', 'y', (trim(heads(i)), i=1, size(heads))
+   end subroutine print_head
 
 end module listing_tables

@@ -8,11 +8,12 @@ module model_words
    use friction_laws, only: friction_law_type, rough_coefficient, unlimited
    use materials, only: constant_type, material_type
    use model, only: model_type
+   use steps, only: analysis_heat, analysis_static
    use text, only: append, counted, string_type, to_text
    implicit none
    private
    public :: material_words, friction_words, open_law_words, closed_law_words
-   public :: open_words, pairing_words, points_words, section_words
+   public :: open_words, pairing_words, points_words, section_words, step_words, from_to
 
 contains
 
@@ -34,6 +35,51 @@ contains
       end do
    end function section_words
 
+   !> Analysis and scheme of (3.4) of every step, equal steps together: which steps, then their
+   !> words, in turn.
+   pure function step_words(model) result(lines)
+      type(model_type), intent(in) :: model
+      type(string_type), allocatable :: lines(:)
+      character(:), allocatable :: words, range
+      integer :: first, i
+
+      allocate (lines(0))
+      first = 1
+      do i = 1, size(model%steps)
+         words = analysis_of(i)
+         if (i < size(model%steps)) then
+            if (analysis_of(i + 1) == words) cycle
+         end if
+         range = 'step '//to_text(first)
+         if (i > first) range = 'steps '//to_text(first)//' to '//to_text(i)
+         call append(lines, range)
+         call append(lines, words)
+         first = i + 1
+      end do
+   contains
+      pure function analysis_of(step) result(analysis)
+         integer, intent(in) :: step
+         character(:), allocatable :: analysis
+
+         select case (model%steps(step)%analysis)
+         case (analysis_static)
+            analysis = 'mechanics'
+         case (analysis_heat)
+            analysis = 'heat, scheme '//trim(model%steps(step)%scheme%name)
+         case default
+            analysis = 'heat and mechanics, scheme '//trim(model%steps(step)%scheme%name)
+         end select
+      end function analysis_of
+   end function step_words
+
+   !> The ends of a range.
+   pure function from_to(ends) result(words)
+      real(dp), intent(in) :: ends(2)
+      character(:), allocatable :: words
+
+      words = to_text(ends(1))//' to '//to_text(ends(2))
+   end function from_to
+
    pure function plane_words(plane, thickness) result(words)
       integer, intent(in) :: plane
       real(dp), intent(in) :: thickness
@@ -49,7 +95,7 @@ contains
       end select
    end function plane_words
 
-   !> What contact points are.
+   !> Kind of the contact points, in the plural.
    pure function points_words(points) result(words)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       character(:), allocatable :: words
@@ -72,7 +118,7 @@ contains
       end if
    end function pairing_words
 
-   !> What the master leaves open of the slave; empty for nothing.
+   !> Corners of the slave that no master is opposite to; empty for none.
    pure function open_words(points) result(words)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       character(:), allocatable :: words

@@ -21,9 +21,8 @@ module results
    use reported_quantities, only: datasets
    use result_accuracy, only: write_accuracy
    use result_fields, only: field_results_type
-   use result_run, only: write_run
    use result_tables, only: error_results_type, result_table_type, write_geometry
-   use run_summaries, only: or_blank, run_summary_type
+   use run_summaries, only: or_blank, run_summary_type, write_run
    use solution_report, only: iteration_record_type
    use status_files, only: status_file_type
    use steps, only: planned_increments, solves_heat, solves_mechanics
@@ -211,7 +210,7 @@ contains
       call self%passes%close()
    end subroutine give_up
 
-   !> What steps of a deck solve, by needs_*.
+   !> Fields that the steps of a deck solve, by needs_*.
    pure function what_is_solved(model, has_contact) result(has)
       type(model_type), intent(in) :: model
       logical, intent(in) :: has_contact
@@ -244,7 +243,7 @@ contains
 
       bytes = bytes_in(self%fields%sets) + bytes_in(self%history%sets) &
          + bytes_in(self%convergence%sets)
-      if (self%has_contact) bytes = bytes + self%contact_grid%waiting_bytes()
+      if (self%has_contact) bytes = bytes + bytes_in(self%contact_grid%sets)
       do i = 1, size(self%contacts)
          bytes = bytes + bytes_in(self%contacts(i)%sets)
       end do
@@ -257,13 +256,16 @@ contains
       type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in) :: ends_run
+      type(run_summary_type) :: until_now
       real(dp) :: since
       logical :: is_first
 
       since = wall_seconds()
       is_first = .not. self%file%in_place
       call flush_all(self, model, interfaces)
-      call write_run(self%file%content, run, model, wall_seconds() - since)
+      until_now = run
+      until_now%seconds_write = run%seconds_write + (wall_seconds() - since)
+      call write_run(self%file%content, until_now, model)
       if (ends_run) call write_accuracy(self%file%content, run%accuracy, interfaces, model%units)
       call self%file%close(error)
       if (allocated(error)) return

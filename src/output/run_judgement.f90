@@ -1,5 +1,5 @@
-!> What only a whole run shows of a deck that may not be meant so: contact that never closes, no
-!> load that acts, large strains and rotations.
+!> Warnings that only a whole run can give: contact that never closes, no load that acts, large
+!> strains and rotations, and the warnings of its increments by kinds.
 module run_judgement
    use contact_points, only: contact_points_type, past_end
    use contact_states, only: contact_open
@@ -7,20 +7,37 @@ module run_judgement
    use mesh, only: extent_of
    use model, only: model_type
    use records, only: contact_record_type, increment_record_type
+   use solution_report, only: warning_type
    use steps, only: solves_heat, solves_mechanics
    use strains, only: largest_deformation, of_strain
-   use warning_summary, only: warning_summary_type
    use text, only: append, percent, string_type, to_text
    implicit none
    private
-   public :: run_judgement_type
+   public :: run_judgement_type, warning_summary_type
 
    !> Largest strain and rotation for which the linear theory holds, and where NLGEOM is asked for
    real(dp), parameter :: small = 0.1_dp, small_with_nlgeom = 0.05_dp
    real(dp), parameter :: unmoved = 1.0e-12_dp     !! part of the extent that is no displacement
    real(dp), parameter :: unheated = 1.0e-12_dp    !! part of a temperature that is no change
 
-   !> What was seen of a run so far.
+   !> Warnings of one kind.
+   type :: kind_type
+      type(warning_type) :: worst            !! the worst of them; of equals the first
+      integer :: at = 0                      !! increment that had it
+      integer :: first = 0, last = 0         !! increments
+      integer :: count = 0                   !! increments that had one
+   end type kind_type
+
+   !> All kinds of a run, in the order of their first increments.
+   type :: warning_summary_type
+      private
+      type(kind_type), allocatable :: kinds(:)
+   contains
+      procedure :: take => take_warnings
+      procedure :: lines
+   end type warning_summary_type
+
+   !> Observations of a run so far.
    type :: run_judgement_type
       private
       logical :: moves = .false.                   !! whether a node was displaced
@@ -102,7 +119,7 @@ contains
       self%ended_early = .true.
    end subroutine fail
 
-   !> What is to be said of the run.
+   !> The warnings on the run.
    pure function warnings(self, model, interfaces) result(lines)
       class(run_judgement_type), intent(in) :: self       !! what was seen
       type(model_type), intent(in) :: model
@@ -159,5 +176,70 @@ contains
       words = percent(value, digits=3)
       if (i /= of_strain) words = words//' of a radian'
    end function amount
+
+   !> Takes the warnings of an increment.
+   pure subroutine take_warnings(self, increment, warnings)
+      class(warning_summary_type), intent(inout) :: self
+      integer, intent(in) :: increment               !! its running number
+      type(warning_type), intent(in) :: warnings(:)
+      integer :: i
+
+      do i = 1, size(warnings)
+         call take_one(self, increment, warnings(i))
+      end do
+   end subroutine take_warnings
+
+   pure subroutine take_one(self, increment, warning)
+      class(warning_summary_type), intent(inout) :: self
+      integer, intent(in) :: increment
+      type(warning_type), intent(in) :: warning
+      type(kind_type), allocatable :: more(:)
+      integer :: k, n
+
+      n = 0
+      if (allocated(self%kinds)) n = size(self%kinds)
+      do k = 1, n
+         if (self%kinds(k)%worst%is_like(warning)) exit
+      end do
+      if (k > n) then
+         allocate (more(n + 1))
+         if (n > 0) more(:n) = self%kinds
+         more(k)%first = increment
+         more(k)%at = increment
+         more(k)%worst = warning
+         call move_alloc(more, self%kinds)
+      end if
+      associate (kind => self%kinds(k))
+         if (kind%last < increment) kind%count = kind%count + 1
+         kind%last = increment
+         if (warning%severity <= kind%worst%severity) return
+         kind%worst = warning
+         kind%at = increment
+      end associate
+   end subroutine take_one
+
+   !> One line a kind, such as `increments 13 to 21, worst at 17: ...`.
+   pure function lines(self)
+      class(warning_summary_type), intent(in) :: self
+      type(string_type), allocatable :: lines(:)
+      integer :: k
+
+      allocate (lines(0))
+      if (.not. allocated(self%kinds)) return
+      do k = 1, size(self%kinds)
+         call append(lines, when(self%kinds(k))//': '//self%kinds(k)%worst%words())
+      end do
+   end function lines
+
+   pure function when(kind) result(words)
+      type(kind_type), intent(in) :: kind
+      character(:), allocatable :: words
+
+      words = 'increment '//to_text(kind%first)
+      if (kind%last == kind%first) return
+      words = 'increments '//to_text(kind%first)//' to '//to_text(kind%last)
+      if (kind%count <= kind%last - kind%first) words = to_text(kind%count)//' of the '//words
+      if (kind%worst%has_value) words = words//', worst at '//to_text(kind%at)
+   end function when
 
 end module run_judgement

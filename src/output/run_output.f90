@@ -177,12 +177,14 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: warnings(:)
       real(dp) :: since
+      integer :: counts(3)
 
       since = wall_seconds()
       associate (accuracy => self%run%accuracy)
          if (size(self%verifier%outcomes) > 0) then
-            accuracy%checks_passed = self%verifier%passed_count()
-            accuracy%checks_failed = self%verifier%failed_count()
+            counts = self%verifier%counts()
+            accuracy%checks_passed = counts(1)
+            accuracy%checks_failed = counts(2)
          end if
          self%run%verify_passed = accuracy%checks_passed
          self%run%verify_failed = accuracy%checks_failed
@@ -222,7 +224,7 @@ contains
       call self%listing%close(keeps_lock)
    end subroutine close_output
 
-   !> What the run comes to at its last accepted increment.
+   !> Summary of the run at its last accepted increment.
    function summary_lines(self, model, interfaces) result(lines)
       class(run_output_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -247,7 +249,7 @@ contains
       class(run_output_type), intent(in) :: self        !! the output, finished
       type(model_type), intent(in) :: model
       type(string_type), allocatable :: lines(:)        !! what was expected and what was found
-      integer :: i, unjudged
+      integer :: i, counts(3)
 
       allocate(lines(0))
       do i = 1, size(model%verifications)
@@ -256,10 +258,10 @@ contains
             call append(lines, failure_words(check, outcome))
          end associate
       end do
-      unjudged = self%verifier%unjudged_count()
-      if (unjudged > 0) call append(lines, self%run%deck_path//': error: '// &
-         counted(unjudged, '*VERIFY check')//' could not be judged: the run ended before '// &
-         trim(merge('its time   ', 'their times', unjudged == 1)))
+      counts = self%verifier%counts()
+      if (counts(3) > 0) call append(lines, self%run%deck_path//': error: '// &
+         counted(counts(3), '*VERIFY check')//' could not be judged: the run ended before '// &
+         trim(merge('its time   ', 'their times', counts(3) == 1)))
    end function failed_checks
 
    !> Path of the listing, or nothing before it is reserved.
@@ -295,7 +297,7 @@ contains
       if (self%published() > 0) written = merge(4, 3, self%results%has_contact)
    end function written
 
-   !> What the files hold if the run ends here.
+   !> Contents of the files if the run ends here.
    pure function kept(self) result(words)
       class(run_output_type), intent(in) :: self
       character(:), allocatable :: words           !! one sentence; empty if nothing

@@ -1,10 +1,27 @@
-!> What is known of a run as a whole: for the listing's summary and the result file's `/run`.
+!> A run as a whole: what it models, its sizes, its times, in one table. The listing,
+!> `thercon check` and the attributes of `/run` in the result file read this table.
 module run_summaries
    use accuracy_rounds, only: accuracy_rounds_type
+   use hanging_nodes, only: hanging_count
+   use hdf5_writer, only: hdf5_writer_type
    use kinds, only: dp, long
+   use model, only: model_type
+   use model_words, only: from_to, material_words, section_words, step_words
+   use step_reduction, only: run_seconds_type, run_size_type
+   use text, only: string_type, to_text
    implicit none
    private
-   public :: run_summary_type, or_blank
+   public :: run_summary_type, run_entry_type, run_entries, write_run, or_blank
+   public :: in_listing, in_check, in_times
+
+   ! Where an entry is told.
+   integer, parameter :: nowhere = 0      !! not in words
+   integer, parameter :: in_listing = 1   !! in the listing's section MODEL
+   integer, parameter :: in_check = 2     !! by `thercon check`
+   integer, parameter :: in_both = 3
+   integer, parameter :: in_times = 4     !! in the listing's section SECONDS
+
+   integer, parameter :: format_version = 1   !! of the result file; grows where old readers fail
 
    !> One run. The caller of the output layer keeps it up to date.
    type :: run_summary_type
@@ -13,23 +30,28 @@ module run_summaries
       character(:), allocatable :: solver        !! SKYLINE or MUMPS
       character(:), allocatable :: modelled      !! heat, contact, friction, coupling: which are on
       character(:), allocatable :: reasons       !! why, in one sentence
-      integer :: equations_thermal = 0           !! unknown temperatures
-      integer :: equations_mechanical = 0        !! unknown displacements
-      integer :: contact_unknowns = 0            !! unknowns of the reduced system
-      integer(long) :: factor_bytes = 0          !! bytes of the factors
-      real(dp) :: smallest_pivot = 1.0_dp        !! of the factors, over its diagonal entry [-]
+      type(run_size_type) :: sizes
       logical :: has_biot = .false.              !! whether contact_biot was computed
       real(dp) :: contact_biot(2) = 0.0_dp       !! omega L/K at the start, smallest and largest [-]
       real(dp) :: seconds_read = 0.0_dp          !! reading the deck [s]
-      real(dp) :: seconds_assemble = 0.0_dp      !! element matrices [s]
-      real(dp) :: seconds_reduce = 0.0_dp        !! factoring and reducing the bodies [s]
-      real(dp) :: seconds_iterate = 0.0_dp       !! fixed point and contact [s]
-      real(dp) :: seconds_recover = 0.0_dp       !! recovering the fields [s]
+      type(run_seconds_type) :: seconds
       real(dp) :: seconds_write = 0.0_dp         !! writing; the output layer adds to it [s]
       integer :: verify_passed = 0               !! *VERIFY checks that passed
       integer :: verify_failed = 0               !! *VERIFY checks that failed
       type(accuracy_rounds_type) :: accuracy     !! rounds of a requested accuracy
    end type run_summary_type
+
+   !> A fact about a run.
+   type :: run_entry_type
+      integer, private :: told = nowhere         !! one of the constants above
+      character(:), allocatable :: label         !! its name in words
+      character(:), allocatable :: words         !! its value in words
+      real(dp) :: number = 0.0_dp                !! its value, where it is a number
+      character(:), allocatable :: attribute     !! its name in `/run`; empty: not there
+      character(7), private :: kind = 'text'     !! of the attribute: text, integer, long or real
+   contains
+      procedure :: is_told
+   end type run_entry_type
 
 contains
 
@@ -41,5 +63,149 @@ contains
       string = ''
       if (allocated(text)) string = text
    end function or_blank
+
+   !> Whether an entry is told somewhere.
+   pure logical function is_told(self, where)
+      class(run_entry_type), intent(in) :: self
+      integer, intent(in) :: where                    !! in_listing, in_check or in_times
+
+      is_told = iand(self%told, where) > 0
+   end function is_told
+
+   !> The table, in the order of the listing and of `thercon check`.
+   function run_entries(run, model) result(entries)
+      type(run_summary_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(run_entry_type), allocatable :: entries(:)
+      type(string_type), allocatable :: lines(:)
+      integer :: i
+
+      allocate (entries(0))
+      call add(entries, in_check, 'modelled', or_blank(run%modelled), 'modelled')
+      call add(entries, in_both, 'bodies', model%mesh%body_count)
+      call add(entries, in_both, 'nodes', size(model%mesh%node_number))
+      call add(entries, in_both, 'elements', size(model%mesh%element_number))
+      call add(entries, in_listing, 'uniform refinements', model%refinement_levels)
+      if (hanging_count(model%mesh) > 0) call add(entries, in_listing, &
+         'sides with hanging nodes', hanging_count(model%mesh))
+      if (model%element_order == 1) call add(entries, in_listing, 'order of the elements', &
+         '1 (*OPTIONS, ORDER=1)')
+      call add(entries, in_both, 'steps', size(model%steps))
+      lines = step_words(model)
+      do i = 1, size(lines), 2
+         call add(entries, in_listing, lines(i)%value, lines(i + 1)%value)
+      end do
+      associate (sizes => run%sizes)
+         call add(entries, in_both, 'unknown temperatures', sizes%equations_thermal, &
+            'equations_thermal')
+         call add(entries, in_both, 'unknown displacements', sizes%equations_mechanical, &
+            'equations_mechanical')
+         call add(entries, in_both, 'contact unknowns', sizes%contact_unknowns, 'contact_unknowns')
+         call add(entries, in_check, 'memory of a run', to_text(nint(model%memory_needed/ &
+            1.0e6_dp))//' MB (estimate)')
+         call add(entries, in_listing, 'solver', or_blank(run%solver), 'solver')
+         call add(entries, in_listing, 'bytes of factors', sizes%factor_bytes, 'factor_bytes')
+         call add(entries, in_listing, 'smallest pivot', sizes%smallest_pivot, 'smallest_pivot', &
+            ' of its diagonal entry')
+      end associate
+      call add(entries, in_listing, 'load axis', or_blank(model%load_label))
+      if (run%has_biot) call add(entries, in_listing, 'contact Biot number', &
+         from_to(run%contact_biot))
+      lines = section_words(model)
+      do i = 1, size(lines)
+         call add(entries, in_both, 'section '//to_text(i), lines(i)%value)
+      end do
+      do i = 1, size(model%materials)
+         call add(entries, in_both, 'material '//model%materials(i)%name, &
+            material_words(model%materials(i)))
+      end do
+      call add_end(entries, run, model)
+   end function run_entries
+
+   !> The times, and what only the result file has.
+   subroutine add_end(entries, run, model)
+      type(run_entry_type), allocatable, intent(inout) :: entries(:)
+      type(run_summary_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+
+      call add(entries, in_times, 'reading', run%seconds_read, 'seconds_read')
+      call add(entries, in_times, 'assembling', run%seconds%assemble, 'seconds_assemble')
+      call add(entries, in_times, 'reducing', run%seconds%reduce, 'seconds_reduce')
+      call add(entries, in_times, 'iterating', run%seconds%iterate, 'seconds_iterate')
+      call add(entries, in_times, 'recovering', run%seconds%recover, 'seconds_recover')
+      call add(entries, in_times, 'writing', run%seconds_write, 'seconds_write')
+      call add(entries, nowhere, '', format_version, 'format_version')
+      call add(entries, nowhere, '', or_blank(run%version), 'version')
+      call add(entries, nowhere, '', or_blank(model%heading), 'heading')
+      call add(entries, nowhere, '', or_blank(model%units%length), 'unit_length')
+      call add(entries, nowhere, '', or_blank(model%units%stress), 'unit_stress')
+      call add(entries, nowhere, '', or_blank(model%units%power), 'unit_power')
+      call add(entries, nowhere, '', or_blank(model%units%temperature), 'unit_temperature')
+      call add(entries, nowhere, '', run%verify_passed, 'verify_passed')
+      call add(entries, nowhere, '', run%verify_failed, 'verify_failed')
+   end subroutine add_end
+
+   subroutine add(entries, told, label, value, attribute, behind)
+      type(run_entry_type), allocatable, intent(inout) :: entries(:)
+      integer, intent(in) :: told
+      character(*), intent(in) :: label
+      class(*), intent(in) :: value
+      character(*), intent(in), optional :: attribute, behind
+      type(run_entry_type), allocatable :: more(:)
+
+      allocate (more(size(entries) + 1))
+      more(:size(entries)) = entries
+      associate (entry => more(size(more)))
+         entry%told = told
+         entry%label = label
+         entry%attribute = ''
+         if (present(attribute)) entry%attribute = attribute
+         select type (value)
+         type is (character(*))
+            entry%words = value
+         type is (integer)
+            entry%kind = 'integer'
+            entry%number = value
+            entry%words = to_text(value)
+         type is (integer(long))
+            entry%kind = 'long'
+            entry%number = value
+            entry%words = to_text(entry%number)
+         type is (real(dp))
+            entry%kind = 'real'
+            entry%number = value
+            entry%words = to_text(value)
+         end select
+         if (present(behind)) entry%words = entry%words//behind
+      end associate
+      call move_alloc(more, entries)
+   end subroutine add
+
+   !> Writes the attributes of `/run`, over those of an earlier publishing.
+   subroutine write_run(file, run, model)
+      type(hdf5_writer_type), intent(inout) :: file       !! the open file
+      type(run_summary_type), intent(in) :: run           !! the run so far
+      type(model_type), intent(in) :: model
+      character(*), parameter :: group = '/run'
+      type(run_entry_type), allocatable :: entries(:)
+      integer :: i
+
+      entries = run_entries(run, model)
+      do i = 1, size(entries)
+         associate (entry => entries(i))
+            if (entry%attribute == '') cycle
+            select case (entry%kind)
+            case ('integer')
+               call file%set(group, entry%attribute, nint(entry%number))
+            case ('long')
+               call file%set(group, entry%attribute, nint(entry%number, long))
+            case ('real')
+               call file%set(group, entry%attribute, entry%number)
+            case default
+               call file%set(group, entry%attribute, entry%words)
+            end select
+         end associate
+      end do
+   end subroutine write_run
 
 end module run_summaries

@@ -1,4 +1,4 @@
-!> What a run comes to, in a few lines: the quantities of every interface at the last accepted
+!> Results of a run in a few lines: the quantities of every interface at the last accepted
 !> increment, with the bounds of their errors where these are estimated.
 module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
@@ -26,7 +26,7 @@ module summary
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
       'power', 'power']
 
-   !> What the last accepted increment leaves.
+   !> Results of the last accepted increment.
    type :: summary_type
       private
       integer, public :: increment = 0                             !! its number; 0 before the first
@@ -219,7 +219,7 @@ contains
       if (words /= '') words = ': '//words
    end function why_not
 
-   !> What is said of a pressure that has a bound, but perhaps no limit.
+   !> The note on a pressure that has a bound, but perhaps no limit.
    pure function of_limit(errors, q, points, contact) result(words)
       type(interface_errors_type), intent(in) :: errors
       integer, intent(in) :: q

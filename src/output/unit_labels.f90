@@ -38,7 +38,7 @@ contains
       if (words == '') words = trim(unit)
    end function unit_in_words
 
-   !> What is measured on the load axis, by the degree of freedom that it follows.
+   !> Quantity on the load axis, by the degree of freedom that it follows.
    pure function load_unit(dof) result(unit)
       integer, intent(in) :: dof                        !! as in steps; 0 for the time
       character(:), allocatable :: unit

@@ -14,7 +14,7 @@ module working_files
    real(dp), parameter :: patience = 11.0_dp   !! pause between publishings, in costs of one
    !> An increment that takes longer is published at once: a signal may end the next one. [s]
    real(dp), parameter :: long_increment = 2.0_dp
-   real(dp), parameter :: usual_cost = 0.01_dp   !! what the first one is taken to cost [s]
+   real(dp), parameter :: usual_cost = 0.01_dp   !! assumed cost of the first one [s]
    integer, parameter :: tried_bytes = 16384   !! room for these must be had before the run [byte]
    integer, parameter :: unlike_full = 65536   !! a disk that takes these is not full [byte]
    character(*), parameter :: extension = '.tmp'   !! of a working copy, as in file_calls.c

@@ -159,7 +159,7 @@ contains
       end select
    end function geometry_values
 
-   !> What there is in place of an edge where its zone is the whole face, or none; else nothing.
+   !> Words in place of an edge where its zone is the whole face, or none; else nothing.
    pure function zone_words(name, contact) result(words)
       character(*), intent(in) :: name                   !! of a quantity of an interface
       type(contact_record_type), intent(in) :: contact   !! its state
@@ -177,7 +177,7 @@ contains
       end associate
    end function zone_words
 
-   !> What is said of an edge at the end of the face.
+   !> Words on an edge at the end of the face.
    pure function end_words(name, contact) result(words)
       character(*), intent(in) :: name                   !! of an edge
       type(contact_record_type), intent(in) :: contact   !! state of its interface

@@ -1,5 +1,5 @@
-!> What one accepted increment leaves behind: the only thing that listing, results and verification
-!> see of the solution.
+!> Record of one accepted increment: the only part of the solution that listing, results and
+!> verification see.
 module records
    use kinds, only: dp
    use recovered_error, only: error_record_type

@@ -14,7 +14,7 @@ module command_line
    integer, parameter :: command_version = 4   !! print versions
    integer, parameter :: command_trade = 5     !! measure speed against accuracy
 
-   !> What the command line asks for.
+   !> Command, decks and options.
    type :: command_type
       integer :: action = command_help                !! one of the command_* constants
       type(string_type), allocatable :: decks(:)      !! paths as given

@@ -253,7 +253,8 @@ contains
                   simulation%control%planned(model))
                call estimator%begin_increment(simulation)
                call simulation%advance(model, record, error)
-               call take_measures(simulation, output)
+               output%run%seconds = simulation%seconds
+               output%run%sizes = simulation%sizes
                if (allocated(error)) then
                   if (error%status == status_interrupted) call check_signals(self, error)
                end if
@@ -287,9 +288,9 @@ contains
 
       associate (accuracy => self%output%run%accuracy, run => self%output%run)
          if (.not. accuracy%is_on) return
-         associate (round => accuracy%rounds(size(accuracy%rounds)))
-            round%unknowns = run%equations_thermal + run%equations_mechanical + &
-               run%contact_unknowns
+         associate (round => accuracy%rounds(size(accuracy%rounds)), sizes => run%sizes)
+            round%unknowns = sizes%equations_thermal + sizes%equations_mechanical + &
+               sizes%contact_unknowns
             round%elements = size(self%model%mesh%element_kind)
             call cpu_time(now)
             round%cpu_seconds = now - self%cpu_start
@@ -297,18 +298,6 @@ contains
          call accuracy%conclude(self%model%accuracy%rounds, self%indicators%asks_for_nothing())
       end associate
    end subroutine judge_round
-
-   subroutine take_measures(simulation, output)
-      type(simulation_type), intent(in) :: simulation
-      type(run_output_type), intent(inout) :: output
-
-      output%run%seconds_assemble = simulation%seconds%assemble
-      output%run%seconds_reduce = simulation%seconds%reduce
-      output%run%seconds_iterate = simulation%seconds%iterate
-      output%run%seconds_recover = simulation%seconds%recover
-      output%run%factor_bytes = simulation%sizes%factor_bytes
-      output%run%smallest_pivot = simulation%sizes%smallest_pivot
-   end subroutine take_measures
 
    !> Takes which checks of the deck failed, and which targets were missed.
    subroutine take_checks(self, outcome)

@@ -1,5 +1,5 @@
-!> What is said of the interfaces of a deck once they are made, and of *VERIFY cards on positions
-!> that only their contact points can tell.
+!> Errors and warnings on the interfaces of a deck once they are made, and on *VERIFY cards at
+!> positions that only contact points can tell.
 module interface_reports
    use all_contact_points, only: match_surfaces, match_tie
    use contact_points, only: contact_points_type
@@ -13,7 +13,7 @@ module interface_reports
    use model, only: model_type
    use text, only: append, read_real, string_type, to_text, to_upper
    use tie_points, only: distance_warning, tie_words
-   use verify_values, only: is_on_interface
+   use verification, only: is_on_interface
    implicit none
    private
    public :: make_interfaces, make_ties, first_repeated, check_arc_lengths
@@ -59,7 +59,7 @@ contains
          normal = normal(:, :known)
       end do
    contains
-      !> What is wrong with a surface is reported for the first of its interfaces.
+      !> An error of a surface is reported for the first of its interfaces.
       subroutine report_once(card)
          integer, intent(in) :: card
 

@@ -1,4 +1,4 @@
-!> What a run models, in words and numbers, once it is started.
+!> Summary of a run once it is started: physics in words, sizes, Biot number.
 module run_description
    use contact_changes, only: brings_friction
    use conductance_laws, only: is_constant
@@ -28,11 +28,7 @@ contains
       run%solver = 'SKYLINE'
       if (model%solver == solver_mumps) run%solver = 'MUMPS'
       call name_physics(model, run)
-      run%equations_thermal = simulation%sizes%equations_thermal
-      run%equations_mechanical = simulation%sizes%equations_mechanical
-      run%contact_unknowns = simulation%sizes%contact_unknowns
-      run%factor_bytes = simulation%sizes%factor_bytes
-      run%smallest_pivot = simulation%sizes%smallest_pivot
+      run%sizes = simulation%sizes
       if (any(solves_heat(model%steps%analysis))) call find_biot(model, simulation, run)
    end subroutine describe_run
 
@@ -40,6 +36,7 @@ contains
    subroutine name_physics(model, run)
       type(model_type), intent(in) :: model
       type(run_summary_type), intent(inout) :: run
+      character(:), allocatable :: why_off
       logical :: has_heat, has_mechanics, has_contact, has_friction, has_law
       integer :: i
 
@@ -63,16 +60,16 @@ contains
       call name('heat', has_heat, steps_that(solves_heat(model%steps%analysis)), &
          'no step solves temperatures')
       call name('contact', has_contact, '*CONTACT PAIR', 'no *CONTACT PAIR')
-      if (has_contact .and. .not. has_mechanics) then
-         call name('friction', .false., '', 'no step solves mechanics')
-      else
-         call name('friction', has_friction, '*FRICTION', &
-            reason_of(has_contact, 'no *FRICTION above 0', 'no contact'))
-      end if
+      why_off = 'no *FRICTION above 0'
+      if (.not. has_contact) why_off = 'no contact'
+      if (has_contact .and. .not. has_mechanics) why_off = 'no step solves mechanics'
+      call name('friction', has_friction .and. (has_mechanics .or. .not. has_contact), &
+         '*FRICTION', why_off)
+      why_off = 'no conductance of gap, pressure or temperature'
+      if (has_law) why_off = 'no step solves heat and mechanics together'
       call name('coupling', has_law .and. any(model%steps%analysis == analysis_coupled), &
          '*COUPLED TEMPERATURE-DISPLACEMENT and a conductance of gap, pressure or temperature', &
-         reason_of(has_law, 'no step solves heat and mechanics together', &
-         'no conductance of gap, pressure or temperature'))
+         why_off)
    contains
       subroutine name(part, is_on, why_on, why_off)
          character(*), intent(in) :: part, why_on, why_off
@@ -89,16 +86,6 @@ contains
          run%reasons = run%reasons//part//reason
       end subroutine name
    end subroutine name_physics
-
-   !> One of two reasons.
-   pure function reason_of(condition, if_true, if_false) result(reason)
-      logical, intent(in) :: condition
-      character(*), intent(in) :: if_true, if_false
-      character(:), allocatable :: reason
-
-      reason = if_false
-      if (condition) reason = if_true
-   end function reason_of
 
    !> Names the steps for which something holds.
    pure function steps_that(holds) result(words)

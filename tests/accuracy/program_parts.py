@@ -66,9 +66,9 @@ PARTS = {
     },
     "refinement": {"child_elements", "hanging_nodes", "load_refinement", "local_refinement",
                    "mesh_division", "refinement"},
-    "printed tables": {"element_points", "listing_prints",
-                                "listing_tables:print_contact_table"},
+    "printed tables": {"element_points", "listing_tables:print_contact_table",
+                       "listing_tables:print_nodes", "listing_tables:print_points"},
     "checks of the deck": {"deck_builder_verify", "interface_reports:check_arc_lengths",
-                           "verification", "verify_values"},
+                           "verification"},
     "MUMPS": {"mumps_solver", "ordering:nested_dissection"},
 }

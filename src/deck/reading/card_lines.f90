@@ -12,7 +12,7 @@ module card_lines
    use fixed_columns, only: fixed_columns_type
    use keyword_cards, only: is_parameter, make_keyword_card
    use keywords, only: built, known_keywords
-   use look_alikes, only: find_look_alike
+   use spelling, only: find_look_alike
    use text, only: read_integer, to_text, to_upper
    implicit none
    private

@@ -1,0 +1,134 @@
+!> The head of the listing: the summary of the run, what is modelled and why, sizes, interfaces.
+module listing_head
+   use contact_points, only: contact_points_type
+   use interface_warnings, only: gap_range
+   use listing_text, only: page_width, print_title, print_wrapped
+   use model, only: model_type
+   use model_words, only: closed_law_words, friction_words, from_to, open_law_words, open_words, &
+      pairing_words, points_words
+   use run_summaries, only: in_listing, or_blank, run_entries, run_entry_type, run_summary_type
+   use steps, only: solves_heat
+   use summary, only: summary_type
+   use text, only: counted, string_type, to_text
+   use verification, only: verifier_type
+   implicit none
+   private
+   public :: print_model, ending, checks, summary_block
+
+   integer, parameter :: run_lines = 3   !! ending, checks, warnings
+
+contains
+
+   !> How the run ended.
+   pure function ending(has_failed, increments, failed_checks, missed, later_round) result(line)
+      logical, intent(in) :: has_failed          !! whether it ended early
+      integer, intent(in) :: increments          !! accepted ones
+      integer, intent(in) :: failed_checks
+      logical, intent(in) :: missed              !! whether a target of accuracy is not met
+      integer, intent(in) :: later_round         !! round that was begun after this one; 0 for none
+      character(:), allocatable :: line
+
+      line = 'solved'
+      if (missed) line = 'accuracy not reached'
+      if (failed_checks > 0 .and. .not. missed) line = 'check failed'
+      if (failed_checks > 0 .and. missed) line = 'check failed, '//line
+      line = line//', '//counted(increments, 'increment')
+      ! Read only while that round is solved, or where it did not come to its end.
+      if (later_round > 0) line = line//'; round '//to_text(later_round)// &
+         ' is being solved, or see ENDED EARLY at the end'
+      if (has_failed) line = 'ended early after '//counted(increments, 'increment')// &
+         ', see ENDED EARLY below'
+   end function ending
+
+   !> How many checks passed.
+   pure function checks(verifier, run) result(line)
+      type(verifier_type), intent(in) :: verifier  !! of this round
+      type(run_summary_type), intent(in) :: run
+      character(:), allocatable :: line
+      integer :: counts(3)
+
+      line = 'no *VERIFY checks'
+      if (size(verifier%outcomes) > 0 .or. run%verify_passed + run%verify_failed > 0) then
+         line = counted(run%verify_passed, 'check')//' passed, '//to_text(run%verify_failed)// &
+            ' failed'
+         if (size(verifier%outcomes) == 0) line = line//' in round 1'
+      end if
+      counts = verifier%counts()
+      if (counts(3) > 0) line = line//', '//to_text(counts(3))//' not judged'
+   end function checks
+
+   !> The summary as it is in the file: always as many lines of the same length, so that it can be
+   !> written over.
+   pure function summary_block(lines, interfaces) result(block)
+      type(string_type), intent(in) :: lines(:)
+      integer, intent(in) :: interfaces               !! number of them
+      character(:), allocatable :: block
+      type(summary_type) :: summary
+      character(page_width) :: line
+      integer :: i
+
+      block = ''
+      do i = 1, run_lines + summary%most_lines(interfaces)
+         line = ''
+         if (i <= size(lines)) line = '   '//lines(i)%value
+         block = block//line//new_line('a')
+      end do
+   end function summary_block
+
+   !> Prints the physics, sizes and choices of a run, and its interfaces.
+   subroutine print_model(unit, model, interfaces, run)
+      integer, intent(in) :: unit                         !! unit of the listing
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(run_summary_type), intent(in) :: run
+      type(run_entry_type), allocatable :: entries(:)
+      integer :: i
+
+      call print_title(unit, 'PHYSICS')
+      call print_wrapped(unit, '   ', or_blank(run%modelled))
+      if (or_blank(run%reasons) /= '') call print_wrapped(unit, '   ', run%reasons)
+      call print_title(unit, 'MODEL')
+      entries = run_entries(run, model)
+      do i = 1, size(entries)
+         if (entries(i)%is_told(in_listing)) call print_entry(unit, entries(i)%label, &
+            entries(i)%words)
+      end do
+      call print_interfaces(unit, model, interfaces)
+   end subroutine print_model
+
+   subroutine print_interfaces(unit, model, interfaces)
+      integer, intent(in) :: unit
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:)
+      logical :: has_heat
+      integer :: i
+
+      has_heat = any(solves_heat(model%steps%analysis))
+      do i = 1, size(interfaces)
+         write (unit, '(/, 3x, 2a)') 'INTERFACE ', interfaces(i)%name
+         call print_entry(unit, 'pairing', pairing_words(model%contacts(i)%pairing, interfaces(i)))
+         call print_entry(unit, points_words(interfaces(i)), &
+            to_text(size(interfaces(i)%slave_node)))
+         if (len(open_words(interfaces(i))) > 0) call print_entry(unit, 'note', &
+            open_words(interfaces(i)))
+         call print_entry(unit, 'length', to_text(maxval(interfaces(i)%arc_length)))
+         call print_entry(unit, 'initial gaps', &
+            from_to(gap_range(model%mesh, interfaces(i))))
+         associate (interaction => model%interactions(model%contacts(i)%interaction))
+            call print_entry(unit, 'coefficient of friction', friction_words(interaction%friction))
+            if (.not. has_heat) cycle
+            call print_entry(unit, 'conductance, open', open_law_words(interaction%law))
+            call print_entry(unit, 'conductance, closed', closed_law_words(interaction%law))
+         end associate
+      end do
+   end subroutine print_interfaces
+
+   subroutine print_entry(unit, name, value)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: name
+      character(*), intent(in) :: value
+
+      call print_wrapped(unit, '   '//name//' '//repeat('.', max(26 - len(name), 2))//' ', value)
+   end subroutine print_entry
+
+end module listing_head
