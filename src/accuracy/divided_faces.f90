@@ -5,7 +5,7 @@
 !> It serves where the finer mesh cannot be relaxed (refinement_error): with mortar points and ties.
 !> Only few elements are divided, so its factors take little.
 module divided_faces
-   use bodies, only: find_bodies
+   use mesh_bodies, only: find_bodies
    use companion_steps, only: implicit_state, implicit_step
    use contact_states, only: contact_open
    use errors, only: error_type

@@ -2,7 +2,7 @@
 !> matrices of its bodies, its contact points and loads, and the maps between both meshes. The old
 !> mesh's fields are fields of the new one.
 module refined_model
-   use bodies, only: find_bodies
+   use mesh_bodies, only: find_bodies
    use contact_points, only: contact_points_type
    use errors, only: error_type
    use hanging_nodes, only: at_level_changes

@@ -1,6 +1,6 @@
 !> What a run models, in words and numbers, once it is started.
 module run_description
-   use contact_changes, only: brings_friction
+   use contact_definitions, only: brings_friction
    use conductance_laws, only: is_constant
    use controls, only: solver_mumps
    use increments, only: simulation_type

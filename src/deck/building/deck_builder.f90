@@ -1,7 +1,7 @@
 !> Cards -> model. The cards are read by theme, so their order matters only where the dialect
 !> says so.
 module deck_builder
-   use bodies, only: find_bodies
+   use mesh_bodies, only: find_bodies
    use cards, only: cards_type
    use controls, only: default_solver, method_names, mumps_from, solver_by_size, solver_mumps
    use deck_builder_accuracy, only: build_accuracy
@@ -56,7 +56,7 @@ contains
       type(model_type), intent(out) :: model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
       type(error_type), allocatable, intent(out) :: error
-      !> What is to be other than the cards say, once they are found sound
+      !> Overrides of the cards, once they are found sound
       type(variation_type), intent(in), optional :: variation
       type(deck_context_type) :: context
       integer :: i

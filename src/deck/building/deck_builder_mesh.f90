@@ -48,7 +48,6 @@ contains
          end do
       end do
       call check_heights(cards, card, heights, mesh%coordinates, report)
-      call check_normals(cards, card, report)
       call check_repeated('node', cards, card, mesh%node_number, report, places)
       do j = 1, size(places)
          context%node_valid = context%node_valid .and. mesh%node_number /= &
@@ -108,7 +107,8 @@ contains
          'coordinate are ignored')
    end subroutine build_node
 
-   !> All nodes lie in the plane z = 0, but for rounding.
+   !> All nodes lie in the plane z = 0, but for rounding. Warns of the first one whose coordinates
+   !> may be torn by decimal commas, so that the last of their parts means nothing.
    subroutine check_heights(cards, card, heights, coordinates, report)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: card(:)
@@ -124,22 +124,12 @@ contains
          call report%error(field_place(cards%data(card(i)), 4), &
             'models are two-dimensional: z must be 0')
       end do
-   end subroutine check_heights
-
-   !> Warns of the first node whose coordinates may be torn by decimal commas, so that the last of
-   !> their parts means nothing.
-   subroutine check_normals(cards, card, report)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: card(:)
-      type(deck_report_type), intent(inout) :: report
-      integer :: i
-
       do i = 1, size(card)
          if (.not. may_be_decimals(cards%data(card(i)), 5)) cycle
          call check_unneeded(cards%data(card(i)), 5, 'a direction', report)
          return
       end do
-   end subroutine check_normals
+   end subroutine check_heights
 
    !> The number of a node or element, from 1; 0 after an error.
    subroutine read_number(data, noun, report, number)
@@ -288,28 +278,20 @@ contains
       integer, intent(in) :: kind
       type(place_type), intent(in) :: keyword          ! where the *ELEMENT card is
       type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: layout
 
-      associate (fields => size(data%fields), due => element_node_count(kind) + 1)
+      associate (fields => size(data%fields), due => element_node_count(kind) + 1, &
+         corners => element_corner_count(kind))
          if (fields > due) then
-            call report%error(field_place(data, due + 1), 'extra field; the card is '// &
-               layout_of(kind), 'extra fields of '//to_text(keyword%image))
+            layout = 'element, '//to_text(corners)//' corners'
+            if (due > corners + 1) layout = layout//', '//to_text(corners)//' midside nodes'
+            call report%error(field_place(data, due + 1), 'extra field; the card is '//layout, &
+               'extra fields of '//to_text(keyword%image))
          else if (fields < due .and. .not. is_undefined(data, fields)) then
             call report%error(field_place(data, fields + 1), 'missing field: node '// &
                to_text(fields), 'missing fields of '//to_text(keyword%image))
          end if
       end associate
    end subroutine check_layout
-
-   !> What the data card of an element holds.
-   pure function layout_of(kind) result(layout)
-      integer, intent(in) :: kind
-      character(:), allocatable :: layout
-      integer :: corners
-
-      corners = element_corner_count(kind)
-      layout = 'element, '//to_text(corners)//' corners'
-      if (element_node_count(kind) > corners) layout = layout//', '//to_text(corners)// &
-         ' midside nodes'
-   end function layout_of
 
 end module deck_builder_mesh

@@ -9,7 +9,8 @@ module deck_structure
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: check_structure, cards_of, card_count, data_card_count, has_stand_in, report_twice
+   public :: check_structure, cards_of, card_count, data_card_count, has_stand_in, is_keyword
+   public :: report_twice
 
 contains
 
@@ -44,6 +45,16 @@ contains
             cards%keywords(k)%last_data - cards%keywords(k)%first_data + 1
       end do
    end function data_card_count
+
+   !> Whether there is a keyword card k, and it has this name.
+   pure logical function is_keyword(cards, k, name)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: k                !! index of the card, or one that no card has
+      character(*), intent(in) :: name        !! name as in the table of keywords
+
+      is_keyword = .false.
+      if (k >= 1 .and. k <= size(cards%keywords)) is_keyword = cards%keywords(k)%name == name
+   end function is_keyword
 
    !> Reports a card whose name another card of its keyword has before it.
    subroutine report_twice(cards, k, what, report)
