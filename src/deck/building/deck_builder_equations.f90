@@ -28,7 +28,7 @@ module deck_builder_equations
 
 contains
 
-   !> Takes all equations.
+   !> Builds all equations.
    subroutine build_equations(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(in) :: context       !! numbers -> indexes

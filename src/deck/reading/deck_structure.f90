@@ -9,8 +9,8 @@ module deck_structure
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: check_structure, cards_of, card_count, data_card_count, has_stand_in, is_keyword
-   public :: report_twice
+   public :: check_structure, cards_of, card_count, data_cards_of, has_stand_in, is_keyword
+   public :: data_cards_behind, report_twice
 
 contains
 
@@ -33,18 +33,25 @@ contains
       card_count = size(cards_of(cards, name))
    end function card_count
 
-   !> Number of data cards of all keyword cards of a name.
-   pure integer function data_card_count(cards, name)
+   !> The data cards of all keyword cards of a name, as indexes into the data cards.
+   pure function data_cards_of(cards, name) result(places)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name        !! name as in the table of keywords
-      integer :: k
+      integer, allocatable :: places(:)
 
-      data_card_count = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name == name) data_card_count = data_card_count + &
-            cards%keywords(k)%last_data - cards%keywords(k)%first_data + 1
-      end do
-   end function data_card_count
+      places = data_cards_behind(cards, cards_of(cards, name))
+   end function data_cards_of
+
+   !> The data cards of some keyword cards, as indexes into the data cards.
+   pure function data_cards_behind(cards, keywords) result(places)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: keywords(:)      !! indexes into the keyword cards
+      integer, allocatable :: places(:)
+      integer :: i, j
+
+      places = [((j, j=cards%keywords(keywords(i))%first_data, &
+         cards%keywords(keywords(i))%last_data), i=1, size(keywords))]
+   end function data_cards_behind
 
    !> Whether there is a keyword card k, and it has this name.
    pure logical function is_keyword(cards, k, name)
