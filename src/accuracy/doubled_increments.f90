@@ -3,7 +3,7 @@
 !> increments in a step it takes the first alone, for the last one tells most.
 module doubled_increments
    use companion_steps, only: companion_step
-   use contact_changes, only: brings_friction
+   use contact_definitions, only: brings_friction
    use errors, only: error_type
    use field_problem, only: solved_loads_type
    use heat_reduction, only: heat_reduction_type

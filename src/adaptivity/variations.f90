@@ -9,7 +9,7 @@
 !>     call vary(read, variation_type(), model, error)
 !>     call vary(read, variation_type(levels=1, increments=0.5_dp), finer, error)
 module variations
-   use bodies, only: find_bodies
+   use mesh_bodies, only: find_bodies
    use controls, only: default_solver, mumps_from, solver_by_size, solver_mumps, &
       thermal_scheme_type
    use errors, only: error_type, set_error, status_deck

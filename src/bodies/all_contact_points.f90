@@ -2,7 +2,7 @@
 !> the points of all ties, the nodes that hang and the equations of the deck.
 module all_contact_points
    use conductance_laws, only: conductance_law_type, is_constant, varies_with_temperature
-   use contact_changes, only: is_removed, latest_friction
+   use contact_definitions, only: is_removed, latest_friction
    use contact_pairs, only: make_contact_points
    use contact_points, only: contact_points_type
    use equations, only: equation_type

@@ -8,7 +8,7 @@
 !> as few bodies as possible. Turns count by the displacement that they give at the farthest node of
 !> the body.
 module rigid_motions
-   use bodies, only: bodies_on_axis
+   use mesh_bodies, only: bodies_on_axis
    use dense, only: null_space
    use kinds, only: dp
    use mesh, only: mesh_type

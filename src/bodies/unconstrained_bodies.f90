@@ -1,7 +1,7 @@
 !> Bodies that supports and contact points do not constrain, and bodies whose temperature nothing
 !> determines, in words: for a whole step, whatever its contact does, and at an instant of it.
 module unconstrained_bodies
-   use bodies, only: body_name
+   use mesh_bodies, only: body_name
    use conductance_laws, only: law_none
    use constraint_joints, only: joints_of
    use contact_states, only: contact_open, contact_slip, contact_stick

@@ -1,6 +1,6 @@
 !> Why the stiffness of a body is singular although its rigid motions are held, in words.
 module weak_bodies
-   use bodies, only: body_name
+   use mesh_bodies, only: body_name
    use element_kinds, only: axisymmetric, quad8_reduced
    use kinds, only: dp
    use model, only: model_type

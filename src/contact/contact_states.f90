@@ -11,11 +11,13 @@ module contact_states
    integer, parameter :: contact_slip = 1   !! closed, slipping or frictionless, zone II
    integer, parameter :: contact_stick = 2  !! closed and stuck, zone III
 
+   integer, parameter :: capped = 2   !! magnitude of a direction whose friction is the largest
+
    !> Contact state of all contact points.
    type :: contact_state_type
       integer, allocatable :: contact_state(:) !! (m) contact_open, contact_slip or contact_stick
-      !> (m) sign of the friction force where it slips, 0 where it is not known; doubled where the
-      !> force is the largest that friction has, whatever the pressure (is_capped, with_cap)
+      !> (m) sign of the friction force where it slips, 0 where it is not known; times `capped`
+      !> where the force is the largest that friction has, whatever the pressure
       integer, allocatable :: direction(:)
       real(dp), allocatable :: reference(:)   !! (m) d_t from which friction counts [length]
       real(dp), allocatable :: gap(:)         !! (m) gamma = h - d_n [length]
@@ -47,15 +49,15 @@ contains
    elemental logical function is_capped(direction)
       integer, intent(in) :: direction       !! as in the state
 
-      is_capped = abs(direction) == 2
+      is_capped = abs(direction) == capped
    end function is_capped
 
    !> A direction of friction with the same sign that is capped, or that is not.
-   elemental integer function with_cap(direction, capped)
+   elemental integer function with_cap(direction, has_cap)
       integer, intent(in) :: direction       !! as in the state, not 0
-      logical, intent(in) :: capped
+      logical, intent(in) :: has_cap
 
-      with_cap = sign(merge(2, 1, capped), direction)
+      with_cap = sign(merge(capped, 1, has_cap), direction)
    end function with_cap
 
    !> Friction force on the slave at a contact point that slips.

@@ -2,7 +2,7 @@
 !> quarter of the element, so the geometry does not change. Sets, surfaces, sections and given
 !> temperatures follow; loads and supports are applied anew.
 module refinement
-   use bodies, only: find_bodies
+   use mesh_bodies, only: find_bodies
    use element_kinds, only: element_corner_count, quad4, quad8, quad8_reduced, triangle6
    use kinds, only: dp, long
    use load_application, only: apply_requests

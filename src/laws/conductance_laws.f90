@@ -15,7 +15,7 @@ module conductance_laws
    integer, parameter :: law_clearance = 3   !! open: table over gamma
    integer, parameter :: law_pressure = 4    !! closed: table over p
 
-   !> What of a law varies with the temperatures of the faces.
+   !> Constants of a law that vary with the temperatures of the faces.
    type :: law_by_temperature_type
       !> (rows) ascending mean temperatures of A and B there; unallocated where they are constant
       real(dp), allocatable :: gas_temperature(:)
@@ -31,7 +31,7 @@ module conductance_laws
    !> The open and the closed law of one surface interaction. Tables are straight lines between
    !> their rows and hold their end values outside, unless open_ends. Where a law varies with the
    !> temperatures of the faces, temperature_laws sets the components for given temperatures from
-   !> the last one, which this module does not take.
+   !> the last one, which this module does not use.
    type :: conductance_law_type
       integer :: open_kind = law_none      !! law_none, law_gas or law_clearance
       integer :: closed_kind = law_none    !! law_none, law_power or law_pressure
@@ -155,7 +155,7 @@ contains
       jump = conductance(law, .true., 0.0_dp, 0.0_dp) - conductance(law, .false., 0.0_dp, 0.0_dp)
    end function law_jump
 
-   !> What omega loses beyond the last gap of a table that ends there; zero for any other law.
+   !> Decrease of omega beyond the last gap of a table that ends there; zero for any other law.
    pure function table_jump(law) result(jump)
       type(conductance_law_type), intent(in) :: law
       real(dp) :: jump                              !! [power/(length^2 temperature)]

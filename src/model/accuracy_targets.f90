@@ -5,7 +5,7 @@ module accuracy_targets
    private
    public :: accuracy_target_type, accuracy_request_type, whole_request
 
-   !> What --accuracy asks for, of every interface.
+   !> Quantities that --accuracy bounds, at every interface.
    character(*), parameter :: usual(4) = [character(13) :: 'normal_force', 'heat_rate', &
       'peak_pressure', 'edge_contact']
 

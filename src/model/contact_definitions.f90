@@ -1,4 +1,5 @@
-!> What the deck says of contact: surface interactions, interfaces and ties.
+!> Contact as the deck defines it: surface interactions, interfaces and ties; and what each step
+!> changes of it: friction, contact pairs that are removed or added, interferences.
 module contact_definitions
    use conductance_laws, only: conductance_law_type
    use friction_laws, only: friction_law_type
@@ -7,6 +8,8 @@ module contact_definitions
    implicit none
    private
    public :: interaction_type, contact_definition_type, tie_definition_type
+   public :: friction_change_type, pair_change_type, interference_type, contact_changes_type
+   public :: latest_friction, is_removed, brings_friction
    public :: pairing_by_faces, pairing_nodes, pairing_surfaces, pairing_name
 
    integer, parameter :: pairing_by_faces = 0    !! nodes where the faces match, else surfaces
@@ -43,9 +46,37 @@ module contact_definitions
       real(dp) :: tolerance = 0.0_dp          !! gap up to which points are tied [length]
    end type tie_definition_type
 
+   !> A *FRICTION behind *CHANGE FRICTION, valid from this step on.
+   type :: friction_change_type
+      integer :: interaction = 0                  !! index into model%interactions
+      type(friction_law_type) :: friction         !! in place of the one before
+   end type friction_change_type
+
+   !> An interface of *MODEL CHANGE, from this step on.
+   type :: pair_change_type
+      integer :: contact = 0                      !! index into model%contacts
+      logical :: removes = .false.                !! REMOVE, else ADD
+   end type pair_change_type
+
+   !> An interface of *CONTACT INTERFERENCE.
+   type :: interference_type
+      integer :: contact = 0                      !! index into model%contacts
+      real(dp) :: value = 0.0_dp     !! overlap that is allowed, or factor of the initial overlaps
+      logical :: shrinks = .false.   !! SHRINK: a factor of each contact point's initial overlap
+      integer :: amplitude = 0       !! index into model%amplitudes, 0 for a ramp down to 0
+   end type interference_type
+
+   !> All changes of one step.
+   type :: contact_changes_type
+      type(friction_change_type), allocatable :: frictions(:)      !! *CHANGE FRICTION
+      type(pair_change_type), allocatable :: pairs(:)              !! *MODEL CHANGE
+      type(interference_type), allocatable :: interferences(:)     !! *CONTACT INTERFERENCE
+      logical :: ends_interferences = .false.   !! OP=NEW: those of former steps end
+   end type contact_changes_type
+
 contains
 
-   !> What messages call an interface, such as 'contact pair FACE'.
+   !> Name of an interface in messages, such as 'contact pair FACE'.
    pure function title(self) result(words)
       class(contact_definition_type), intent(in) :: self
       character(:), allocatable :: words
@@ -60,5 +91,49 @@ contains
 
       name = trim(merge('NODES   ', 'SURFACES', pairing == pairing_nodes))
    end function pairing_name
+
+   !> The friction of an interaction, after the changes of some steps in their order.
+   pure function latest_friction(changes, interaction, friction) result(latest)
+      type(contact_changes_type), intent(in) :: changes(:)   !! (steps)
+      integer, intent(in) :: interaction                     !! index into model%interactions
+      type(friction_law_type), intent(in) :: friction        !! before the first of them
+      type(friction_law_type) :: latest
+      integer :: i, s
+
+      latest = friction
+      do s = 1, size(changes)
+         if (.not. allocated(changes(s)%frictions)) cycle
+         do i = 1, size(changes(s)%frictions)
+            if (changes(s)%frictions(i)%interaction == interaction) latest = &
+               changes(s)%frictions(i)%friction
+         end do
+      end do
+   end function latest_friction
+
+   !> Whether a step gives some interaction friction.
+   pure function brings_friction(changes) result(brings)
+      type(contact_changes_type), intent(in) :: changes
+      logical :: brings
+
+      brings = .false.
+      if (.not. allocated(changes%frictions)) return
+      brings = any(changes%frictions%friction%coefficient > 0.0_dp)
+   end function brings_friction
+
+   !> Whether an interface is removed, after the changes of some steps in their order.
+   pure function is_removed(changes, contact) result(removed)
+      type(contact_changes_type), intent(in) :: changes(:)   !! (steps)
+      integer, intent(in) :: contact                         !! index into model%contacts
+      logical :: removed
+      integer :: i, s
+
+      removed = .false.
+      do s = 1, size(changes)
+         if (.not. allocated(changes(s)%pairs)) cycle
+         do i = 1, size(changes(s)%pairs)
+            if (changes(s)%pairs(i)%contact == contact) removed = changes(s)%pairs(i)%removes
+         end do
+      end do
+   end function is_removed
 
 end module contact_definitions

@@ -18,7 +18,7 @@ module orientations
 contains
 
    !> Axes 1 and 2 at a point, as columns in x and y. On the very axis of a cylindrical system the
-   !> radius is taken along x.
+   !> radius is along x.
    pure function material_axes(orientations, index, position) result(axes)
       type(orientation_type), intent(in) :: orientations(:)   !! all orientations
       integer, intent(in) :: index                            !! which, or 0 for x and y

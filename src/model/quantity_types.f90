@@ -1,4 +1,4 @@
-!> What is known of a reported quantity besides its value: an entry of the tables in src/records,
+!> Description of a reported quantity besides its value: an entry of the tables in src/records,
 !> which hold the quantities themselves.
 module quantity_types
    use kinds, only: dp
@@ -12,7 +12,7 @@ module quantity_types
 
    integer, parameter :: name_length = 24
 
-   ! What a quantity is a number of; each is a group of the result file, but for the nodes.
+   ! Where a quantity has its numbers; each is a group of the result file, but for the nodes.
    integer, parameter :: of_history = 1     !! an increment: /history
    integer, parameter :: of_bodies = 2      !! an increment and body, its errors: /history
    integer, parameter :: of_passes = 3      !! a pass of the fixed point: /convergence
@@ -22,8 +22,8 @@ module quantity_types
    integer, parameter :: of_points = 7      !! an increment and point: /VTKHDF/PointData
    integer, parameter :: of_elements = 8    !! an increment and element: /VTKHDF/CellData
 
-   ! What a step must solve for a quantity to have a value; a deck none of whose steps does so has
-   ! no dataset of it.
+   ! Fields that a step must solve for a quantity to have a value; a deck none of whose steps does
+   ! so has no dataset of it.
    integer, parameter :: needs_nothing = 0
    integer, parameter :: needs_temperature = 1   !! heat, or expansion at a given temperature
    integer, parameter :: needs_heat = 2

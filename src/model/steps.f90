@@ -1,6 +1,6 @@
 !> Steps of a model: analysis, increments, loads and supports, output requests.
 module steps
-   use contact_changes, only: contact_changes_type
+   use contact_definitions, only: contact_changes_type
    use controls, only: fixed_point_type, start_type, thermal_scheme_type, implicit_scheme
    use kinds, only: dp
    use print_requests, only: print_request_type

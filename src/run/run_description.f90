@@ -1,6 +1,6 @@
 !> Summary of a run once it is started: physics in words, sizes, Biot number.
 module run_description
-   use contact_changes, only: brings_friction
+   use contact_definitions, only: brings_friction
    use conductance_laws, only: is_constant
    use controls, only: solver_mumps
    use increments, only: simulation_type

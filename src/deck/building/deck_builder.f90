@@ -1,7 +1,7 @@
 !> Cards -> model. The cards are read by theme, so their order matters only where the dialect
 !> says so.
 module deck_builder
-   use bodies, only: find_bodies
+   use mesh_bodies, only: find_bodies
    use cards, only: cards_type
    use controls, only: method_names
    use deck_builder_accuracy, only: build_accuracy

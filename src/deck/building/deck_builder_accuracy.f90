@@ -1,7 +1,7 @@
 !> *ACCURACY -> targets of the errors.
 module deck_builder_accuracy
    use accuracy_targets, only: accuracy_target_type
-   use card_parameters, only: parameter_place, take_parameter
+   use card_parameters, only: take_from
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
@@ -19,7 +19,7 @@ module deck_builder_accuracy
 
 contains
 
-   !> Takes the targets of all cards.
+   !> Reads the targets of all cards.
    subroutine build_accuracy(cards, estimated, model, report)
       type(cards_type), intent(in) :: cards
       type(quantity_type), intent(in) :: estimated(:)      !! quantities whose errors are estimated
@@ -34,28 +34,13 @@ contains
                allocate (model%accuracy%targets(0))
                call check_deck(card, model, report)
             end if
-            call take_rounds(card, report, model%accuracy%rounds)
+            call take_from(1, card, 'ROUNDS', report, model%accuracy%rounds)
             do j = card%first_data, card%last_data
                call build_target(cards%data(j), estimated, model, report)
             end do
          end associate
       end do
    end subroutine build_accuracy
-
-   subroutine take_rounds(card, report, rounds)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: rounds
-      integer :: number
-
-      number = rounds
-      call take_parameter(card, 'ROUNDS', report, number)
-      if (number < 1) then
-         call report%error(parameter_place(card, 'ROUNDS'), 'ROUNDS= must be at least 1')
-      else
-         rounds = number
-      end if
-   end subroutine take_rounds
 
    !> The targets need an interface and estimates.
    subroutine check_deck(card, model, report)

@@ -9,7 +9,7 @@ module deck_builder_contact
    use deck_context, only: deck_context_type, need_named, read_surface
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: cards_of, data_card_count
+   use deck_structure, only: cards_of, data_cards_of
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
@@ -169,7 +169,7 @@ contains
       integer, allocatable :: places(:)
       integer :: i, k, n
 
-      allocate(model%ties(data_card_count(cards, 'TIE')))
+      allocate(model%ties(size(data_cards_of(cards, 'TIE'))))
       n = 0
       places = cards_of(cards, 'TIE')
       do k = 1, size(places)

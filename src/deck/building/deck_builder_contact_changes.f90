@@ -3,13 +3,13 @@ module deck_builder_contact_changes
    use card_parameters, only: choose, has_parameter, need_parameter, parameter_place
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
-   use contact_changes, only: contact_changes_type, friction_change_type, interference_type, &
-      pair_change_type
-   use contact_definitions, only: contact_definition_type
+   use contact_definitions, only: contact_changes_type, contact_definition_type, &
+      friction_change_type, interference_type, pair_change_type
    use deck_builder_contact, only: find_contact
    use deck_builder_interactions, only: build_friction
    use deck_context, only: deck_context_type, need_named, read_surface, take_named
    use deck_report, only: deck_report_type
+   use deck_structure, only: is_keyword
    use kinds, only: dp
    use model, only: model_type
    use text, only: to_text
@@ -49,16 +49,6 @@ contains
       end select
       model%steps(step)%changes = changes
    end subroutine build_contact_change
-
-   !> Whether there is a keyword card k, and it is the keyword of this name.
-   pure logical function is_keyword(cards, k, name)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: k
-      character(*), intent(in) :: name
-
-      is_keyword = .false.
-      if (k >= 1 .and. k <= size(cards%keywords)) is_keyword = cards%keywords(k)%name == name
-   end function is_keyword
 
    !> The friction of the interaction that the card before names.
    subroutine change_friction(cards, k, model, context, report, changes)

@@ -6,7 +6,7 @@ module deck_builder_couplings
    use couplings, only: coupling_type
    use deck_context, only: deck_context_type, need_named
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count
+   use deck_structure, only: card_count, is_keyword
    use model, only: model_type
    use steps, only: dof_temperature
    use text, only: read_integer, to_text
@@ -33,31 +33,20 @@ contains
             n = n + 1
             model%couplings(n)%rotation = size(model%mesh%node_number) - size(model%couplings) + n
             call build_coupling(cards%keywords(k), context, model, report, model%couplings(n))
-            if (is_kinematic(cards, k + 1)) cycle
+            if (is_keyword(cards, k + 1, 'KINEMATIC') .or. is_keyword(cards, k + 1, '')) cycle
             call report%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
                'directly follow *COUPLING and name the degrees of freedom')
          else if (cards%keywords(k)%name == 'KINEMATIC') then
-            if (k > 1) then
-               if (cards%keywords(k - 1)%name == 'COUPLING') then
-                  call read_degrees(cards, cards%keywords(k), context, report, model%couplings(n))
-                  cycle
-               end if
+            if (is_keyword(cards, k - 1, 'COUPLING')) then
+               call read_degrees(cards, cards%keywords(k), context, report, model%couplings(n))
+            else
+               call report%error(cards%keywords(k)%place, &
+                  '*KINEMATIC must directly follow *COUPLING')
             end if
-            call report%error(cards%keywords(k)%place, &
-               '*KINEMATIC must directly follow *COUPLING')
          end if
       end do
       if (report%error_count() > errors) call report%lose('equation')
    end subroutine build_couplings
-
-   pure logical function is_kinematic(cards, k)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: k
-
-      is_kinematic = k <= size(cards%keywords)
-      if (is_kinematic) is_kinematic = cards%keywords(k)%name == 'KINEMATIC' .or. &
-         cards%keywords(k)%known == 0
-   end function is_kinematic
 
    !> Name, reference node and surface.
    subroutine build_coupling(card, context, model, report, coupling)

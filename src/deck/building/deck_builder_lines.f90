@@ -6,12 +6,13 @@ module deck_builder_lines
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use deck_structure, only: cards_of, data_cards_behind
    use element_types, only: line_node_count
    use mesh, only: set_type
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: build_lines, split_line_sets, is_line_card, element_card_count
+   public :: build_lines, split_line_sets, is_line_card, element_cards, read_node
 
    integer, parameter :: nodes_per_line = 3
 
@@ -26,22 +27,21 @@ contains
       is_line_card = line_node_count(to_upper(parameter_text(card, 'TYPE'))) > 0
    end function is_line_card
 
-   !> Number of data cards of all *ELEMENT, of lines or of all others.
-   pure integer function element_card_count(cards, of_lines)
+   !> The data cards of all *ELEMENT, of lines or of all others.
+   pure function element_cards(cards, of_lines) result(places)
       type(cards_type), intent(in) :: cards
-      logical, intent(in) :: of_lines         !! whether those of lines are counted
+      logical, intent(in) :: of_lines         !! whether those of lines are wanted
+      integer, allocatable :: places(:)       !! indexes into the data cards
+      integer, allocatable :: keywords(:)
       integer :: k
 
-      element_card_count = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'ELEMENT') cycle
-         if (is_line_card(cards%keywords(k)) .neqv. of_lines) cycle
-         element_card_count = element_card_count + cards%keywords(k)%last_data - &
-            cards%keywords(k)%first_data + 1
-      end do
-   end function element_card_count
+      keywords = cards_of(cards, 'ELEMENT')
+      keywords = pack(keywords, [(is_line_card(cards%keywords(keywords(k))) .eqv. of_lines, k=1, &
+         size(keywords))])
+      places = data_cards_behind(cards, keywords)
+   end function element_cards
 
-   !> Takes the lines, in the order of the deck; the nodes are known.
+   !> Builds the lines, in the order of the deck; the nodes are known.
    subroutine build_lines(cards, context, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives the lines
@@ -49,7 +49,7 @@ contains
       character(:), allocatable :: name
       integer :: k, j, n
 
-      n = element_card_count(cards, of_lines=.true.)
+      n = size(element_cards(cards, of_lines=.true.))
       allocate(context%line_number(n), context%line_nodes(nodes_per_line, n), source=0)
       n = 0
       do k = 1, size(cards%keywords)
@@ -62,7 +62,7 @@ contains
             call read_line(cards%data(j), context, report, context%line_number(n), &
                context%line_nodes(:line_node_count(name), n))
          end do
-         if (element_card_count(cards, of_lines=.false.) > 0) cycle
+         if (size(element_cards(cards, of_lines=.false.)) > 0) cycle
          call report%missing(parameter_place(cards%keywords(k), 'TYPE'), &
             'the deck has lines, but no elements')
          return
@@ -75,23 +75,34 @@ contains
       type(deck_context_type), intent(in) :: context
       type(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: number, nodes(:)
-      integer :: q, node
+      integer :: q
       logical :: valid
 
       valid = .true.
       call need_field(data, 1, 'element number', report, number, valid)
       do q = 1, size(nodes)
-         if (.not. valid) return
-         call need_field(data, q + 1, 'node '//to_text(q), report, node, valid)
-         if (.not. valid) return
-         nodes(q) = context%node_index%find(node)
-         if (nodes(q) == 0 .and. .not. context%node_index%is_empty()) then
-            call report%missing(field_place(data, q + 1), 'there is no node '//to_text(node), &
-               'node', to_text(node))
-         end if
+         if (valid) call read_node(data, q, context, report, nodes(q), valid)
       end do
-      call check_extra(data, size(nodes) + 1, 'line, '//to_text(size(nodes))//' nodes', report)
+      if (valid) call check_extra(data, size(nodes) + 1, 'line, '//to_text(size(nodes))// &
+         ' nodes', report)
    end subroutine read_line
+
+   !> Index of node q of an element or a line; one that does not exist is an error, and 0.
+   subroutine read_node(data, q, context, report, node, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: q                             !! node 1, 2, ... of the element
+      type(deck_context_type), intent(in) :: context       !! numbers -> indexes
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, intent(inout) :: node                       !! stays as it is without a number
+      logical, intent(inout) :: valid                      !! false where it has no number
+      integer :: number
+
+      call need_field(data, q + 1, 'node '//to_text(q), report, number, valid)
+      if (.not. valid) return
+      node = context%node_index%find(number)
+      if (node == 0 .and. .not. context%node_index%is_empty()) call report%missing( &
+         field_place(data, q + 1), 'there is no node '//to_text(number), 'node', to_text(number))
+   end subroutine read_node
 
    !> Parts sets of elements and lines: sets of elements stay, those that have lines as well are
    !> kept beside them.

@@ -2,7 +2,7 @@
 module deck_builder_materials
    use card_parameters, only: choose
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
+   use cards, only: cards_type, field_place, has_field, keyword_card_type
    use decimal_commas, only: check_unneeded, check_unneeded_temperature
    use deck_context, only: deck_context_type, name_last
    use deck_report, only: deck_report_type
@@ -216,9 +216,9 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(material_type), intent(inout) :: material        ! keeps them as the deck gives them
       real(dp), allocatable, intent(out) :: constants(:)    ! unallocated after an error
-      real(dp) :: values(size(names))
-      integer :: i, last, place
-      logical :: valid
+      real(dp) :: temperature, values(size(names))
+      integer :: behind, i, last, place
+      logical :: is_number, valid
 
       valid = .true.
       values = 0.0_dp
@@ -237,8 +237,16 @@ contains
          if (mod(i, per_card) == 0) call check_extra(cards%data(place), per_card, &
             'eight constants', report)
       end do
-      call read_temperature(cards%data(last), mod(size(values) - 1, per_card) + 2, &
-         joined(names(per_card*(last - card%first_data) + 1:)), context, report)
+      ! One temperature behind them means nothing.
+      behind = mod(size(values) - 1, per_card) + 2
+      is_number = .true.
+      call take_field(cards%data(last), behind, 'temperature', report, temperature, is_number)
+      call check_extra(cards%data(last), behind, &
+         joined(names(per_card*(last - card%first_data) + 1:))//', temperature', report)
+      if (has_field(cards%data(last), behind)) then
+         call context%note('the temperature field of a single property row is ignored')
+         if (is_number) call check_unneeded_temperature(cards%data(last), behind, report)
+      end if
       if (card%last_data > last) call report%error(field_place(cards%data(last + 1), 1), varies)
       if (.not. valid) return
       constants = values
@@ -272,24 +280,5 @@ contains
             mod(which(i) - 1, per_card) + 1), trim(names(which(i)))//' must be positive')
       end do
    end subroutine refuse_not_positive
-
-   !> Reads the temperature behind a property: one row of it means nothing.
-   subroutine read_temperature(data, position, layout, context, report)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position
-      character(*), intent(in) :: layout
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      real(dp) :: temperature
-      logical :: valid
-
-      valid = .true.
-      call take_field(data, position, 'temperature', report, temperature, valid)
-      call check_extra(data, position, layout//', temperature', report)
-      if (has_field(data, position)) then
-         call context%note('the temperature field of a single property row is ignored')
-         if (valid) call check_unneeded_temperature(data, position, report)
-      end if
-   end subroutine read_temperature
 
 end module deck_builder_materials

@@ -4,11 +4,11 @@ module deck_builder_mesh
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, is_undefined
    use decimal_commas, only: check_unneeded, may_be_decimals
-   use deck_builder_lines, only: element_card_count, is_line_card
+   use deck_builder_lines, only: element_cards, is_line_card, read_node
    use deck_context, only: deck_context_type, plane_by_element
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: data_card_count
+   use deck_structure, only: data_cards_of
    use element_kinds, only: element_corner_count, element_node_count, plane_strain, quad8
    use element_types, only: take_element_type
    use kinds, only: dp
@@ -23,7 +23,7 @@ module deck_builder_mesh
 
 contains
 
-   !> Takes the nodes, in the order of the deck.
+   !> Builds the nodes, in the order of the deck.
    subroutine build_nodes(cards, context, mesh, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives the numbers
@@ -31,24 +31,18 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp), allocatable :: heights(:)
       integer, allocatable :: card(:), places(:)
-      integer :: k, j, n
+      integer :: j, n
 
-      n = data_card_count(cards, 'NODE')
-      allocate(mesh%node_number(n), mesh%coordinates(2, n), card(n), heights(n))
+      card = data_cards_of(cards, 'NODE')
+      n = size(card)
+      allocate(mesh%node_number(n), mesh%coordinates(2, n), heights(n))
       allocate(context%node_place(n), context%node_valid(n))
-      n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'NODE') cycle
-         do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
-            n = n + 1
-            card(n) = j
-            context%node_place(n) = field_place(cards%data(j), 1)
-            call build_node(cards%data(j), context, report, mesh%node_number(n), &
-               mesh%coordinates(:, n), heights(n), context%node_valid(n))
-         end do
+      do j = 1, n
+         context%node_place(j) = field_place(cards%data(card(j)), 1)
+         call build_node(cards%data(card(j)), context, report, mesh%node_number(j), &
+            mesh%coordinates(:, j), heights(j), context%node_valid(j))
       end do
       call check_heights(cards, card, heights, mesh%coordinates, report)
-      call check_normals(cards, card, report)
       call check_repeated('node', cards, card, mesh%node_number, report, places)
       do j = 1, size(places)
          context%node_valid = context%node_valid .and. mesh%node_number /= &
@@ -108,7 +102,8 @@ contains
          'coordinate are ignored')
    end subroutine build_node
 
-   !> All nodes lie in the plane z = 0, but for rounding.
+   !> All nodes lie in the plane z = 0, but for rounding. Warns of the first one whose coordinates
+   !> may be torn by decimal commas, so that the last of their parts means nothing.
    subroutine check_heights(cards, card, heights, coordinates, report)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: card(:)
@@ -124,22 +119,12 @@ contains
          call report%error(field_place(cards%data(card(i)), 4), &
             'models are two-dimensional: z must be 0')
       end do
-   end subroutine check_heights
-
-   !> Warns of the first node whose coordinates may be torn by decimal commas, so that the last of
-   !> their parts means nothing.
-   subroutine check_normals(cards, card, report)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: card(:)
-      type(deck_report_type), intent(inout) :: report
-      integer :: i
-
       do i = 1, size(card)
          if (.not. may_be_decimals(cards%data(card(i)), 5)) cycle
          call check_unneeded(cards%data(card(i)), 5, 'a direction', report)
          return
       end do
-   end subroutine check_normals
+   end subroutine check_heights
 
    !> The number of a node or element, from 1; 0 after an error.
    subroutine read_number(data, noun, report, number)
@@ -178,7 +163,7 @@ contains
       if (size(places) > 0) call report%lose(noun)
    end subroutine check_repeated
 
-   !> Takes the elements, in the order of the deck; one of a type that cannot be used keeps its
+   !> Builds the elements, in the order of the deck; one of a type that cannot be used keeps its
    !> number only.
    subroutine build_elements(cards, context, mesh, report)
       type(cards_type), intent(in) :: cards
@@ -189,8 +174,9 @@ contains
       integer, allocatable :: card(:)
       integer :: k, j, kind, n, plane
 
-      n = element_card_count(cards, of_lines=.false.)
-      allocate(mesh%element_number(n), mesh%element_section(n), card(n))
+      card = element_cards(cards, of_lines=.false.)
+      n = size(card)
+      allocate(mesh%element_number(n), mesh%element_section(n))
       allocate(mesh%element_nodes(nodes_per_element, n), source=0)
       allocate(mesh%element_kind(n), source=quad8)
       allocate(mesh%element_plane(n), source=plane_strain)
@@ -211,7 +197,6 @@ contains
             message)
          do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
             n = n + 1
-            card(n) = j
             context%element_place(n) = field_place(cards%data(j), 1)
             call read_number(cards%data(j), 'element', report, mesh%element_number(n))
             if (len(name) == 0 .or. len(message) > 0) cycle
@@ -233,18 +218,9 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
-      integer :: line_cards(size(context%line_number)), k, j, n
       integer, allocatable :: places(:)
 
-      n = 0
-      do k = 1, size(cards%keywords)
-         if (.not. is_line_card(cards%keywords(k))) cycle
-         do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
-            n = n + 1
-            line_cards(n) = j
-         end do
-      end do
-      call check_repeated('element', cards, [card, line_cards], &
+      call check_repeated('element', cards, [card, element_cards(cards, of_lines=.true.)], &
          [mesh%element_number, context%line_number], report, places)
       call context%member_index%build([mesh%element_number, context%line_number])
    end subroutine check_element_numbers
@@ -255,22 +231,15 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: nodes(:)
       logical, intent(out) :: valid
-      integer :: q, number
+      integer :: q
       logical :: is_number
 
       valid = .true.
       do q = 1, min(size(nodes), size(data%fields) - 1)
          is_number = .true.
-         call need_field(data, q + 1, 'node '//to_text(q), report, number, is_number)
-         valid = valid .and. is_number
-         if (.not. is_number) cycle
-         nodes(q) = context%node_index%find(number)
+         call read_node(data, q, context, report, nodes(q), is_number)
          valid = valid .and. nodes(q) > 0
          if (nodes(q) > 0) valid = valid .and. context%node_valid(nodes(q))
-         if (nodes(q) == 0 .and. .not. context%node_index%is_empty()) then
-            call report%missing(field_place(data, q + 1), 'there is no node '//to_text(number), &
-               'node', to_text(number))
-         end if
       end do
       if (size(data%fields) /= size(nodes) + 1) valid = .false.
       if (.not. valid) return
@@ -288,28 +257,20 @@ contains
       integer, intent(in) :: kind
       type(place_type), intent(in) :: keyword          ! where the *ELEMENT card is
       type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: layout
 
-      associate (fields => size(data%fields), due => element_node_count(kind) + 1)
+      associate (fields => size(data%fields), due => element_node_count(kind) + 1, &
+         corners => element_corner_count(kind))
          if (fields > due) then
-            call report%error(field_place(data, due + 1), 'extra field; the card is '// &
-               layout_of(kind), 'extra fields of '//to_text(keyword%image))
+            layout = 'element, '//to_text(corners)//' corners'
+            if (due > corners + 1) layout = layout//', '//to_text(corners)//' midside nodes'
+            call report%error(field_place(data, due + 1), 'extra field; the card is '//layout, &
+               'extra fields of '//to_text(keyword%image))
          else if (fields < due .and. .not. is_undefined(data, fields)) then
             call report%error(field_place(data, fields + 1), 'missing field: node '// &
                to_text(fields), 'missing fields of '//to_text(keyword%image))
          end if
       end associate
    end subroutine check_layout
-
-   !> What the data card of an element holds.
-   pure function layout_of(kind) result(layout)
-      integer, intent(in) :: kind
-      character(:), allocatable :: layout
-      integer :: corners
-
-      corners = element_corner_count(kind)
-      layout = 'element, '//to_text(corners)//' corners'
-      if (element_node_count(kind) > corners) layout = layout//', '//to_text(corners)// &
-         ' midside nodes'
-   end function layout_of
 
 end module deck_builder_mesh

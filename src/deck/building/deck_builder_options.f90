@@ -8,7 +8,7 @@ module deck_builder_options
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
-   use model, only: model_type, physical_constants_type
+   use model, only: model_type
    use named_items, only: find_named
    use steps, only: dof_temperature
    use text, only: read_integer, to_text, to_upper
@@ -44,7 +44,11 @@ contains
             case ('OPTIONS')
                call build_option_card(card, context, model, report)
             case ('PHYSICAL CONSTANTS')
-               call build_constants(card, report, model%constants)
+               call take_parameter(card, 'ABSOLUTE ZERO', report, model%constants%absolute_zero)
+               if (has_parameter(card, 'STEFAN BOLTZMANN')) call take_positive(card, &
+                  'STEFAN BOLTZMANN', report, model%constants%stefan_boltzmann)
+               model%constants%has_radiation = has_parameter(card, 'ABSOLUTE ZERO') .and. &
+                  has_parameter(card, 'STEFAN BOLTZMANN')
             case ('SOLVER')
                call need_choice(card, 'TYPE', 'SKYLINE/MUMPS', report, solver)
                if (solver == 'SKYLINE') model%solver = solver_skyline
@@ -59,19 +63,6 @@ contains
          end associate
       end do
    end subroutine build_options
-
-   !> Constants of radiation.
-   subroutine build_constants(card, report, constants)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-      type(physical_constants_type), intent(inout) :: constants
-
-      call take_parameter(card, 'ABSOLUTE ZERO', report, constants%absolute_zero)
-      if (has_parameter(card, 'STEFAN BOLTZMANN')) call take_positive(card, 'STEFAN BOLTZMANN', &
-         report, constants%stefan_boltzmann)
-      constants%has_radiation = has_parameter(card, 'ABSOLUTE ZERO') .and. &
-         has_parameter(card, 'STEFAN BOLTZMANN')
-   end subroutine build_constants
 
    subroutine build_option_card(card, context, model, report)
       type(keyword_card_type), intent(in) :: card

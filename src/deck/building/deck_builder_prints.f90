@@ -53,11 +53,14 @@ contains
       type(print_request_type), allocatable, intent(inout) :: requests(:) !! receives the table
       type(print_request_type) :: request
       character(:), allocatable :: choice
-      integer :: j
+      type(print_key_type), allocatable :: keys(:)
+      integer :: i, j
 
       if (is_first .and. allocated(requests)) deallocate(requests)
       choice = 'NO'
+      keys = element_keys
       if (card%name == 'NODE PRINT') then
+         keys = node_keys
          if (names_set(card, 'NSET', mesh%node_sets, context)) call need_named(card, 'NSET', &
             'node set', mesh%node_sets, report, request%set)
          call check_dropped(card, context, mesh, report, request%set)
@@ -73,7 +76,10 @@ contains
       call read_frequency(card, report, request%frequency)
       allocate(request%quantities(0))
       do j = card%first_data, card%last_data
-         call take_quantities(card, cards%data(j), report, request%quantities)
+         do i = 1, size(cards%data(j)%fields)
+            if (has_field(cards%data(j), i)) call take_quantity(card, cards%data(j), i, keys, &
+               report, request%quantities)
+         end do
       end do
       if (request%set > 0 .and. size(request%quantities) > 0) call append_request(requests, request)
    end subroutine build_print
@@ -105,24 +111,6 @@ contains
          mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
       set = 0
    end subroutine check_dropped
-
-   !> Keys of one data card.
-   subroutine take_quantities(card, data, report, quantities)
-      type(keyword_card_type), intent(in) :: card
-      type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
-      integer, allocatable, intent(inout) :: quantities(:)
-      integer :: i
-
-      do i = 1, size(data%fields)
-         if (.not. has_field(data, i)) cycle
-         if (card%name == 'NODE PRINT') then
-            call take_quantity(card, data, i, node_keys, report, quantities)
-         else
-            call take_quantity(card, data, i, element_keys, report, quantities)
-         end if
-      end do
-   end subroutine take_quantities
 
    !> One key: what is not computed is ignored with a warning, what nobody knows is an error.
    subroutine take_quantity(card, data, position, keys, report, quantities)

@@ -42,13 +42,15 @@ contains
       end do
    end subroutine build_orientations
 
+   !> Two points. a lies on axis 1, b in the plane of axes 1 and 2 on the side of axis 2; or both
+   !> lie on the axis of a cylinder, along which axis 3 points from a to b.
    subroutine build_axes(cards, card, orientation, report)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(orientation_type), intent(inout) :: orientation
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: system
-      real(dp) :: a(3), b(3)
+      real(dp) :: a(3), b(3), turn
       logical :: valid
 
       system = 'RECTANGULAR'
@@ -60,10 +62,21 @@ contains
          call check_extra(data, 6, 'a(1), a(2), a(3), b(1), b(2), b(3)', report)
          if (.not. valid) return
          orientation%cylindrical = system == 'CYLINDRICAL'
+         turn = a(1)*b(2) - a(2)*b(1)
          if (orientation%cylindrical) then
-            call take_cylindrical(data, a, b, orientation, report)
+            if (norm2(b(1:2) - a(1:2)) > 0.0_dp .or. .not. abs(b(3) - a(3)) > 0.0_dp) call &
+               report%error(field_place(data, 4), &
+               'the axis through a and b must be parallel to z')
+            orientation%centre = a(1:2)
+            orientation%hand = sign(1.0_dp, b(3) - a(3))
+         else if (abs(a(3)) > 0.0_dp .or. abs(b(3)) > 0.0_dp) then
+            call report%error(field_place(data, merge(3, 6, abs(a(3)) > 0.0_dp)), &
+               'axes 1 and 2 lie in the plane: the z components of a and b must be 0')
+         else if (.not. abs(turn) > epsilon(turn)*norm2(a)*norm2(b)) then
+            call report%error(field_place(data, 1), 'a and b must not lie on one line')
          else
-            call take_rectangular(data, a, b, orientation, report)
+            orientation%direction = a(1:2)/norm2(a(1:2))
+            orientation%hand = sign(1.0_dp, turn)
          end if
       end associate
       if (card%last_data > card%first_data) then
@@ -86,43 +99,6 @@ contains
          if (.not. has_field(data, first + i - 1)) exit
       end do
    end subroutine read_point
-
-   !> a lies on axis 1, b in the plane of axes 1 and 2 on the side of axis 2.
-   subroutine take_rectangular(data, a, b, orientation, report)
-      type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: a(3), b(3)
-      type(orientation_type), intent(inout) :: orientation
-      type(deck_report_type), intent(inout) :: report
-      real(dp) :: turn
-
-      if (abs(a(3)) > 0.0_dp .or. abs(b(3)) > 0.0_dp) then
-         call report%error(field_place(data, merge(3, 6, abs(a(3)) > 0.0_dp)), &
-            'axes 1 and 2 lie in the plane: the z components of a and b must be 0')
-         return
-      end if
-      turn = a(1)*b(2) - a(2)*b(1)
-      if (.not. abs(turn) > epsilon(turn)*norm2(a)*norm2(b)) then
-         call report%error(field_place(data, 1), 'a and b must not lie on one line')
-         return
-      end if
-      orientation%direction = a(1:2)/norm2(a(1:2))
-      orientation%hand = sign(1.0_dp, turn)
-   end subroutine take_rectangular
-
-   !> a and b are two points of the axis; axis 3 points from a to b.
-   subroutine take_cylindrical(data, a, b, orientation, report)
-      type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: a(3), b(3)
-      type(orientation_type), intent(inout) :: orientation
-      type(deck_report_type), intent(inout) :: report
-
-      if (norm2(b(1:2) - a(1:2)) > 0.0_dp .or. .not. abs(b(3) - a(3)) > 0.0_dp) then
-         call report%error(field_place(data, 4), 'the axis through a and b must be parallel to z')
-         return
-      end if
-      orientation%centre = a(1:2)
-      orientation%hand = sign(1.0_dp, b(3) - a(3))
-   end subroutine take_cylindrical
 
    !> The second card: a turn round axis 3, from axis 1 towards axis 2.
    subroutine turn_axes(data, orientation, report)

@@ -11,7 +11,7 @@ module deck_builder_steps
    use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use deck_structure, only: card_count
+   use deck_structure, only: card_count, cards_of
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
@@ -106,18 +106,12 @@ contains
       type(cards_type), intent(in) :: cards
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: steps(:)
-      integer :: k, n
+      integer, allocatable :: places(:)
 
       steps%nlgeom = steps%nlgeom .and. solves_mechanics(steps%analysis)
-      n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'STEP') cycle
-         n = n + 1
-         if (.not. steps(n)%nlgeom) cycle
-         call report%warning(parameter_place(cards%keywords(k), 'NLGEOM'), &
-            'NLGEOM is not modelled: displacements and strains stay small')
-         return
-      end do
+      places = pack(cards_of(cards, 'STEP'), steps%nlgeom)
+      if (size(places) > 0) call report%warning(parameter_place(cards%keywords(places(1)), &
+         'NLGEOM'), 'NLGEOM is not modelled: displacements and strains stay small')
    end subroutine warn_of_nlgeom
 
    !> Reads a card that is valid for this step and all that follow.

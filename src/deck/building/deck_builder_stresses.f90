@@ -26,7 +26,7 @@ module deck_builder_stresses
 
 contains
 
-   !> Takes all initial stresses; later cards replace earlier ones.
+   !> Reads all initial stresses; later cards replace earlier ones.
    subroutine build_initial_stresses(cards, context, mesh, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(in) :: context       !! numbers of elements

@@ -8,7 +8,7 @@ module deck_builder_verify
    use deck_context, only: deck_context_type, read_target, report_unknown
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: data_card_count
+   use deck_structure, only: cards_of, data_cards_of
    use kinds, only: dp
    use model, only: model_type, verify_type
    use named_items, only: find_named
@@ -33,13 +33,14 @@ contains
       type(model_type), intent(inout) :: model             !! receives the checks
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: kind
+      integer, allocatable :: places(:)
       integer :: k, j, n
 
-      allocate(model%verifications(data_card_count(cards, 'VERIFY')))
+      allocate(model%verifications(size(data_cards_of(cards, 'VERIFY'))))
       n = 0
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
-            if (card%name /= 'VERIFY') cycle
+      places = cards_of(cards, 'VERIFY')
+      do k = 1, size(places)
+         associate (card => cards%keywords(places(k)))
             call need_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', report, &
                kind)
             do j = card%first_data, card%last_data

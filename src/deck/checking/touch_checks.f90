@@ -1,7 +1,7 @@
 !> Faces that touch though nothing relates them: of two bodies without a pair or a tie, of one body
 !> along a seam, and of elements that do not share whole sides.
 module touch_checks
-   use bodies, only: body_name
+   use mesh_bodies, only: body_name
    use contact_definitions, only: contact_definition_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type

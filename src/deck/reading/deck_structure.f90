@@ -9,7 +9,8 @@ module deck_structure
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: check_structure, cards_of, card_count, data_card_count, has_stand_in, report_twice
+   public :: check_structure, cards_of, card_count, data_cards_of, has_stand_in, is_keyword
+   public :: data_cards_behind, report_twice
 
 contains
 
@@ -32,18 +33,35 @@ contains
       card_count = size(cards_of(cards, name))
    end function card_count
 
-   !> Number of data cards of all keyword cards of a name.
-   pure integer function data_card_count(cards, name)
+   !> The data cards of all keyword cards of a name, as indexes into the data cards.
+   pure function data_cards_of(cards, name) result(places)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name        !! name as in the table of keywords
-      integer :: k
+      integer, allocatable :: places(:)
 
-      data_card_count = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name == name) data_card_count = data_card_count + &
-            cards%keywords(k)%last_data - cards%keywords(k)%first_data + 1
-      end do
-   end function data_card_count
+      places = data_cards_behind(cards, cards_of(cards, name))
+   end function data_cards_of
+
+   !> The data cards of some keyword cards, as indexes into the data cards.
+   pure function data_cards_behind(cards, keywords) result(places)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: keywords(:)      !! indexes into the keyword cards
+      integer, allocatable :: places(:)
+      integer :: i, j
+
+      places = [((j, j=cards%keywords(keywords(i))%first_data, &
+         cards%keywords(keywords(i))%last_data), i=1, size(keywords))]
+   end function data_cards_behind
+
+   !> Whether there is a keyword card k, and it has this name.
+   pure logical function is_keyword(cards, k, name)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: k                !! index of the card, or one that no card has
+      character(*), intent(in) :: name        !! name as in the table of keywords
+
+      is_keyword = .false.
+      if (k >= 1 .and. k <= size(cards%keywords)) is_keyword = cards%keywords(k)%name == name
+   end function is_keyword
 
    !> Reports a card whose name another card of its keyword has before it.
    subroutine report_twice(cards, k, what, report)

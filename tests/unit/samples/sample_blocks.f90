@@ -1,6 +1,6 @@
 !> Two blocks on each other, on which procedures of several folders are tested.
 module sample_blocks
-   use bodies, only: find_bodies
+   use mesh_bodies, only: find_bodies
    use conductance_laws, only: law_power
    use elasticity, only: isotropic_elasticity
    use element_kinds, only: plane_strain, quad8

@@ -1,5 +1,5 @@
 !> Bodies: elements that share nodes hang together.
-module bodies
+module mesh_bodies
    use element_kinds, only: axisymmetric, element_node_count
    use mesh, only: mesh_type
    use model, only: model_type
@@ -108,4 +108,4 @@ contains
       end do
    end subroutine find_root
 
-end module bodies
+end module mesh_bodies
