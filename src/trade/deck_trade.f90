@@ -1,5 +1,6 @@
 !> `thercon trade`: speed against accuracy of one deck, measured.
 module deck_trade
+   use, intrinsic :: iso_fortran_env, only: output_unit
    use command_line, only: command_type
    use contact_definitions, only: pairing_nodes, pairing_surfaces
    use deck_preparation, only: prepare_deck, read_deck_type
@@ -8,18 +9,17 @@ module deck_trade
    use file_calls, only: is_stream, make_folder, try_file
    use increments, only: simulation_type
    use input_files, only: input_files_type
-   use iso_fortran_env, only: output_unit
    use kinds, only: dp
    use messages, only: print_error, print_line
    use model, only: model_type
    use order_reduction, only: side_corners
    use progress, only: progress_type
    use recommendation, only: judge_rows
-   use row_task, only: row_task_type
    use steps, only: solves_heat
-   use text, only: counted, string_type, to_text
-   use trade_measurement, only: expected_seconds, measure_rows
-   use trade_plan, only: common_instants, mesh_rows, most_levels, single_rows
+   use text, only: counted, few_digits, string_type
+   use trade_measurement, only: measure_rows, row_task_type
+   use trade_plan, only: coarser_row, common_instants, mesh_rows, most_levels, &
+      single_rows
    use trade_reference, only: state_errors
    use trade_study, only: item_quantities, trade_row_type, trade_type
    use trade_table, only: print_trade, write_trade
@@ -28,7 +28,8 @@ module deck_trade
    private
    public :: trade_deck
 
-   integer, parameter :: most_nodes = 2000   !! whose temperatures are compared
+   integer, parameter :: most_nodes = 2000     !! whose temperatures are compared
+   real(dp), parameter :: growth = 4.0_dp      !! of elements from one mesh to the next
 
 contains
 
@@ -59,13 +60,11 @@ contains
          return
       end if
       other_pairing = 0
-      associate (pairings => simulation%bodies%interfaces%pairing)
-         if (any(model%contacts%pairing == pairing_surfaces)) then
-            other_pairing = pairing_nodes
-         else if (size(pairings) > 0 .and. all(pairings == pairing_nodes)) then
-            other_pairing = pairing_surfaces
-         end if
-      end associate
+      if (all(simulation%bodies%interfaces%pairing == pairing_nodes)) then
+         other_pairing = pairing_surfaces
+      end if
+      if (any(model%contacts%pairing == pairing_surfaces)) other_pairing = pairing_nodes
+      if (size(model%contacts) == 0) other_pairing = 0
       call simulation%release()
       table = command%folder//'/'//base_name(path)//'.trade.csv'
       call inputs%add(path, deck%cards%files)
@@ -143,7 +142,7 @@ contains
       call progress%clear()
    contains
       subroutine run_rows()
-         call measure_rows(task, command%jobs, command%limit, progress, rows, error)
+         call measure_rows(task, progress, rows, error)
          trade%rows = [trade%rows, rows]
       end subroutine run_rows
    end subroutine measure
@@ -154,17 +153,22 @@ contains
       real(dp), intent(in) :: limit                       !! CPU seconds that a row may take [s]
       type(trade_type), intent(inout) :: trade            !! receives them
       type(trade_row_type), allocatable, intent(inout) :: rows(:)
-      real(dp) :: seconds(size(rows))
-      integer :: i
+      logical :: is_kept(size(rows))
+      real(dp) :: seconds
+      integer :: i, before
 
-      seconds = [(expected_seconds(rows(i), trade%rows), i=1, size(rows))]
-      where (rows%is_default) seconds = 0.0_dp
       do i = 1, size(rows)
-         rows(i)%reason = 'about '//to_text(nint(10.0_dp*min(seconds(i), 1.0e6_dp))/10.0_dp)//' s'
-         if (seconds(i) > limit .and. seconds(i) < huge(limit)) trade%left_out = &
-            [trade%left_out, rows(i)]
+         before = coarser_row(trade%rows, rows(i)%variation)
+         is_kept(i) = rows(i)%is_default .or. rows(i)%variation%levels + &
+            rows(i)%variation%contact_levels == 0
+         if (is_kept(i) .or. before == 0) cycle
+         seconds = growth*trade%rows(before)%cpu_seconds
+         is_kept(i) = seconds <= limit
+         if (is_kept(i)) cycle
+         trade%left_out = [trade%left_out, rows(i)]
+         trade%left_out(size(trade%left_out))%reason = 'at least '//few_digits(seconds)//' s'
       end do
-      rows = rows(pack([(i, i=1, size(rows))], seconds <= limit))
+      rows = rows(pack([(i, i=1, size(rows))], is_kept))
    end subroutine leave_out_expensive
 
    !> Numbers of the nodes whose temperatures are compared: corners of the deck's own elements,

@@ -33,8 +33,9 @@ contains
             is_reachable = trade%is_known .and. least <= targets(k)
             meets = meets .and. [(all(rows(i)%errors <= targets(k) .or. .not. is_reachable), &
                i=1, size(rows))]
-            if (any(is_reachable) .and. any(meets)) &
+            if (any(is_reachable) .and. any(meets)) then
                rows(cheapest(rows, meets))%is_recommended(k) = .true.
+            end if
             trade%remarks(k)%value = ''
             do q = 1, quantity_count
                if (is_reachable(q) .or. .not. trade%is_known(q)) cycle

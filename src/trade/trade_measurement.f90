@@ -1,20 +1,33 @@
-!> Rows are run in processes of their own, as often as their times ask for.
+!> Rows of a trade-off study are solved in processes of their own, without output, as often as their
+!> times ask for.
 module trade_measurement
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_c_binding, only: c_int
    use clock, only: wall_seconds
-   use errors, only: error_type, set_error, status_internal, status_interrupted
+   use command_line, only: command_type
+   use contact_points, only: contact_points_type
+   use contact_quantities, only: contact_values
+   use deck_preparation, only: prepare_deck, read_deck_type
+   use errors, only: error_type, set_error, status_internal, status_interrupted, &
+      status_no_convergence
+   use increments, only: simulation_type
+   use interface_quantities, only: closed_length
    use interruption, only: caught_signal
    use kinds, only: dp
+   use model, only: model_type
    use open_files, only: close_descriptor, open_in_memory
-   use processes, only: child_type, pause_briefly, reason_of, report_type
+   use processes, only: child_type, pause_briefly, reason_of, report_type, set_reason, task_type
    use progress, only: progress_type
-   use row_task, only: row_task_type
+   use records, only: increment_record_type
+   use reported_quantities, only: traded
+   use sorting, only: number_index_type
    use text, only: to_text
-   use trade_plan, only: coarser_row
-   use trade_study, only: trade_row_type
+   use trade_plan, only: instant_at
+   use trade_study, only: absent, figure_count, trade_row_type
    use variations, only: variation_type
    implicit none
    private
-   public :: measure_rows, expected_seconds
+   public :: row_task_type, measure_rows
 
    !> Runs of a row by the CPU seconds of its first: short times scatter most.
    real(dp), parameter :: moments(3) = [0.1_dp, 1.0_dp, 5.0_dp]   !! [s]
@@ -22,9 +35,18 @@ module trade_measurement
    real(dp), parameter :: patience = 5.0_dp        !! a row may take so many times the limit
    real(dp), parameter :: least_patience = 20.0_dp !! and this [s]
 
-   !> From one mesh to the next factors take 16 times the operations at most; small rows, which
-   !> mostly start up, take less.
-   real(dp), parameter :: least_growth = 4.0_dp, usual_growth = 8.0_dp, most_growth = 16.0_dp
+   !> Everything that a row needs.
+   type, extends(task_type) :: row_task_type
+      character(:), allocatable :: path      !! the deck as given
+      type(command_type) :: command          !! options of the command line
+      integer, allocatable :: items(:)       !! as from item_quantities
+      real(dp), allocatable :: instants(:)   !! total times of comparison [time]
+      integer, allocatable :: nodes(:)       !! numbers of nodes whose temperature is compared
+      type(variation_type) :: variation      !! the row
+      character(:), allocatable :: found     !! path of a file for what it finds
+   contains
+      procedure :: execute
+   end type row_task_type
 
    !> Room for a row that is run.
    type :: slot_type
@@ -38,147 +60,178 @@ module trade_measurement
 
 contains
 
-   !> CPU seconds that a row would take: those on the mesh before, times their growth there; 0 on
-   !> the deck's mesh, huge where the mesh before has no such row.
-   pure real(dp) function expected_seconds(row, rows) result(seconds)
-      type(trade_row_type), intent(in) :: row
-      type(trade_row_type), intent(in) :: rows(:)   !! that were measured
-      real(dp) :: growth
-      integer :: before, i
-
-      seconds = 0.0_dp
-      if (row%variation%levels == 0 .and. row%variation%contact_levels == 0) return
-      before = coarser_row(rows, row%variation)
-      seconds = huge(seconds)
-      if (before == 0) return
-      seconds = rows(before)%cpu_seconds
-      i = coarser_row(rows, rows(before)%variation)
-      growth = usual_growth
-      if (i > 0) growth = seconds/max(rows(i)%cpu_seconds, 1.0e-3_dp)
-      seconds = seconds*min(max(growth, least_growth), most_growth)
-   end function expected_seconds
-
    !> Runs some rows. A row that fails keeps its reason.
    !> Errors: status_interrupted after a signal, then only the rows that were measured remain;
    !> status_internal where no process can be started.
-   subroutine measure_rows(task, jobs, limit, progress, rows, error)
+   subroutine measure_rows(task, progress, rows, error)
       type(row_task_type), intent(in) :: task                 !! all but the variation
-      integer, intent(in) :: jobs                             !! rows that run at a time
-      real(dp), intent(in) :: limit                           !! CPU seconds of a row [s]
       type(progress_type), intent(inout) :: progress
       type(trade_row_type), allocatable, intent(inout) :: rows(:)
       type(error_type), allocatable, intent(out) :: error
-      type(slot_type) :: slots(jobs)
+      type(slot_type) :: slots(task%command%jobs)
       integer :: next, s
       logical :: has_ended
 
       next = 1
       do while (next <= size(rows) .or. any(slots%runs_left > 0))
-         do s = 1, jobs
+         do s = 1, size(slots)
             if (slots(s)%runs_left > 0) then
-               call collect(slots(s), max(patience*limit, least_patience), rows(slots(s)%row), &
-                  has_ended)
+               call collect(slots(s), rows(slots(s)%row), has_ended)
                if (.not. has_ended) cycle
             end if
             if (slots(s)%runs_left == 0) then
                if (next > size(rows)) cycle
                slots(s)%row = next
+               slots(s)%runs_left = 1
                next = next + 1
             end if
-            call progress%say(words_of(rows(slots(s)%row)))
-            call begin(task, rows(slots(s)%row)%variation, slots(s), error)
+            call progress%say('level '//to_text(rows(slots(s)%row)%variation%levels)//', row '// &
+               to_text(slots(s)%row)//' of '//to_text(size(rows)))
+            slots(s)%task = task
+            slots(s)%task%variation = rows(slots(s)%row)%variation
+            call open_in_memory(slots(s)%file, slots(s)%task%found, error)
+            if (.not. allocated(error)) call slots(s)%child%start(slots(s)%task, error)
             if (allocated(error)) exit
+            slots(s)%since = wall_seconds()
          end do
          if (.not. allocated(error) .and. caught_signal() /= '') call set_error(error, &
             status_interrupted, 'ended by '//caught_signal())
          if (allocated(error)) exit
          call pause_briefly()
       end do
-      do s = 1, jobs
+      do s = 1, size(slots)
          if (slots(s)%child%is_running) call slots(s)%child%kill()
       end do
       if (allocated(error)) rows = rows(pack([(s, s=1, size(rows))], &
-         [(allocated(rows(s)%cpu) .and. rows(s)%status /= status_interrupted, s=1, size(rows))]))
+         [(allocated(rows(s)%cpu), s=1, size(rows))]))
    end subroutine measure_rows
 
-   !> Begins a run.
-   subroutine begin(task, variation, slot, error)
-      type(row_task_type), intent(in) :: task
-      type(variation_type), intent(in) :: variation
-      type(slot_type), intent(inout) :: slot
-      type(error_type), allocatable, intent(out) :: error
-
-      slot%task = task
-      slot%task%variation = variation
-      call open_in_memory(slot%file, slot%task%found, error)
-      if (.not. allocated(error)) call slot%child%start(slot%task, error)
-      if (allocated(error)) return
-      slot%runs_left = max(slot%runs_left, 1)
-      slot%since = wall_seconds()
-   end subroutine begin
-
    !> Takes what a run left, once it has ended; after the first one of a row, repetitions are due.
-   subroutine collect(slot, longest, row, has_ended)
+   subroutine collect(slot, row, has_ended)
       type(slot_type), intent(inout) :: slot
-      real(dp), intent(in) :: longest              !! wall time of a run [s]
       type(trade_row_type), intent(inout) :: row
       logical, intent(out) :: has_ended
-      logical :: is_late
+      type(report_type) :: report
       integer :: i
 
-      is_late = wall_seconds() - slot%since >= longest
-      has_ended = is_late
-      if (is_late) then
-         call slot%child%kill()
-      else
+      associate (longest => max(patience*slot%task%command%limit, least_patience), &
+         ended => slot%child%end)
          has_ended = slot%child%has_ended()
-      end if
-      if (.not. has_ended) return
-      slot%runs_left = slot%runs_left - 1
-      associate (ended => slot%child%end)
+         if (.not. has_ended .and. wall_seconds() - slot%since < longest) return
+         slot%runs_left = slot%runs_left - 1
+         report%status = int(status_internal, c_int)
+         if (has_ended) then
+            report = slot%child%report()
+            if (ended%signal /= 0 .or. report%is_whole == 0) then
+               report%status = int(status_internal, c_int)
+               call set_reason(report, slot%child%sudden_end())
+            end if
+            call slot%child%drop_files()
+         else
+            call slot%child%kill()
+            call set_reason(report, 'took longer than '//to_text(longest)//' s')
+         end if
+         has_ended = .true.
          row%peak_bytes = max(row%peak_bytes, ended%peak_bytes)
          if (.not. allocated(row%cpu)) then
             row%cpu = [ended%cpu_seconds]
-            row%status = status_internal
-            row%reason = 'took longer than '//to_text(longest)//' s'
-            if (.not. is_late) call take_outcome(slot, row)
+            row%status = int(report%status)
+            row%reason = reason_of(report)
+            call load(slot%task, row)
             if (row%status == 0) slot%runs_left = &
                runs_within(count(ended%cpu_seconds > moments) + 1) - 1
-         else if (ended%signal == 0 .and. ended%status == 0) then
+         else if (report%status == 0) then
             row%cpu = [row%cpu, ended%cpu_seconds]
          end if
       end associate
-      ! The median: the smallest that half of the others do not exceed.
+      ! The median: the smallest that at least half of them do not exceed.
       row%cpu_seconds = minval(row%cpu, mask=[(2*count(row%cpu <= row%cpu(i)) >= size(row%cpu), &
          i=1, size(row%cpu))])
-      if (.not. is_late) call slot%child%drop_files()
       call close_descriptor(slot%file)
    end subroutine collect
 
-   subroutine take_outcome(slot, row)
-      type(slot_type), intent(in) :: slot
+   !> Reads what a row found; a solved one that left no values fails.
+   subroutine load(task, row)
+      type(row_task_type), intent(in) :: task
       type(trade_row_type), intent(inout) :: row
-      type(report_type) :: report
+      integer :: unit, io
+
+      allocate (row%values(size(task%items), size(task%instants)))
+      open (newunit=unit, file=task%found, access='stream', status='old', iostat=io)
+      if (io == 0) read (unit, iostat=io) row%increments, row%passes, row%values
+      if (io /= 0 .and. row%status == 0) then
+         row%status = status_internal
+         row%reason = 'a row left no values'
+      end if
+      close (unit, iostat=io)
+   end subroutine load
+
+   !> Solves the row and leaves what it found in the file.
+   subroutine execute(self, report)
+      class(row_task_type), intent(inout) :: self
+      type(report_type), intent(inout) :: report    !! how it ended
+      type(read_deck_type) :: deck
+      type(model_type) :: model
+      type(simulation_type) :: simulation
+      type(trade_row_type) :: row
       type(error_type), allocatable :: error
+      integer :: unit, io
 
-      report = slot%child%report()
-      row%reason = slot%child%sudden_end()
-      if (slot%child%end%signal /= 0 .or. report%is_whole == 0) return
-      row%status = int(report%status)
-      row%reason = reason_of(report)
-      call slot%task%load(row, error)
-      if (row%status /= 0 .or. .not. allocated(error)) return
-      row%status = error%status
-      row%reason = error%message
-   end subroutine take_outcome
+      call prepare_deck(self%path, self%command, deck, model, simulation, error, self%variation)
+      if (.not. allocated(error)) then
+         call solve(self, model, simulation, row, error)
+         open (newunit=unit, file=self%found, access='stream', status='old', iostat=io)
+         if (io == 0) write (unit, iostat=io) row%increments, row%passes, row%values
+         if (io == 0) close (unit, iostat=io)
+         if (allocated(error)) error%status = max(error%status, status_no_convergence)
+      end if
+      if (.not. allocated(error)) return
+      report%status = int(error%status, c_int)
+      call set_reason(report, error%message)
+   end subroutine execute
 
-   pure function words_of(row) result(words)
-      type(trade_row_type), intent(in) :: row
-      character(:), allocatable :: words
+   subroutine solve(self, model, simulation, row, error)
+      type(row_task_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(inout) :: simulation
+      type(trade_row_type), intent(inout) :: row
+      type(error_type), allocatable, intent(out) :: error
+      type(increment_record_type) :: record
+      type(number_index_type) :: index
+      integer :: nodes(size(self%nodes)), instant, i
 
-      words = 'row with level '//to_text(row%variation%levels)
-      if (row%varied /= '') words = 'row with '//row%varied
-      if (allocated(row%cpu)) words = words//', run '//to_text(size(row%cpu) + 1)
-   end function words_of
+      allocate (row%values(size(self%items), size(self%instants)), source=absent)
+      call index%build(model%mesh%node_number)
+      nodes = [(index%find(self%nodes(i)), i=1, size(nodes))]
+      call simulation%reduce(model, error)
+      do while (.not. (allocated(error) .or. simulation%finished(model)))
+         call simulation%advance(model, record, error)
+         if (allocated(record%iterations)) row%passes = row%passes + size(record%iterations)
+         if (allocated(error)) return
+         row%increments = row%increments + 1
+         instant = instant_at(self%instants, record%time)
+         if (instant > 0) row%values(:, instant) = compared_values(record, &
+            simulation%bodies%interfaces, nodes)
+      end do
+   end subroutine solve
+
+   !> Values of the items at an instant.
+   pure function compared_values(record, interfaces, nodes) result(values)
+      type(increment_record_type), intent(in) :: record     !! the increment that ends there
+      type(contact_points_type), intent(in) :: interfaces(:)
+      integer, intent(in) :: nodes(:)
+      real(dp), allocatable :: values(:)
+      integer :: i, q
+
+      allocate (values(0))
+      do i = 1, size(interfaces)
+         values = [values, (contact_values(traded(q)%name, interfaces(i), record%contacts(i)), &
+            q=1, figure_count), closed_length(record%contacts(i), interfaces(i)%arc_length)]
+      end do
+      if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &
+         traded(q)%name == 'heat_rate'), q=1, figure_count), 0.0_dp]
+      values = [values, record%fields%temperature(nodes)]
+      where (.not. ieee_is_finite(values)) values = absent
+   end function compared_values
 
 end module trade_measurement

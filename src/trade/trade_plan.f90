@@ -4,7 +4,7 @@ module trade_plan
    use contact_definitions, only: pairing_name
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
       method_names, solver_mumps, solver_skyline, thermal_scheme_type
-   use element_kinds, only: quad8, quad8_reduced, triangle6
+   use element_kinds, only: side_node_count
    use increment_control, only: increment_control_type
    use kinds, only: dp
    use load_histories, only: step_clock_type
@@ -31,8 +31,8 @@ module trade_plan
 
 contains
 
-   !> The rows on one mesh: elements by increments, with levels at the contact faces only those of
-   !> the deck's elements. Factors that do not change the increments of the deck are left out.
+   !> The rows on one mesh: elements by increments; with levels at the contact faces, some with the
+   !> deck's elements. Factors that do not change the increments of the deck are left out.
    pure subroutine mesh_rows(model, level, contact_level, rows)
       type(model_type), intent(in) :: model       !! on the deck's mesh
       integer, intent(in) :: level                !! refinements of that mesh
@@ -42,25 +42,18 @@ contains
 
       allocate (rows(0))
       do order = 1, highest_order(model)
-         if (contact_level > 0 .and. order /= default_order(model)) cycle
          do f = 1, size(factors)
-            if (contact_level > 0 .and. .not. is_local(f)) cycle
-            if (f < size(factors)) then
-               if (all(increments(f) <= 1.001_dp*increments(f + 1))) cycle
-            end if
-            call add(variation_type(order=order, levels=level, contact_levels=contact_level, &
-               increments=factors(f)), '', rows)
-            rows(size(rows))%is_default = order == default_order(model) .and. contact_level == 0 &
-               .and. level == model%written_levels .and. abs(factors(f) - 1.0_dp) <= 0.0_dp
+            associate (is_default => order == min(model%written_order, highest_order(model)))
+               if (contact_level > 0 .and. .not. (is_default .and. is_local(f))) cycle
+               if (all(0.5_dp*factors(f)*model%steps%first_increment >= &
+                  0.999_dp*model%steps%period)) cycle
+               call add(variation_type(order=order, levels=level, contact_levels=contact_level, &
+                  increments=factors(f)), '', rows)
+               rows(size(rows))%is_default = is_default .and. contact_level == 0 .and. &
+                  level == model%written_levels .and. abs(factors(f) - 1.0_dp) <= 0.0_dp
+            end associate
          end do
       end do
-   contains
-      pure function increments(f) result(sizes)
-         integer, intent(in) :: f
-         real(dp) :: sizes(size(model%steps))
-
-         sizes = varied_increment(model%steps%first_increment, model%steps%period, factors(f))
-      end function increments
    end subroutine mesh_rows
 
    !> The rows that vary one thing, each where the deck has a use for it.
@@ -72,7 +65,8 @@ contains
       integer :: i, coupled, heated
 
       allocate (rows(0))
-      written = variation_type(order=default_order(model), levels=model%written_levels)
+      written = variation_type(order=min(model%written_order, highest_order(model)), &
+         levels=model%written_levels)
       coupled = findloc(model%steps%analysis, analysis_coupled, dim=1)
       if (size(model%contacts) == 0) coupled = 0
       heated = findloc(solves_heat(model%steps%analysis), .true., dim=1)
@@ -129,21 +123,12 @@ contains
       end do
    end function coarser_row
 
+   !> Order of the elements that the deck has.
    pure integer function highest_order(model)
       type(model_type), intent(in) :: model
 
-      associate (kinds => model%mesh%element_kind)
-         highest_order = merge(2, 1, any(kinds == quad8 .or. kinds == quad8_reduced .or. &
-            kinds == triangle6))
-      end associate
+      highest_order = merge(2, 1, any(side_node_count(model%mesh%element_kind) == 3))
    end function highest_order
-
-   !> Order of the elements as the deck is written.
-   pure integer function default_order(model)
-      type(model_type), intent(in) :: model
-
-      default_order = min(model%written_order, highest_order(model))
-   end function default_order
 
    !> Instants at which rows are compared: ends of the longest increments, which shorter ones meet
    !> too, of many every n-th; where increments grow, only the instants on which they land. The first

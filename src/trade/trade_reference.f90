@@ -24,6 +24,9 @@ module trade_reference
    real(dp), parameter :: early = 0.25_dp    !! part of the largest value: least scale over time
    real(dp), parameter :: whole = 1.0_dp     !! error of a value that only one of two has
 
+   !> Positions are known to a part of the size of elements, with scatter.
+   logical, parameter :: has_scatter(0:quantity_count) = [.false., traded%resolution > 0.0_dp]
+
    !> The limit of a sequence.
    type :: limit_type
       real(dp) :: value = 0.0_dp
@@ -69,8 +72,9 @@ contains
          trade%is_known(q) = any(is_of)
          if (.not. trade%is_known(q)) cycle
          trade%uncertainty(q) = maxval(pack(limits%uncertainty, is_of)/pack(scales, is_of))
-         if (any(limits%differs .and. spread(trade%items == q, 2, size(limits, 2)))) &
+         if (any(limits%differs .and. spread(trade%items == q, 2, size(limits, 2)))) then
             trade%uncertainty(q) = whole
+         end if
          do i = 1, size(trade%rows)
             if (trade%rows(i)%status == 0) trade%rows(i)%errors(q) = trade%uncertainty(q) + &
                maxval(distance(pack(trade%rows(i)%values, is_of), pack(limits%value, is_of), &
@@ -82,15 +86,12 @@ contains
       end do
    end subroutine state_errors
 
+   !> Of a row from the reference; a value that only one of them has is wholly wrong.
    elemental real(dp) function distance(found, expected, scale)
       real(dp), intent(in) :: found, expected, scale
 
-      distance = 0.0_dp
-      if (is_there(expected) .neqv. is_there(found)) then
-         distance = whole
-      else if (is_there(expected)) then
-         distance = abs(found - expected)/scale
-      end if
+      distance = merge(0.0_dp, whole, is_there(expected) .eqv. is_there(found))
+      if (is_there(expected) .and. is_there(found)) distance = abs(found - expected)/scale
    end function distance
 
    !> What errors are relative to: the value at the instant, for edges the length of the contact, a
@@ -107,7 +108,7 @@ contains
 
       scales = merge(abs(values), 0.0_dp, is_there(values))
       do i = 1, size(items)
-         if (is_position(items(i))) scales(i, :) = &
+         if (has_scatter(items(i))) scales(i, :) = &
             values(i + findloc(items(i:), closed_length, dim=1) - 1, :)
          scales(i, :) = max(scales(i, :), early*maxval(scales(i, :)))
       end do
@@ -192,20 +193,11 @@ contains
       limit%value = values(m)
       limit%differs = any(is_there(values) .neqv. is_there(values(m)))
       if (limit%differs .or. quantity == closed_length .or. .not. is_there(values(m))) return
-      limit = extrapolate(values(:m), is_position(quantity))
-      finer = extrapolate(values(m + 1:n - 2), is_position(quantity))
+      limit = extrapolate(values(:m), has_scatter(quantity))
+      finer = extrapolate(values(m + 1:n - 2), has_scatter(quantity))
       limit%value = limit%value + (finer%value - values(m + sequences%base))
       limit%uncertainty = limit%uncertainty + finer%uncertainty + abs(values(n - 1) - values(n))
    end function limit_of
-
-   !> Whether a quantity is a position, which is known to a part of the size of elements, with
-   !> scatter.
-   elemental logical function is_position(quantity)
-      integer, intent(in) :: quantity
-
-      is_position = .false.
-      if (quantity /= closed_length) is_position = traded(quantity)%resolution > 0.0_dp
-   end function is_position
 
    !> The limit of values with steps h, h/2, h/4, ... Where the last differences fall by a steady
    !> ratio, Richardson's extrapolation with that ratio, uncertain by all that it adds and by half
@@ -239,28 +231,24 @@ contains
          if (n == 3) limit%uncertainty = max(abs(added), abs(differences(2)))
       else
          limit%uncertainty = irregular_uncertainty(values)
-         if (.not. is_position) limit%uncertainty = max(limit%uncertainty, &
-            drift_of(differences(n - 2), differences(n - 1)))
+         if (.not. is_position .and. (differences(n - 2) > 0.0_dp .eqv. differences(n - 1) > &
+            0.0_dp) .and. abs(differences(n - 2)) < slowest*abs(differences(n - 1))) limit%uncertainty = &
+            max(limit%uncertainty, drift*abs(differences(n - 1)))
       end if
    end function extrapolate
 
    !> By which ratio the last differences fall; 0 where that is not steady.
    pure real(dp) function steady_ratio(differences) result(ratio)
-      real(dp), intent(in) :: differences(:)
-      real(dp) :: ratios(2)
-      integer :: n, k
+      real(dp), intent(in) :: differences(:)   !! at least two
+      real(dp) :: last(min(size(differences), 3)), ratios(2)
+      integer :: n
 
       ratio = 0.0_dp
-      n = size(differences)
-      do k = max(n - 2, 1), n - 1
-         if (abs(differences(k)) < slowest*abs(differences(k + 1))) return
-         if (abs(differences(k + 1)) <= tiny(ratio)) return
-         if (differences(k) > 0.0_dp .neqv. differences(k + 1) > 0.0_dp) return
-      end do
-      ratios(2) = differences(n - 1)/differences(n)
-      ratios(1) = ratios(2)
-      if (n > 2) ratios(1) = differences(n - 2)/differences(n - 1)
-      if (n == 2 .and. ratios(2) > doubtful) return
+      n = size(last)
+      last = differences(size(differences) - n + 1:)
+      if (any(abs(last) <= tiny(ratio)) .or. any((last > 0.0_dp) .neqv. (last(1) > 0.0_dp))) return
+      ratios = [last(1)/last(2), last(n - 1)/last(n)]
+      if (minval(ratios) < slowest .or. n == 2 .and. ratios(2) > doubtful) return
       if (ratios(2) > faster*ratios(1) .or. ratios(1) > slower*ratios(2)) return
       ratio = minval(ratios)
    end function steady_ratio
@@ -272,21 +260,8 @@ contains
       integer :: k, n
 
       n = size(values)
-      uncertainty = 0.0_dp
-      do k = 1, n - 1
-         uncertainty = max(uncertainty, abs(values(k) - values(n))/(2.0_dp**(n - k) - 1.0_dp))
-      end do
-      uncertainty = merge(safety_of_three, safety, n == 3)*uncertainty
+      uncertainty = merge(safety_of_three, safety, n == 3)* &
+         maxval([(abs(values(k) - values(n))/(2.0_dp**(n - k) - 1.0_dp), k=1, n - 1)])
    end function irregular_uncertainty
-
-   !> What may be left where two differences of one sign fall too slowly to be trusted, or grow.
-   pure real(dp) function drift_of(before, last)
-      real(dp), intent(in) :: before, last
-
-      drift_of = 0.0_dp
-      if (abs(before) < slowest*abs(last) .and. (before > 0.0_dp .eqv. last > 0.0_dp)) then
-         drift_of = drift*abs(last)
-      end if
-   end function drift_of
 
 end module trade_reference
