@@ -33,8 +33,8 @@ module deck_trade
 
 contains
 
-   !> Measures a deck and prints and writes the table. Errors are printed on stderr. There is a table
-   !> also of a deck that fails as written, and of a study that a signal ends.
+   !> Measures a deck, prints and writes the table; errors are printed on stderr. A deck that fails
+   !> as written has a table too, and so has a study that a signal ends.
    subroutine trade_deck(path, command, status)
       character(*), intent(in) :: path             !! the deck as given
       type(command_type), intent(in) :: command    !! options of the command line

@@ -158,12 +158,14 @@ contains
 
       allocate (row%values(size(task%items), size(task%instants)))
       open (newunit=unit, file=task%found, access='stream', status='old', iostat=io)
-      if (io == 0) read (unit, iostat=io) row%increments, row%passes, row%values
+      if (io == 0) then
+         read (unit, iostat=io) row%increments, row%passes, row%values
+         close (unit)
+      end if
       if (io /= 0 .and. row%status == 0) then
          row%status = status_internal
-         row%reason = 'a row left no values'
+         row%reason = 'no values of the row'
       end if
-      close (unit, iostat=io)
    end subroutine load
 
    !> Solves the row and leaves what it found in the file.
@@ -181,8 +183,12 @@ contains
       if (.not. allocated(error)) then
          call solve(self, model, simulation, row, error)
          open (newunit=unit, file=self%found, access='stream', status='old', iostat=io)
-         if (io == 0) write (unit, iostat=io) row%increments, row%passes, row%values
-         if (io == 0) close (unit, iostat=io)
+         if (io == 0) then
+            write (unit, iostat=io) row%increments, row%passes, row%values
+            close (unit)
+         end if
+         if (io /= 0 .and. .not. allocated(error)) call set_error(error, status_internal, &
+            'no room for the values of the row')
          if (allocated(error)) error%status = max(error%status, status_no_convergence)
       end if
       if (.not. allocated(error)) return

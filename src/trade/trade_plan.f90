@@ -131,8 +131,8 @@ contains
    end function highest_order
 
    !> Instants at which rows are compared: ends of the longest increments, which shorter ones meet
-   !> too, of many every n-th; where increments grow, only the instants on which they land. The first
-   !> end of a step is the coarsest part of a path and left out, unless there are few.
+   !> too, of many every n-th; where increments grow, only the instants on which they land. The
+   !> first end of a step is the coarsest part of a path and left out, unless there are few.
    pure function common_instants(model) result(times)
       type(model_type), intent(in) :: model      !! as the deck is written
       real(dp), allocatable :: times(:)          !! total times, ascending [time]

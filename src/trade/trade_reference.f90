@@ -17,7 +17,7 @@ module trade_reference
    real(dp), parameter :: safety = 2.0_dp         !! on the differences of irregular sequences
    real(dp), parameter :: safety_of_three = 3.0_dp   !! the same on those of three values alone
    real(dp), parameter :: safety_of_two = 2.0_dp  !! on the difference of two values
-   real(dp), parameter :: drift = 4.0_dp          !! 1/(slowest - 1), where differences settle slower
+   real(dp), parameter :: drift = 4.0_dp          !! 1/(slowest - 1), if differences fall slower
 
    real(dp), parameter :: idle = 0.01_dp     !! part of the largest contact below which one is idle
    real(dp), parameter :: nothing = 1.0e-12_dp   !! part of the largest temperature: no range
@@ -231,9 +231,11 @@ contains
          if (n == 3) limit%uncertainty = max(abs(added), abs(differences(2)))
       else
          limit%uncertainty = irregular_uncertainty(values)
-         if (.not. is_position .and. (differences(n - 2) > 0.0_dp .eqv. differences(n - 1) > &
-            0.0_dp) .and. abs(differences(n - 2)) < slowest*abs(differences(n - 1))) limit%uncertainty = &
-            max(limit%uncertainty, drift*abs(differences(n - 1)))
+         associate (before => differences(n - 2), last => differences(n - 1))
+            if (.not. is_position .and. (before > 0.0_dp .eqv. last > 0.0_dp) .and. &
+               abs(before) < slowest*abs(last)) limit%uncertainty = max(limit%uncertainty, &
+               drift*abs(last))
+         end associate
       end if
    end function extrapolate
 
