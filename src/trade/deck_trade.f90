@@ -116,11 +116,15 @@ contains
       type(row_task_type) :: task
       type(progress_type) :: progress
       type(trade_row_type), allocatable :: rows(:)
-      integer :: level, contact_level
+      integer :: level, contact_level, corners(2, size(model%mesh%node_number))
 
       task%path = path
       task%command = command
-      task%nodes = compared_nodes(model)
+      ! Temperatures are those of the corners of the deck's own elements, which all rows have.
+      corners = side_corners(model%mesh)
+      task%nodes = pack(model%mesh%node_number, corners(1, :) == 0 .and. &
+         any(solves_heat(model%steps%analysis)))
+      task%nodes = task%nodes(::1 + (size(task%nodes) - 1)/most_nodes)
       trade%instants = common_instants(model)
       trade%items = item_quantities(size(model%contacts), size(task%nodes))
       task%instants = trade%instants
@@ -170,18 +174,5 @@ contains
       end do
       rows = rows(pack([(i, i=1, size(rows))], is_kept))
    end subroutine leave_out_expensive
-
-   !> Numbers of the nodes whose temperatures are compared: corners of the deck's own elements,
-   !> which all rows have; some of them where they are many; none without heat.
-   pure function compared_nodes(model) result(numbers)
-      type(model_type), intent(in) :: model
-      integer, allocatable :: numbers(:)
-      integer :: corners(2, size(model%mesh%node_number))
-
-      corners = side_corners(model%mesh)
-      numbers = pack(model%mesh%node_number, corners(1, :) == 0 .and. &
-         any(solves_heat(model%steps%analysis)))
-      numbers = numbers(::1 + (size(numbers) - 1)/most_nodes)
-   end function compared_nodes
 
 end module deck_trade

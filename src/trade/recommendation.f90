@@ -22,6 +22,7 @@ contains
       type(trade_type), intent(inout) :: trade   !! with the errors of its rows
       logical :: meets(size(trade%rows)), is_reachable(quantity_count)
       real(dp) :: least(quantity_count)
+      character(:), allocatable :: words
       integer :: k, q, i
 
       associate (rows => trade%rows)
@@ -36,15 +37,23 @@ contains
             if (any(is_reachable) .and. any(meets)) then
                rows(cheapest(rows, meets))%is_recommended(k) = .true.
             end if
-            trade%remarks(k)%value = ''
+            words = ''
             do q = 1, quantity_count
                if (is_reachable(q) .or. .not. trade%is_known(q)) cycle
-               call add_remark(traded(q)%name, trade%uncertainty(q), least(q), targets(k), &
-                  trade%remarks(k)%value)
+               if (words /= '') words = words//'; '
+               words = words//trim(traded(q)%name)
+               if (trade%uncertainty(q) >= targets(k)) then
+                  words = words//': the reference itself is uncertain by '// &
+                     percent(trade%uncertainty(q))
+               else
+                  words = words//': the best row has '//percent(least(q))
+               end if
             end do
-            if (any(rows%is_recommended(k)) .or. trade%remarks(k)%value /= '') cycle
-            trade%remarks(k)%value = 'no row meets it in all quantities'
-            if (.not. any(trade%is_known)) trade%remarks(k)%value = 'there is nothing to judge by'
+            if (words == '' .and. .not. any(rows%is_recommended(k))) then
+               words = 'no row meets it in all quantities'
+               if (.not. any(trade%is_known)) words = 'there is nothing to judge by'
+            end if
+            trade%remarks(k)%value = words
          end do
       end associate
    end subroutine judge_rows
@@ -77,20 +86,6 @@ contains
       best = findloc(candidates .and. rows%is_default, .true., dim=1)
       if (best == 0) best = findloc(candidates, .true., dim=1)
    end function cheapest
-
-   !> Says how accurate a quantity is that no row has as accurately as its target asks.
-   pure subroutine add_remark(name, uncertainty, least, target, words)
-      character(*), intent(in) :: name
-      real(dp), intent(in) :: uncertainty, least, target
-      character(:), allocatable, intent(inout) :: words
-
-      if (words /= '') words = words//'; '
-      if (uncertainty >= target) then
-         words = words//trim(name)//': the reference itself is uncertain by '//percent(uncertainty)
-      else
-         words = words//trim(name)//': the best row has '//percent(least)
-      end if
-   end subroutine add_remark
 
    !> A number with two decimal digits: the same double for the same digits, as text is read.
    elemental real(dp) function rounded(number)

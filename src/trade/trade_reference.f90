@@ -34,15 +34,6 @@ module trade_reference
       logical :: differs = .false.   !! only some of the rows have the value
    end type limit_type
 
-   !> Rows to extrapolate along.
-   type :: sequences_type
-      !> From the coarsest mesh to the finest; from the longest increments to the shortest; the deck
-      !> as written; the same with the smallest tolerance
-      integer, allocatable :: rows(:)
-      integer :: meshes = 0   !! how many of them are meshes
-      integer :: base = 0     !! which of the increments the meshes have, 0 for none
-   end type sequences_type
-
 contains
 
    !> States the errors of all rows that were solved, and the uncertainty of the reference: the row
@@ -52,18 +43,19 @@ contains
    pure subroutine state_errors(initial_temperature, trade)
       real(dp), intent(in) :: initial_temperature(:)   !! of the nodes of the deck [temperature]
       type(trade_type), intent(inout) :: trade         !! receives the errors
-      type(sequences_type) :: sequences
       type(limit_type), allocatable :: limits(:, :)
       real(dp), allocatable :: scales(:, :)
       logical, allocatable :: is_of(:, :)
-      integer :: q, i, t
+      integer, allocatable :: sequences(:)
+      integer :: meshes, base, q, i, t, k
 
-      call find_sequences(trade%rows, sequences)
-      if (sequences%base == 0) return
+      call find_sequences(trade%rows, sequences, meshes, base)
+      if (base == 0) return
       allocate (limits(size(trade%items), size(trade%instants)))
       do t = 1, size(limits, 2)
          do i = 1, size(limits, 1)
-            limits(i, t) = limit_of(trade%rows, sequences, trade%items(i), i, t)
+            limits(i, t) = limit_of([(trade%rows(sequences(k))%values(i, t), &
+               k=1, size(sequences))], meshes, base, trade%items(i))
          end do
       end do
       scales = scales_of(trade%items, limits%value, initial_temperature)
@@ -125,15 +117,20 @@ contains
    end function scales_of
 
    !> Picks the finest mesh with its shortest increments and coarser ones with the same increments;
-   !> the increments on the finest mesh that has three sizes of them. No base: one of both has no
-   !> sequence.
-   pure subroutine find_sequences(rows, sequences)
+   !> the increments on the finest mesh that has three sizes of them.
+   pure subroutine find_sequences(rows, sequences, mesh_count, base)
       type(trade_row_type), intent(in) :: rows(:)
-      type(sequences_type), intent(out) :: sequences
+      !> Rows from the coarsest mesh to the finest; from the longest increments to the shortest; the
+      !> deck as written; the same with the smallest tolerance
+      integer, allocatable, intent(out) :: sequences(:)
+      integer, intent(out) :: mesh_count   !! how many of them are meshes
+      integer, intent(out) :: base         !! which of the increments the meshes have; 0 for none
       integer, allocatable :: meshes(:), increments(:), found(:)
       logical :: is_grid(size(rows)), is_linear(size(rows))
       integer :: i, finest, level, list(size(rows)), default, tight
 
+      mesh_count = 0
+      base = 0
       list = [(i, i=1, size(rows))]
       is_grid = rows%status == 0 .and. rows%variation%contact_levels == 0 .and. &
          [(rows(i)%varied == '', i=1, size(rows))]
@@ -153,14 +150,14 @@ contains
          ! Linear elements on the only mesh count as a coarser one.
          if (size(meshes) == 1) meshes = [pack(list, is_linear .and. .not. is_grid .and. levels == &
             levels(finest) .and. abs(factors - factors(finest)) <= 0.0_dp), meshes]
-         if (size(meshes) > 1 .and. size(increments) > 1) sequences%base = findloc( &
+         if (size(meshes) > 1 .and. size(increments) > 1) base = findloc( &
             abs(factors(increments) - factors(finest)) <= 0.0_dp, .true., dim=1)
       end associate
       default = findloc(rows%is_default .and. rows%status == 0, .true., dim=1)
       tight = minloc(rows%variation%tolerance, dim=1, &
          mask=rows%variation%tolerance > 0.0_dp .and. rows%status == 0)
-      sequences%meshes = size(meshes)
-      sequences%rows = [meshes, increments, &
+      mesh_count = size(meshes)
+      sequences = [meshes, increments, &
          merge([default, tight], [finest, finest], min(default, tight) > 0)]
    end subroutine find_sequences
 
@@ -178,25 +175,21 @@ contains
    end function halved
 
    !> The limit of one number.
-   pure function limit_of(rows, sequences, quantity, i, t) result(limit)
-      type(trade_row_type), intent(in) :: rows(:)
-      type(sequences_type), intent(in) :: sequences
+   pure function limit_of(values, m, base, quantity) result(limit)
+      real(dp), intent(in) :: values(:)     !! of the rows of find_sequences
+      integer, intent(in) :: m, base        !! mesh_count and base of find_sequences
       integer, intent(in) :: quantity       !! of the item
-      integer, intent(in) :: i, t           !! item and instant
       type(limit_type) :: limit, finer
-      real(dp) :: values(size(sequences%rows))
-      integer :: m, n, k
 
-      m = sequences%meshes
-      n = size(values)
-      values = [(rows(sequences%rows(k))%values(i, t), k=1, n)]
       limit%value = values(m)
       limit%differs = any(is_there(values) .neqv. is_there(values(m)))
       if (limit%differs .or. quantity == closed_length .or. .not. is_there(values(m))) return
       limit = extrapolate(values(:m), has_scatter(quantity))
-      finer = extrapolate(values(m + 1:n - 2), has_scatter(quantity))
-      limit%value = limit%value + (finer%value - values(m + sequences%base))
-      limit%uncertainty = limit%uncertainty + finer%uncertainty + abs(values(n - 1) - values(n))
+      associate (n => size(values))
+         finer = extrapolate(values(m + 1:n - 2), has_scatter(quantity))
+         limit%value = limit%value + (finer%value - values(m + base))
+         limit%uncertainty = limit%uncertainty + finer%uncertainty + abs(values(n - 1) - values(n))
+      end associate
    end function limit_of
 
    !> The limit of values with steps h, h/2, h/4, ... Where the last differences fall by a steady
