@@ -1,46 +1,40 @@
 !> `thercon trade`: speed against accuracy of one deck, measured.
 module deck_trade
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
-   use all_contact_points, only: match_surfaces
+   use, intrinsic :: iso_fortran_env, only: output_unit
    use command_line, only: command_type
-   use contact_definitions, only: pairing_by_faces, pairing_nodes, pairing_surfaces
-   use contact_points, only: contact_points_type
+   use contact_definitions, only: pairing_nodes, pairing_surfaces
    use deck_preparation, only: prepare_deck, read_deck_type
    use deck_run, only: base_name
-   use element_kinds, only: element_corner_count
    use errors, only: error_type, status_deck, status_interrupted
-   use file_calls, only: is_stream, make_folder, print_text, try_file
+   use file_calls, only: is_stream, make_folder, try_file
    use increments, only: simulation_type
    use input_files, only: input_files_type
    use kinds, only: dp
    use messages, only: print_error, print_line
    use model, only: model_type
-   use printed_text, only: printed_text_type
+   use order_reduction, only: side_corners
+   use progress, only: progress_type
    use recommendation, only: judge_rows
-   use sorting, only: unique_sorted
-   use text, only: counted, string_type
-   use trade_errors, only: state_errors
-   use trade_file, only: write_trade
-   use trade_instants, only: common_instants
-   use trade_limits, only: check_affordable, note_left_out
-   use trade_measurement, only: measurement_type, working_paths
-   use trade_plan, only: add_contact_level, add_level, add_singles, longest_factor, make_room, &
-      most_levels
-   use trade_reference, only: find_reference, reference_type
-   use trade_rows, only: trade_type
-   use trade_table, only: print_imbalances, print_trade
+   use steps, only: solves_heat
+   use text, only: counted, few_digits, string_type
+   use trade_measurement, only: measure_rows, row_task_type
+   use trade_plan, only: coarser_row, common_instants, mesh_rows, most_levels, &
+      single_rows
+   use trade_reference, only: state_errors
+   use trade_study, only: item_quantities, trade_row_type, trade_type
+   use trade_table, only: print_trade, write_trade
    use variations, only: variation_type
    implicit none
    private
    public :: trade_deck
 
-   integer, parameter :: most_nodes = 2000   !! whose temperatures are compared
+   integer, parameter :: most_nodes = 2000     !! whose temperatures are compared
+   real(dp), parameter :: growth = 4.0_dp      !! of elements from one mesh to the next
 
 contains
 
-   !> Measures a deck and prints and writes the table. What goes wrong is printed on stderr. A deck
-   !> that does not run as it is written has a table all the same; so has a trade that a signal
-   !> ends.
+   !> Measures a deck, prints and writes the table; errors are printed on stderr. A deck that fails
+   !> as written has a table too, and so has a study that a signal ends.
    subroutine trade_deck(path, command, status)
       character(*), intent(in) :: path             !! the deck as given
       type(command_type), intent(in) :: command    !! options of the command line
@@ -49,11 +43,10 @@ contains
       type(model_type) :: model
       type(simulation_type) :: simulation
       type(trade_type) :: trade
-      type(reference_type) :: reference
       type(input_files_type) :: inputs
-      type(error_type), allocatable :: error, ended_early
-      character(:), allocatable :: results
-      integer :: i
+      type(error_type), allocatable :: error
+      character(:), allocatable :: table
+      integer :: i, other_pairing
 
       status = status_deck
       if (is_stream(path)) then
@@ -62,24 +55,35 @@ contains
       end if
       call prepare_deck(path, command, deck, model, simulation, error, &
          variation_type(order=2, levels=0))
-      call simulation%release()
       if (allocated(error)) then
          status = error%status
          return
       end if
-      results = command%folder//'/'//base_name(path)//'.trade'
-      trade%instants = common_instants(model, longest_factor)
+      other_pairing = 0
+      if (all(simulation%bodies%interfaces%pairing == pairing_nodes)) then
+         other_pairing = pairing_surfaces
+      end if
+      if (any(model%contacts%pairing == pairing_surfaces)) other_pairing = pairing_nodes
+      if (size(model%contacts) == 0) other_pairing = 0
+      call simulation%release()
+      table = command%folder//'/'//base_name(path)//'.trade.csv'
       call inputs%add(path, deck%cards%files)
-      call inputs%check([string_type(results//'.csv'), working_paths(results, command%jobs)], error)
+      call inputs%check([string_type(table)], error)
       if (.not. allocated(error)) call make_folder(command%folder, error)
-      if (.not. allocated(error)) call try_file(results//'.csv', error)
-      if (.not. allocated(error)) call measure(path, command, results, model, trade, error)
-      call forgive_signal(trade, error, ended_early)
+      if (.not. allocated(error)) call try_file(table, error)
+      if (.not. allocated(error)) call measure(path, command, other_pairing, model, trade, error)
+      if (allocated(error)) then
+         status = error%status
+         if (status == status_interrupted .and. size(trade%rows) > 0) then
+            trade%ended_early = error%message//': the table contains only the '// &
+               counted(size(trade%rows), 'row')//' measured before'
+            deallocate (error)
+         end if
+      end if
       if (.not. allocated(error)) then
-         call find_reference(trade, reference)
-         call state_errors(reference, model%initial_temperature, trade)
+         call state_errors(model%initial_temperature, trade)
          call judge_rows(trade)
-         call write_trade(results//'.csv', trade, error)
+         call write_trade(table, trade, error)
       end if
       if (allocated(error)) then
          status = error%status
@@ -87,155 +91,88 @@ contains
          return
       end if
       if (.not. command%quiet) then
-         call print_table(path, results, trade)
+         call print_trade(path, trade)
+         call print_line(output_unit, 'table: '//table)
       end if
-      call print_imbalances(error_unit, path, trade)
-      if (allocated(ended_early)) then
-         status = ended_early%status
-         call print_error(path, ended_early%message)
+      if (allocated(trade%ended_early)) then
+         call print_error(path, trade%ended_early)
          return
       end if
-      i = findloc(trade%rows(:trade%count)%is_default, .true., dim=1)
+      i = findloc(trade%rows%is_default, .true., dim=1)
       status = trade%rows(i)%status
       if (status /= 0) call print_error(path, 'the deck as written fails: '// &
          trade%rows(i)%reason)
    end subroutine trade_deck
 
-   !> A signal after some rows is no error yet: their table can be made.
-   pure subroutine forgive_signal(trade, error, ended_early)
-      type(trade_type), intent(inout) :: trade
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable, intent(out) :: ended_early
-
-      if (.not. allocated(error)) return
-      if (error%status /= status_interrupted .or. trade%count == 0) return
-      call move_alloc(error, ended_early)
-      ended_early%message = ended_early%message//': the table contains only the '// &
-         counted(trade%count, 'row')//' measured before'
-      trade%ended_early = ended_early%message
-   end subroutine forgive_signal
-
-   !> Prints the table on stdout, where it may find no room.
-   subroutine print_table(path, results, trade)
-      character(*), intent(in) :: path, results
-      type(trade_type), intent(in) :: trade
-      type(printed_text_type) :: text
-      type(error_type), allocatable :: error
-      character(:), allocatable :: lines
-
-      call text%open(error)
-      if (allocated(error)) then
-         call print_error(path, error%message)
-         return
-      end if
-      call print_trade(text%unit, path, trade)
-      call text%take(lines)
-      call text%close()
-      call print_text(lines)
-      call print_line(output_unit, 'table: '//results//'.csv')
-   end subroutine print_table
-
-   !> Runs the grid level by level, as long as that is affordable, then meshes with ever more levels
-   !> at the contact faces, then the single variations.
-   subroutine measure(path, command, results, model, trade, error)
-      character(*), intent(in) :: path, results
+   !> Runs the grid level by level, then meshes with ever more levels at the contact faces, both as
+   !> far as that is affordable, then the single variations.
+   subroutine measure(path, command, other_pairing, model, trade, error)
+      character(*), intent(in) :: path
       type(command_type), intent(in) :: command
+      integer, intent(in) :: other_pairing                !! pairing of single_rows
       type(model_type), intent(in) :: model
       type(trade_type), intent(inout) :: trade
       type(error_type), allocatable, intent(out) :: error
-      type(measurement_type) :: measurement
-      integer :: level, first
+      type(row_task_type) :: task
+      type(progress_type) :: progress
+      type(trade_row_type), allocatable :: rows(:)
+      integer :: level, contact_level, corners(2, size(model%mesh%node_number))
 
-      measurement%task%path = path
-      measurement%task%command = command
-      measurement%task%instants = trade%instants
-      measurement%task%nodes = compared_nodes(model)
-      measurement%scratch = results
-      measurement%jobs = command%jobs
-      measurement%limit = command%limit
-      call measurement%progress%start(command%quiet)
-      call make_room(model, trade)
-      do level = 0, model%written_levels + most_levels
-         first = trade%count + 1
-         call add_level(model, level, trade)
-         call keep_affordable(trade, first, command)
-         call measurement%run(trade, first, trade%count, error)
-         if (allocated(error)) return
-         if (trade%count < first .and. level >= model%written_levels) exit
-      end do
-      do level = 1, model%written_levels + most_levels
-         first = trade%count + 1
-         call add_contact_level(model, level, trade)
-         call keep_affordable(trade, first, command)
-         if (trade%count < first) exit
-         call measurement%run(trade, first, trade%count, error)
-         if (allocated(error)) return
-      end do
-      first = trade%count + 1
-      call add_singles(model, other_pairing(model), trade)
-      call measurement%run(trade, first, trade%count, error)
+      task%path = path
+      task%command = command
+      ! Temperatures are those of the corners of the deck's own elements, which all rows have.
+      corners = side_corners(model%mesh)
+      task%nodes = pack(model%mesh%node_number, corners(1, :) == 0 .and. &
+         any(solves_heat(model%steps%analysis)))
+      task%nodes = task%nodes(::1 + (size(task%nodes) - 1)/most_nodes)
+      trade%instants = common_instants(model)
+      trade%items = item_quantities(size(model%contacts), size(task%nodes))
+      task%instants = trade%instants
+      task%items = trade%items
+      allocate (trade%rows(0), trade%left_out(0))
+      call progress%start(command%quiet)
+      associate (most => model%written_levels + most_levels)
+         do contact_level = 0, merge(most, 0, size(model%contacts) > 0)
+            do level = 0, most - contact_level
+               call mesh_rows(model, level, contact_level, rows)
+               call leave_out_expensive(command%limit, trade, rows)
+               call run_rows()
+               if (allocated(error)) return
+            end do
+         end do
+      end associate
+      call single_rows(model, other_pairing, rows)
+      call run_rows()
+      call progress%clear()
+   contains
+      subroutine run_rows()
+         call measure_rows(task, progress, rows, error)
+         trade%rows = [trade%rows, rows]
+      end subroutine run_rows
    end subroutine measure
 
-   !> The pairing that the deck does not have although all its faces match; 0 where one does not.
-   integer function other_pairing(model)
-      type(model_type), intent(in) :: model
-      type(model_type) :: by_faces
-      type(contact_points_type) :: points
-      type(error_type), allocatable :: error
-      integer :: i
+   !> Leaves out the rows that would cost too much, but never the deck as written; rows on meshes
+   !> even finer than those are not named.
+   pure subroutine leave_out_expensive(limit, trade, rows)
+      real(dp), intent(in) :: limit                       !! CPU seconds that a row may take [s]
+      type(trade_type), intent(inout) :: trade            !! receives them
+      type(trade_row_type), allocatable, intent(inout) :: rows(:)
+      logical :: is_kept(size(rows))
+      real(dp) :: seconds
+      integer :: i, before
 
-      other_pairing = 0
-      if (size(model%contacts) == 0) return
-      by_faces = model
-      by_faces%contacts%pairing = pairing_by_faces
-      do i = 1, size(model%contacts)
-         call match_surfaces(by_faces, i, points, error)
-         if (allocated(error)) return
-         if (points%pairing /= pairing_nodes) return
+      do i = 1, size(rows)
+         before = coarser_row(trade%rows, rows(i)%variation)
+         is_kept(i) = rows(i)%is_default .or. rows(i)%variation%levels + &
+            rows(i)%variation%contact_levels == 0
+         if (is_kept(i) .or. before == 0) cycle
+         seconds = growth*trade%rows(before)%cpu_seconds
+         is_kept(i) = seconds <= limit
+         if (is_kept(i)) cycle
+         trade%left_out = [trade%left_out, rows(i)]
+         trade%left_out(size(trade%left_out))%reason = 'at least '//few_digits(seconds)//' s'
       end do
-      other_pairing = merge(pairing_nodes, pairing_surfaces, &
-         any(model%contacts%pairing == pairing_surfaces))
-   end function other_pairing
-
-   !> Takes the rows out again that would cost too much, but never the deck as it is written.
-   subroutine keep_affordable(trade, first, command)
-      type(trade_type), intent(inout) :: trade
-      integer, intent(in) :: first
-      type(command_type), intent(in) :: command
-      character(:), allocatable :: reason
-      integer :: i, kept
-
-      kept = first - 1
-      do i = first, trade%count
-         reason = ''
-         if (.not. trade%rows(i)%is_default) call check_affordable(trade, i, command%limit, &
-            command%jobs, reason)
-         if (len(reason) > 0) then
-            call note_left_out(trade%rows(i), reason, trade%left_out)
-         else
-            kept = kept + 1
-            if (kept < i) trade%rows(kept) = trade%rows(i)
-         end if
-      end do
-      trade%count = kept
-   end subroutine keep_affordable
-
-   !> Numbers of the nodes whose temperatures are compared: corners of the deck's own elements,
-   !> which all rows have; some of them where they are many.
-   pure function compared_nodes(model) result(numbers)
-      type(model_type), intent(in) :: model
-      integer, allocatable :: numbers(:)
-      logical :: is_corner(size(model%mesh%node_number))
-      integer :: e
-
-      is_corner = .false.
-      associate (mesh => model%mesh)
-         do e = 1, size(mesh%element_kind)
-            is_corner(mesh%element_nodes(:element_corner_count(mesh%element_kind(e)), e)) = .true.
-         end do
-         numbers = unique_sorted(pack(mesh%node_number, is_corner))
-      end associate
-      numbers = numbers(::1 + (size(numbers) - 1)/most_nodes)
-   end function compared_nodes
+      rows = rows(pack([(i, i=1, size(rows))], is_kept))
+   end subroutine leave_out_expensive
 
 end module deck_trade

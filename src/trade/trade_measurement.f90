@@ -1,243 +1,243 @@
-!> Rows are run in processes of their own, as often as their times ask for.
+!> Rows of a trade-off study are solved in processes of their own, without output, as often as their
+!> times ask for.
 module trade_measurement
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_c_binding, only: c_int
    use clock, only: wall_seconds
    use command_line, only: command_type
-   use errors, only: error_type, set_error, status_internal, status_interrupted
+   use contact_points, only: contact_points_type
+   use contact_quantities, only: contact_values
+   use deck_preparation, only: prepare_deck, read_deck_type
+   use errors, only: error_type, set_error, status_internal, status_interrupted, &
+      status_no_convergence
+   use increments, only: simulation_type
+   use interface_quantities, only: closed_length
    use interruption, only: caught_signal
-   use file_calls, only: remove_file
    use kinds, only: dp
-   use processes, only: child_type, pause_briefly, reason_of, report_type
+   use model, only: model_type
+   use open_files, only: close_descriptor, open_in_memory
+   use processes, only: child_type, pause_briefly, reason_of, report_type, set_reason, task_type
    use progress, only: progress_type
-   use row_task, only: row_task_type
-   use text, only: string_type, to_text
-   use trade_rows, only: trade_row_type, trade_type
+   use records, only: increment_record_type
+   use reported_quantities, only: traded
+   use sorting, only: number_index_type
+   use text, only: to_text
+   use trade_plan, only: instant_at
+   use trade_study, only: absent, figure_count, trade_row_type
+   use variations, only: variation_type
    implicit none
    private
-   public :: measurement_type, working_paths, median
+   public :: row_task_type, measure_rows
 
-   !> Runs of a row by the CPU seconds of its first: times of a moment scatter most.
+   !> Runs of a row by the CPU seconds of its first: short times scatter most.
    real(dp), parameter :: moments(3) = [0.1_dp, 1.0_dp, 5.0_dp]   !! [s]
-   integer, parameter :: runs_within(4) = [7, 5, 3, 1]             !! up to each, and beyond
-   real(dp), parameter :: patience = 5.0_dp       !! a row may take so many times the limit
+   integer, parameter :: runs_within(4) = [7, 5, 3, 1]            !! up to each, and beyond
+   real(dp), parameter :: patience = 5.0_dp        !! a row may take so many times the limit
    real(dp), parameter :: least_patience = 20.0_dp !! and this [s]
 
-   !> A run of a row that is under way.
-   type :: slot_type
-      integer :: row = 0            !! the row, 0 where the slot is free
-      type(child_type) :: child     !! its process
-      real(dp) :: since = 0.0_dp    !! when it began [s]
-      logical :: is_late = .false.  !! whether it was ended for taking too long
-   end type slot_type
-
-   !> What all runs have in common.
-   type :: measurement_type
-      type(row_task_type) :: task              !! deck, options, instants and nodes
-      type(progress_type) :: progress          !! progress line
-      character(:), allocatable :: scratch     !! path that temporary files begin with
-      real(dp) :: limit = 0.0_dp               !! CPU seconds that a row should take at most [s]
-      integer :: jobs = 1                      !! rows that run at a time
+   !> Everything that a row needs.
+   type, extends(task_type) :: row_task_type
+      character(:), allocatable :: path      !! the deck as given
+      type(command_type) :: command          !! options of the command line
+      integer, allocatable :: items(:)       !! as from item_quantities
+      real(dp), allocatable :: instants(:)   !! total times of comparison [time]
+      integer, allocatable :: nodes(:)       !! numbers of nodes whose temperature is compared
+      type(variation_type) :: variation      !! the row
+      character(:), allocatable :: found     !! path of a file for what it finds
    contains
-      procedure :: run
-   end type measurement_type
+      procedure :: execute
+   end type row_task_type
+
+   !> Room for a row that is run.
+   type :: slot_type
+      integer :: row = 0            !! the row
+      integer :: runs_left = 0      !! of this row, the present one included; 0: the slot is free
+      type(row_task_type) :: task
+      type(child_type) :: child     !! its process
+      integer :: file = -1          !! descriptor of the file for what it finds
+      real(dp) :: since = 0.0_dp    !! when it began [s]
+   end type slot_type
 
 contains
 
-   !> Runs the last rows of a trade. A row that fails keeps its reason.
-   !> Errors: status_interrupted after a signal, then the trade has only the rows that were
-   !> measured; status_internal where no process can be started.
-   subroutine run(self, trade, first, last, error)
-      class(measurement_type), intent(inout) :: self      !! what the runs have in common
-      type(trade_type), intent(inout) :: trade
-      integer, intent(in) :: first                        !! first row to be run
-      integer, intent(in) :: last                         !! last row that there is
+   !> Runs some rows. A row that fails keeps its reason.
+   !> Errors: status_interrupted after a signal, then only the rows that were measured remain;
+   !> status_internal where no process can be started.
+   subroutine measure_rows(task, progress, rows, error)
+      type(row_task_type), intent(in) :: task                 !! all but the variation
+      type(progress_type), intent(inout) :: progress
+      type(trade_row_type), allocatable, intent(inout) :: rows(:)
       type(error_type), allocatable, intent(out) :: error
-      type(slot_type) :: slots(self%jobs)
-      integer :: queue((last - first + 1)*maxval(runs_within))
-      type(string_type), allocatable :: paths(:)
-      integer :: queued, next, s, i
-
-      paths = working_paths(self%scratch, self%jobs)
-      queued = last - first + 1
-      queue(:queued) = [(i, i=first, last)]
-      next = 1
-      do while (next <= queued .or. any(slots%row > 0))
-         do s = 1, size(slots)
-            if (slots(s)%row > 0 .or. next > queued) cycle
-            call begin(self, trade, queue(next), paths(s)%value, slots(s), error)
-            if (allocated(error)) exit
-            next = next + 1
-         end do
-         if (.not. allocated(error)) call wait_for_one(self, trade, paths, slots, queue, &
-            queued)
-         if (caught_signal() /= '') call set_error_once(error)
-         if (allocated(error)) exit
-      end do
-      do s = 1, size(slots)
-         if (slots(s)%row > 0) call slots(s)%child%kill()
-         call remove_file(paths(s)%value)
-      end do
-      call self%progress%clear()
-      if (allocated(error)) call keep_measured(trade, first)
-      do i = first, trade%count
-         trade%rows(i)%cpu_seconds = median(trade%rows(i)%cpu)
-      end do
-   end subroutine run
-
-   !> Takes the rows out again that were not run to their end.
-   pure subroutine keep_measured(trade, first)
-      type(trade_type), intent(inout) :: trade
-      integer, intent(in) :: first
-      integer :: i, kept
-
-      kept = first - 1
-      do i = first, trade%count
-         if (.not. allocated(trade%rows(i)%cpu)) cycle
-         if (trade%rows(i)%status == status_interrupted) cycle
-         kept = kept + 1
-         if (kept < i) trade%rows(kept) = trade%rows(i)
-      end do
-      trade%count = kept
-   end subroutine keep_measured
-
-   subroutine set_error_once(error)
-      type(error_type), allocatable, intent(inout) :: error
-
-      if (.not. allocated(error)) call set_error(error, status_interrupted, 'ended by '// &
-         caught_signal())
-   end subroutine set_error_once
-
-   !> Begins a run of a row.
-   subroutine begin(self, trade, row, path, slot, error)
-      class(measurement_type), intent(inout) :: self
-      type(trade_type), intent(in) :: trade
-      integer, intent(in) :: row
-      character(*), intent(in) :: path   ! of its values
-      type(slot_type), intent(out) :: slot
-      type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: line
-
-      self%task%variation = trade%rows(row)%variation
-      self%task%values_path = path
-      line = 'row '//to_text(row)//' of level '//to_text(trade%rows(row)%level)
-      if (allocated(trade%rows(row)%cpu)) line = line//', run '// &
-         to_text(size(trade%rows(row)%cpu) + 1)
-      call self%progress%say(line)
-      call slot%child%start(self%task, error)
-      if (allocated(error)) return
-      slot%row = row
-      slot%since = wall_seconds()
-   end subroutine begin
-
-   !> Waits until a run has ended, or a signal has come.
-   subroutine wait_for_one(self, trade, paths, slots, queue, queued)
-      class(measurement_type), intent(in) :: self
-      type(trade_type), intent(inout) :: trade
-      type(string_type), intent(in) :: paths(:)   ! of the values, one a slot
-      type(slot_type), intent(inout) :: slots(:)
-      integer, intent(inout) :: queue(:), queued
+      type(slot_type) :: slots(task%command%jobs)
+      integer :: next, s
       logical :: has_ended
-      integer :: s
 
-      has_ended = .false.
-      do while (caught_signal() == '')
+      next = 1
+      do while (next <= size(rows) .or. any(slots%runs_left > 0))
          do s = 1, size(slots)
-            if (slots(s)%row == 0) cycle
-            slots(s)%is_late = wall_seconds() - slots(s)%since >= max(patience*self%limit, &
-               least_patience)
-            if (slots(s)%is_late) call slots(s)%child%kill()
-            has_ended = slots(s)%is_late
-            if (.not. has_ended) has_ended = slots(s)%child%has_ended()
-            if (.not. has_ended) cycle
-            call take(self, trade%rows(slots(s)%row), slots(s), paths(s)%value, queue, queued)
-            slots(s)%row = 0
-            return
+            if (slots(s)%runs_left > 0) then
+               call collect(slots(s), rows(slots(s)%row), has_ended)
+               if (.not. has_ended) cycle
+            end if
+            if (slots(s)%runs_left == 0) then
+               if (next > size(rows)) cycle
+               slots(s)%row = next
+               slots(s)%runs_left = 1
+               next = next + 1
+            end if
+            call progress%say('level '//to_text(rows(slots(s)%row)%variation%levels)//', row '// &
+               to_text(slots(s)%row)//' of '//to_text(size(rows)))
+            slots(s)%task = task
+            slots(s)%task%variation = rows(slots(s)%row)%variation
+            call open_in_memory(slots(s)%file, slots(s)%task%found, error)
+            if (.not. allocated(error)) call slots(s)%child%start(slots(s)%task, error)
+            if (allocated(error)) exit
+            slots(s)%since = wall_seconds()
          end do
+         if (.not. allocated(error) .and. caught_signal() /= '') call set_error(error, &
+            status_interrupted, 'ended by '//caught_signal())
+         if (allocated(error)) exit
          call pause_briefly()
       end do
-   end subroutine wait_for_one
+      do s = 1, size(slots)
+         if (slots(s)%child%is_running) call slots(s)%child%kill()
+      end do
+      if (allocated(error)) rows = rows(pack([(s, s=1, size(rows))], &
+         [(allocated(rows(s)%cpu), s=1, size(rows))]))
+   end subroutine measure_rows
 
-   !> Takes what a run left; after the first one its repetitions are queued.
-   subroutine take(self, row, slot, path, queue, queued)
-      class(measurement_type), intent(in) :: self
-      type(trade_row_type), intent(inout) :: row
+   !> Takes what a run left, once it has ended; after the first one of a row, repetitions are due.
+   subroutine collect(slot, row, has_ended)
       type(slot_type), intent(inout) :: slot
-      character(*), intent(in) :: path   ! of its values
-      integer, intent(inout) :: queue(:), queued
-      integer :: again
-
-      associate (ended => slot%child%end)
-         row%peak_bytes = max(row%peak_bytes, ended%peak_bytes)
-         if (allocated(row%cpu)) then
-            if (ended%signal == 0 .and. ended%status == 0) row%cpu = [row%cpu, &
-               ended%cpu_seconds]
-            if (.not. slot%is_late) call slot%child%drop_files()
-            return
-         end if
-         row%cpu = [ended%cpu_seconds]
-         call take_outcome(self, row, slot, path)
-         if (row%status /= 0) return
-         again = runs_within(count(ended%cpu_seconds > moments) + 1) - 1
-      end associate
-      queue(queued + 1:queued + again) = slot%row
-      queued = queued + again
-   end subroutine take
-
-   subroutine take_outcome(self, row, slot, path)
-      class(measurement_type), intent(in) :: self
       type(trade_row_type), intent(inout) :: row
-      type(slot_type), intent(inout) :: slot
-      character(*), intent(in) :: path   ! of its values
+      logical, intent(out) :: has_ended
       type(report_type) :: report
-      type(error_type), allocatable :: error
-
-      row%status = status_internal
-      if (slot%is_late) then
-         row%reason = 'took longer than '//to_text(max(patience*self%limit, least_patience))//' s'
-         return
-      end if
-      report = slot%child%report()
-      call slot%child%drop_files()
-      row%reason = slot%child%sudden_end()
-      if (slot%child%end%signal /= 0 .or. report%is_whole == 0) return
-      row%status = int(report%status)
-      row%reason = reason_of(report)
-      call row%values%load(path, error)
-      if (row%status == 0 .and. allocated(error)) then
-         row%status = error%status
-         row%reason = error%message
-      end if
-   end subroutine take_outcome
-
-   !> Paths of the temporary files.
-   pure function working_paths(scratch, jobs) result(paths)
-      character(*), intent(in) :: scratch          !! path that they begin with
-      integer, intent(in) :: jobs                  !! rows that run at a time
-      type(string_type), allocatable :: paths(:)   !! (jobs)
       integer :: i
 
-      allocate (paths(jobs))
-      do i = 1, jobs
-         paths(i)%value = scratch//'.'//to_text(i)//'.values.tmp'
-      end do
-   end function working_paths
+      associate (longest => max(patience*slot%task%command%limit, least_patience), &
+         ended => slot%child%end)
+         has_ended = slot%child%has_ended()
+         if (.not. has_ended .and. wall_seconds() - slot%since < longest) return
+         slot%runs_left = slot%runs_left - 1
+         report%status = int(status_internal, c_int)
+         if (has_ended) then
+            report = slot%child%report()
+            if (ended%signal /= 0 .or. report%is_whole == 0) then
+               report%status = int(status_internal, c_int)
+               call set_reason(report, slot%child%sudden_end())
+            end if
+            call slot%child%drop_files()
+         else
+            call slot%child%kill()
+            call set_reason(report, 'took longer than '//to_text(longest)//' s')
+         end if
+         has_ended = .true.
+         row%peak_bytes = max(row%peak_bytes, ended%peak_bytes)
+         if (.not. allocated(row%cpu)) then
+            row%cpu = [ended%cpu_seconds]
+            row%status = int(report%status)
+            row%reason = reason_of(report)
+            call load(slot%task, row)
+            if (row%status == 0) slot%runs_left = &
+               runs_within(count(ended%cpu_seconds > moments) + 1) - 1
+         else if (report%status == 0) then
+            row%cpu = [row%cpu, ended%cpu_seconds]
+         end if
+      end associate
+      ! The median: the smallest that at least half of them do not exceed.
+      row%cpu_seconds = minval(row%cpu, mask=[(2*count(row%cpu <= row%cpu(i)) >= size(row%cpu), &
+         i=1, size(row%cpu))])
+      call close_descriptor(slot%file)
+   end subroutine collect
 
-   !> The median of some numbers.
-   pure real(dp) function median(numbers)
-      real(dp), intent(in) :: numbers(:)   !! at least one
-      real(dp) :: sorted(size(numbers)), number
-      integer :: i, k, n
+   !> Reads what a row found; a solved one that left no values fails.
+   subroutine load(task, row)
+      type(row_task_type), intent(in) :: task
+      type(trade_row_type), intent(inout) :: row
+      integer :: unit, io
 
-      n = size(numbers)
-      sorted = numbers
-      do i = 2, n
-         number = sorted(i)
-         do k = i - 1, 1, -1
-            if (sorted(k) <= number) exit
-            sorted(k + 1) = sorted(k)
-         end do
-         sorted(k + 1) = number
+      allocate (row%values(size(task%items), size(task%instants)))
+      open (newunit=unit, file=task%found, access='stream', status='old', iostat=io)
+      if (io == 0) then
+         read (unit, iostat=io) row%increments, row%passes, row%values
+         close (unit)
+      end if
+      if (io /= 0 .and. row%status == 0) then
+         row%status = status_internal
+         row%reason = 'no values of the row'
+      end if
+   end subroutine load
+
+   !> Solves the row and leaves what it found in the file.
+   subroutine execute(self, report)
+      class(row_task_type), intent(inout) :: self
+      type(report_type), intent(inout) :: report    !! how it ended
+      type(read_deck_type) :: deck
+      type(model_type) :: model
+      type(simulation_type) :: simulation
+      type(trade_row_type) :: row
+      type(error_type), allocatable :: error
+      integer :: unit, io
+
+      call prepare_deck(self%path, self%command, deck, model, simulation, error, self%variation)
+      if (.not. allocated(error)) then
+         call solve(self, model, simulation, row, error)
+         open (newunit=unit, file=self%found, access='stream', status='old', iostat=io)
+         if (io == 0) then
+            write (unit, iostat=io) row%increments, row%passes, row%values
+            close (unit)
+         end if
+         if (io /= 0 .and. .not. allocated(error)) call set_error(error, status_internal, &
+            'no room for the values of the row')
+         if (allocated(error)) error%status = max(error%status, status_no_convergence)
+      end if
+      if (.not. allocated(error)) return
+      report%status = int(error%status, c_int)
+      call set_reason(report, error%message)
+   end subroutine execute
+
+   subroutine solve(self, model, simulation, row, error)
+      type(row_task_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(inout) :: simulation
+      type(trade_row_type), intent(inout) :: row
+      type(error_type), allocatable, intent(out) :: error
+      type(increment_record_type) :: record
+      type(number_index_type) :: index
+      integer :: nodes(size(self%nodes)), instant, i
+
+      allocate (row%values(size(self%items), size(self%instants)), source=absent)
+      call index%build(model%mesh%node_number)
+      nodes = [(index%find(self%nodes(i)), i=1, size(nodes))]
+      call simulation%reduce(model, error)
+      do while (.not. (allocated(error) .or. simulation%finished(model)))
+         call simulation%advance(model, record, error)
+         if (allocated(record%iterations)) row%passes = row%passes + size(record%iterations)
+         if (allocated(error)) return
+         row%increments = row%increments + 1
+         instant = instant_at(self%instants, record%time)
+         if (instant > 0) row%values(:, instant) = compared_values(record, &
+            simulation%bodies%interfaces, nodes)
       end do
-      median = 0.5_dp*(sorted((n + 1)/2) + sorted(n/2 + 1))
-   end function median
+   end subroutine solve
+
+   !> Values of the items at an instant.
+   pure function compared_values(record, interfaces, nodes) result(values)
+      type(increment_record_type), intent(in) :: record     !! the increment that ends there
+      type(contact_points_type), intent(in) :: interfaces(:)
+      integer, intent(in) :: nodes(:)
+      real(dp), allocatable :: values(:)
+      integer :: i, q
+
+      allocate (values(0))
+      do i = 1, size(interfaces)
+         values = [values, (contact_values(traded(q)%name, interfaces(i), record%contacts(i)), &
+            q=1, figure_count), closed_length(record%contacts(i), interfaces(i)%arc_length)]
+      end do
+      if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &
+         traded(q)%name == 'heat_rate'), q=1, figure_count), 0.0_dp]
+      values = [values, record%fields%temperature(nodes)]
+      where (.not. ieee_is_finite(values)) values = absent
+   end function compared_values
 
 end module trade_measurement

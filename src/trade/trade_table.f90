@@ -1,198 +1,206 @@
-!> The table of a trade as a person reads it.
+!> The table of a trade-off study, as text and as a CSV file.
 module trade_table
-   use heat_balance, only: sound_imbalance
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use csv_fields, only: quoted
+   use errors, only: error_type
    use kinds, only: dp
    use messages, only: print_line
+   use open_files, only: write_file
    use recommendation, only: same_time
    use reported_quantities, only: traded
    use text, only: few_digits, percent, to_text, with_decimals
-   use trade_quantities, only: is_there, quantity_count
-   use trade_rows, only: trade_row_type, trade_type, target_count, targets
+   use trade_study, only: is_there, quantity_count, target_count, targets, trade_row_type, &
+      trade_type
    implicit none
    private
-   public :: print_trade, print_imbalances, elements_of, mesh_of, factor_text
+   public :: print_trade, write_trade
 
-   real(dp), parameter :: megabyte = 1.0e6_dp    !! [byte]
+   real(dp), parameter :: megabyte = 1.0e6_dp               !! [byte]
+   character(2), parameter :: elements(2) = ['Q4', 'Q8']    !! by their order
 
 contains
 
-   !> Prints the table, what was left out, and the rows that are recommended.
-   subroutine print_trade(unit, name, trade)
-      integer, intent(in) :: unit               !! where to
+   !> Prints the table, the rows that were left out, and the recommendations on stdout.
+   subroutine print_trade(name, trade)
       character(*), intent(in) :: name          !! the deck
       type(trade_type), intent(in) :: trade
-      integer :: i, q
-
-      write (unit, '(3a)') name, ': speed against accuracy; errors in %, those of the reference', &
-         ' included'
-      write (unit, '(/, a)', advance='no') &
-         ' row  mesh          incr.  number  varied           CPU s      MB'
-      do q = 1, quantity_count
-         write (unit, '(a9)', advance='no') trim(traded(q)%head)
-      end do
-      write (unit, '(a)') '    worst'
-      do i = 1, trade%count
-         call print_row(unit, i, trade%rows(i))
-      end do
-      write (unit, '(a, t66)', advance='no') '      reference uncertain by'
-      do q = 1, quantity_count
-         write (unit, '(a9)', advance='no') cell(trade%uncertainty(q))
-      end do
-      write (unit, '(/, /, 3a)') '* no row that takes at most ', &
-         to_text(nint(1000.0_dp*same_time)), ' ms more is better (worst error); '// &
-         '= the deck as written'
-      if (any(trade%rows(:trade%count)%contact_level > 0)) write (unit, '(a)') &
-         'x 1:4: sides are those of the deck''s mesh, at both contact faces divided by 4 '// &
-         '(*REFINE, LEVELS=2, SURFACE=)'
-      call print_instants(unit, trade)
-      do i = 1, size(trade%left_out)
-         write (unit, '(2a)') 'left out by --limit or memory: ', trade%left_out(i)%value
-      end do
-      if (allocated(trade%ended_early)) write (unit, '(a)') trade%ended_early
-      write (unit, '(a)') ''
-      do i = 1, target_count
-         call print_target(unit, trade, i)
-      end do
-   end subroutine print_trade
-
-   !> Prints a warning that names the rows that leave heat out of balance.
-   subroutine print_imbalances(unit, name, trade)
-      integer, intent(in) :: unit               !! where to
-      character(*), intent(in) :: name          !! the deck
-      type(trade_type), intent(in) :: trade
-      character(:), allocatable :: rows
-      integer :: i
-
-      rows = ''
-      do i = 1, trade%count
-         associate (row => trade%rows(i))
-            if (row%status /= 0 .or. row%values%imbalance <= sound_imbalance) cycle
-            rows = rows//', row '//to_text(i)//' ('//percent(row%values%imbalance)// &
-               comma(row%varied)//')'
-         end associate
-      end do
-      if (len(rows) > 0) call print_line(unit, name//': warning: at the end of an increment '// &
-         'heat is out of balance by more than 1 % of the largest rate '// &
-         '(heat_imbalance_pointwise), left by the thermal scheme: '//rows(3:))
-   end subroutine print_imbalances
-
-   subroutine print_row(unit, number, row)
-      integer, intent(in) :: unit, number
-      type(trade_row_type), intent(in) :: row
-      integer :: q
-
-      write (unit, '(i4, 2a, 2x, a12, 2x, a6)', advance='no') number, &
-         merge('*', ' ', row%is_optimal), merge('=', ' ', row%is_default), &
-         padded(mesh_of(row)), factor_text(row%variation%increments)
-      if (row%status == 0) then
-         write (unit, '(i7)', advance='no') row%values%increments
-      else
-         write (unit, '(a7)', advance='no') '-'
-      end if
-      write (unit, '(2x, a14, f9.3, f8.1)', advance='no') shown(row%varied), row%cpu_seconds, &
-         row%peak_bytes/megabyte
-      if (row%status /= 0) then
-         write (unit, '(4a)') '  failed (', to_text(row%status), '): ', row%reason
-         return
-      end if
-      do q = 1, quantity_count
-         write (unit, '(a9)', advance='no') cell(row%errors(q))
-      end do
-      write (unit, '(a9)') cell(row%worst)
-   end subroutine print_row
-
-   pure function padded(words) result(field)
-      character(*), intent(in) :: words
-      character(12) :: field
-
-      field = words
-   end function padded
-
-   pure function shown(words) result(field)
-      character(*), intent(in) :: words
-      character(14) :: field
-
-      field = words
-   end function shown
-
-   subroutine print_instants(unit, trade)
-      integer, intent(in) :: unit
-      type(trade_type), intent(in) :: trade
+      character(68 + 9*(quantity_count + 1)) :: head
       character(:), allocatable :: times
       integer :: i
 
+      call say(name//': speed against accuracy; errors in %, those of the reference included')
+      call say('')
+      write (head, '(a, *(a9))') ' row  mesh          incr.  number  varied           CPU s'// &
+         '      MB', (trim(traded(i)%head), i=1, quantity_count), 'worst'
+      call say(trim(head))
+      do i = 1, size(trade%rows)
+         call print_row(i, trade%rows(i))
+      end do
+      call say('      reference uncertain by'//repeat(' ', 37)//columns(trade%uncertainty))
+      call say('')
+      call say('* no row that takes at most '//to_text(nint(1000.0_dp*same_time))// &
+         ' ms more is better (worst error); = the deck as written')
+      if (any(trade%rows%variation%contact_levels > 0)) call say('x 1:4: sides are those of '// &
+         'the deck''s mesh, at both contact faces divided by 4 (*REFINE, LEVELS=2, SURFACE=)')
       times = ''
       do i = 1, size(trade%instants)
          times = times//' '//to_text(trade%instants(i))
       end do
-      write (unit, '(2a)') 'compared at the times', times
-   end subroutine print_instants
+      call say('compared at the times'//times)
+      do i = 1, size(trade%left_out)
+         call say('left out by --limit: '//described(trade%left_out(i))//': '// &
+            trade%left_out(i)%reason)
+      end do
+      if (allocated(trade%ended_early)) call say(trade%ended_early)
+      call say('')
+      do i = 1, target_count
+         call print_target(trade, i)
+      end do
+   end subroutine print_trade
 
-   subroutine print_target(unit, trade, target_index)
-      integer, intent(in) :: unit, target_index
+   subroutine say(line)
+      character(*), intent(in) :: line
+
+      call print_line(output_unit, line)
+   end subroutine say
+
+   subroutine print_row(number, row)
+      integer, intent(in) :: number
+      type(trade_row_type), intent(in) :: row
+      character(12) :: mesh
+      character(14) :: varied
+      character(68) :: line
+
+      mesh = mesh_of(row)
+      varied = row%varied
+      write (line, '(i4, 2a, 2x, a, 2x, a6, i7, 2x, a, f9.3, f8.1)') number, &
+         merge('*', ' ', row%is_optimal), merge('=', ' ', row%is_default), mesh, factor_of(row), &
+         row%increments, varied, row%cpu_seconds, row%peak_bytes/megabyte
+      if (row%status == 0) then
+         call say(line//columns([row%errors, row%worst]))
+      else
+         call say(line//'  failed ('//to_text(row%status)//'): '//row%reason)
+      end if
+   end subroutine print_row
+
+   subroutine print_target(trade, k)
       type(trade_type), intent(in) :: trade
+      integer, intent(in) :: k
       integer :: i
 
-      associate (rows => trade%rows(:trade%count), remark => trade%remarks(target_index)%value)
-         i = findloc(rows%is_recommended(target_index), .true., dim=1)
-         write (unit, '(2a)', advance='no') 'for ', percent(targets(target_index))
+      associate (words => 'for '//percent(targets(k)), remark => trade%remarks(k)%value)
+         i = findloc(trade%rows%is_recommended(k), .true., dim=1)
          if (i == 0) then
-            write (unit, '(2a)') ': no row; ', remark
+            call say(words//': no row; '//remark)
             return
          end if
-         if (len(remark) > 0) write (unit, '(a)', advance='no') ', not of all quantities'
-         write (unit, '(a, i0, 8a)') ': row ', i, ' (', mesh_of(rows(i)), ', increments ', &
-            trim(factor_text(rows(i)%variation%increments))//comma(rows(i)%varied)//'), ', &
-            with_decimals(rows(i)%cpu_seconds, 3), ' s of CPU'
-         if (len(remark) > 0) write (unit, '(7x, 2a)') 'but not for ', remark
+         call say(words//trim(merge(', not of all quantities', repeat(' ', 23), remark /= ''))// &
+            ': row '//to_text(i)//' ('//described(trade%rows(i))//'), '// &
+            with_decimals(trade%rows(i)%cpu_seconds, 3)//' s of CPU')
+         if (remark /= '') call say('       but not for '//remark)
       end associate
    end subroutine print_target
 
-   pure function comma(words) result(text)
-      character(*), intent(in) :: words
-      character(:), allocatable :: text
-
-      text = ''
-      if (len(words) > 0) text = ', '//words
-   end function comma
-
-   !> Elements of a row by their order.
-   pure function elements_of(row) result(name)
+   !> Mesh, increments and what else is varied.
+   pure function described(row) result(words)
       type(trade_row_type), intent(in) :: row
-      character(2) :: name                      !! Q8 or Q4
+      character(:), allocatable :: words
 
-      name = merge('Q8', 'Q4', row%order == 2)
-   end function elements_of
+      words = mesh_of(row)//', increments '//trim(factor_of(row))
+      if (row%varied /= '') words = words//', '//row%varied
+   end function described
 
-   !> Elements and mesh of a row.
+   !> Elements and mesh, such as Q8 x 2, or Q8 x 2:8 with contact levels.
    pure function mesh_of(row) result(name)
       type(trade_row_type), intent(in) :: row
-      character(:), allocatable :: name         !! such as Q8 x 2, or Q8 x 2:8 with contact levels
+      character(:), allocatable :: name
 
-      name = elements_of(row)//' x '//to_text(2**row%level)
-      if (row%contact_level > 0) name = name//':'//to_text(2**(row%level + row%contact_level))
+      associate (mesh => row%variation)
+         name = elements(mesh%order)//' x '//to_text(2**mesh%levels)
+         if (mesh%contact_levels > 0) name = name//':'//to_text(2**(mesh%levels + &
+            mesh%contact_levels))
+      end associate
    end function mesh_of
 
-   !> A factor on the increments as one writes it.
-   pure function factor_text(factor) result(text)
-      real(dp), intent(in) :: factor    !! a power of two
-      character(6) :: text              !! such as x 1/4
+   !> Factor on the increments, such as x 1/4.
+   pure character(6) function factor_of(row)
+      type(trade_row_type), intent(in) :: row
 
-      if (factor < 1.0_dp) then
-         text = 'x 1/'//to_text(nint(1.0_dp/factor))
-      else
-         text = 'x '//to_text(nint(factor))
-      end if
-   end function factor_text
+      associate (factor => row%variation%increments)
+         factor_of = 'x '//to_text(nint(factor))
+         if (factor < 1.0_dp) factor_of = 'x 1/'//to_text(nint(1.0_dp/factor))
+      end associate
+   end function factor_of
 
-   !> An error in percent, or - for none.
-   pure function cell(error) result(text)
-      real(dp), intent(in) :: error
+   !> Errors in percent.
+   pure function columns(errors) result(text)
+      real(dp), intent(in) :: errors(:)
       character(:), allocatable :: text
+      character(9) :: column
+      integer :: i
 
-      text = '-'
-      if (is_there(error)) text = few_digits(100.0_dp*error)
-      if (100.0_dp*error >= 1000.0_dp) text = '> 1000'
-   end function cell
+      text = ''
+      do i = 1, size(errors)
+         column = few_digits(100.0_dp*errors(i))
+         if (100.0_dp*errors(i) >= 1000.0_dp) column = '> 1000'
+         if (.not. is_there(errors(i))) column = '-'
+         text = text//adjustr(column)
+      end do
+   end function columns
+
+   !> Writes the CSV file. Its last row, `reference`, holds the uncertainty of the reference; errors
+   !> are relative, and absent values are empty.
+   !> Error: status_internal, when the file cannot be written.
+   subroutine write_trade(path, trade, error)
+      character(*), intent(in) :: path                     !! the file
+      type(trade_type), intent(in) :: trade
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: text
+      integer :: i, k
+
+      text = 'row,default,elements,level,contact_level,increment_factor,varied,status,reason,'// &
+         'increments,passes,runs,cpu_seconds,peak_megabytes'
+      do i = 1, quantity_count
+         text = text//',error_'//trim(traded(i)%name)
+      end do
+      text = text//',error_worst,pareto,recommended_10,recommended_1,recommended_0.1'//new_line('a')
+      do i = 1, size(trade%rows)
+         associate (row => trade%rows(i), mesh => trade%rows(i)%variation)
+            text = text//to_text(i)//','//merge('1', '0', row%is_default)//','// &
+               elements(mesh%order)//','//to_text(mesh%levels)//','// &
+               to_text(mesh%contact_levels)//','//to_text(mesh%increments)//','//row%varied// &
+               ','//to_text(row%status)//','//quoted(row%reason)//','//to_text(row%increments)// &
+               ','//to_text(row%passes)//','//to_text(size(row%cpu))//fields([row%cpu_seconds, &
+               row%peak_bytes/megabyte, row%errors, row%worst])//','// &
+               merge('1', '0', row%is_optimal)
+            do k = 1, target_count
+               text = text//','
+               if (.not. row%is_recommended(k)) cycle
+               if (trade%remarks(k)%value == '') text = text//'all'
+               if (trade%remarks(k)%value /= '') text = text// &
+                  quoted('but not for '//trade%remarks(k)%value)
+            end do
+         end associate
+         text = text//new_line('a')
+      end do
+      text = text//'reference'//repeat(',', 13)//fields([trade%uncertainty, &
+         maxval(trade%uncertainty)])//repeat(',', target_count + 1)//new_line('a')
+      call write_file(path, text, error)
+   end subroutine write_trade
+
+   !> Numbers after commas; absent ones are empty.
+   pure function fields(numbers) result(text)
+      real(dp), intent(in) :: numbers(:)
+      character(:), allocatable :: text
+      character(12) :: buffer
+      integer :: i
+
+      text = ''
+      do i = 1, size(numbers)
+         write (buffer, '(es12.5)') numbers(i)
+         if (.not. is_there(numbers(i))) buffer = ''
+         text = text//','//trim(adjustl(buffer))
+      end do
+   end function fields
 
 end module trade_table
