@@ -15,7 +15,7 @@ module equilibrium_reduction
 
    !> Part of the bodies' stiffness at its nodes below which a contact point's is rounding.
    real(dp), parameter :: strainless = 1.0e-10_dp
-   public :: equilibrium_reduction_type, take_laws
+   public :: equilibrium_reduction_type
 
    !> Equilibrium, (2.4), reduced for a set of supports.
    type, extends(field_reduction_type) :: equilibrium_reduction_type
@@ -41,16 +41,16 @@ contains
       call self%release()
       call self%factor(mechanical, sparse_matrix_type(), solver_kind, node_rank, error)
       if (allocated(error)) return
-      self%contact = contact_system_of(mechanical, self%solver%schur, points, rigid)
+      call make_system(mechanical, points, rigid, self%solver%schur, self%contact)
    end subroutine reduce
 
    !> The contact system, nothing closed, from the mechanical Schur complement.
-   pure function contact_system_of(mechanical, schur, points, rigid) result(contact)
+   pure subroutine make_system(mechanical, points, rigid, schur, contact)
       type(field_problem_type), intent(in) :: mechanical
-      real(dp), intent(in) :: schur(:, :)
       type(all_contact_points_type), intent(in) :: points
       real(dp), intent(in) :: rigid(:, :)
-      type(contact_system_type) :: contact
+      real(dp), allocatable, intent(inout) :: schur(:, :)   ! becomes a part of the system
+      type(contact_system_type), intent(out) :: contact
       integer :: m
 
       m = size(points%slave)
@@ -59,21 +59,10 @@ contains
          contact%normal(:) = map%tail_index(map%introduced(1::2))
          contact%tangent(:) = map%tail_index(map%introduced(2::2))
       end associate
-      contact%schur = schur
-      call take_laws(points, contact)
+      call move_alloc(schur, contact%schur)
       call set_motions(points, rigid, contact)
       call set_cycles(mechanical, points, contact)
-   end function contact_system_of
-
-   !> Takes the laws of a step, of which the reduced bodies know nothing but where friction acts.
-   pure subroutine take_laws(points, contact)
-      type(all_contact_points_type), intent(in) :: points  !! all contact points, in the step
-      type(contact_system_type), intent(inout) :: contact  !! reduced for its frictions
-
-      contact%friction = points%friction%coefficient
-      contact%largest_shear = points%largest_friction()
-      contact%removed = points%removed
-   end subroutine take_laws
+   end subroutine make_system
 
    !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
    !> force; what S makes of them is rounding, and is taken from it.

@@ -3,19 +3,21 @@
 !> (heat_reduction).
 module reduced_bodies
    use contact_constraints, only: constrain_displacements, constrain_temperatures
+   use conductance_laws, only: is_constant
    use contact_points, only: contact_points_type
-   use constraint_joints, only: joints_of
    use element_kinds, only: element_node_count
    use equilibrium_reduction, only: equilibrium_reduction_type
    use errors, only: error_type, status_deck
    use field_problem, only: field_problem_type
    use kinds, only: dp
+   use loads, only: loads_type
    use mesh, only: extent_of
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type, joined_points, match_surfaces, match_tie
    use held_points, only: find_held_directions
-   use rigid_motions, only: joint_type, unsupported_motions
+   use rigid_motions, only: joint_type, joints_of, unsupported_motions
    use sparse_matrix, only: sparse_matrix_type
+   use steps, only: load_temperature, solves_heat, solves_mechanics
    use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
    use weak_bodies, only: weakness_of_bodies
@@ -41,9 +43,16 @@ module reduced_bodies
       real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
+      ! What is numbered: supports, contact points with friction, prescribed temperatures.
+      logical, allocatable, private :: held(:)               !! (2 nodes)
+      logical, allocatable, private :: has_friction(:)       !! (m)
+      logical, allocatable, private :: held_temperature(:)   !! (nodes)
    contains
       procedure :: prepare
+      procedure :: enter_step
       procedure :: number
+      procedure :: assemble_steps
+      procedure :: forget_stale
       procedure :: assemble
       procedure :: reduce
       procedure :: release
@@ -78,6 +87,38 @@ contains
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
+
+   !> Enters a step: laws of its contact points, unknowns of its fields. A field is numbered again
+   !> only where it is solved and its supports or frictions differ from those that were numbered
+   !> last; only then are its factors formed again.
+   !> Error: as number.
+   subroutine enter_step(self, model, step, loads, error)
+      class(reduced_bodies_type), intent(inout) :: self !! prepared
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: step                            !! its index
+      type(loads_type), intent(in) :: loads                  !! supports of the step
+      type(error_type), allocatable, intent(out) :: error
+      logical :: heat, mechanics
+
+      call self%points%enter_step(model, step)
+      associate (held => loads%displacement%active, held_temperature => loads%temperature%active, &
+         has_friction => self%points%has_friction())
+         mechanics = solves_mechanics(model%steps(step)%analysis)
+         heat = solves_heat(model%steps(step)%analysis)
+         self%is_coupled = heat .and. mechanics .and. .not. all(is_constant(self%points%law))
+         if (mechanics .and. allocated(self%held)) mechanics = any(self%held .neqv. held) .or. &
+            any(self%has_friction .neqv. has_friction)
+         if (heat .and. allocated(self%held_temperature)) then
+            heat = any(self%held_temperature .neqv. held_temperature)
+         end if
+         if (mechanics) then
+            self%held = held
+            self%has_friction = has_friction
+         end if
+         if (heat) self%held_temperature = held_temperature
+         call self%number(model, held, held_temperature, mechanics, heat, error)
+      end associate
+   end subroutine enter_step
 
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
    !> Error: an over-constrained contact point.
@@ -138,7 +179,14 @@ contains
       stiffer = stiffness(points%slave) > far*stiffness(points%master)
    end function slave_is_stiffer
 
-   !> Reduces equilibrium to the unknowns that were numbered last.
+   !> Frees factors of equilibrium that are of another numbering.
+   subroutine forget_stale(self)
+      class(reduced_bodies_type), intent(inout) :: self
+
+      call self%equilibrium%renumber(self%mechanical)
+   end subroutine forget_stale
+
+   !> Reduces equilibrium to the unknowns that were numbered last, where that is not done.
    !> Errors: unconstrained bodies, a failure of the solver.
    subroutine reduce(self, model, node_rank, error)
       class(reduced_bodies_type), intent(inout) :: self !! numbered
@@ -148,6 +196,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: words
 
+      if (self%equilibrium%is_of(self%mechanical, sparse_matrix_type())) return
       call self%equilibrium%reduce(self%mechanical, self%points, self%rigid, model%solver, &
          node_rank, error)
       if (allocated(error)) then
@@ -158,6 +207,31 @@ contains
       end if
       self%equilibrium%contact%least_length = rounding*extent_of(model%mesh%coordinates)
    end subroutine reduce
+
+   !> Assembles the matrices that the steps of the model solve with, where that is not done.
+   subroutine assemble_steps(self, model)
+      class(reduced_bodies_type), intent(inout) :: self !! prepared
+      type(model_type), intent(in) :: model
+
+      if (allocated(self%mechanical%matrix%value)) return
+      if (allocated(self%thermal%matrix%value)) return
+      call self%assemble(model, any(solves_mechanics(model%steps%analysis)), &
+         any(solves_heat(model%steps%analysis)), temperatures_strain(model))
+   end subroutine assemble_steps
+
+   !> Whether temperatures that differ from the initial ones ever meet mechanics.
+   pure function temperatures_strain(model) result(strain)
+      type(model_type), intent(in) :: model
+      logical :: strain
+      integer :: i
+
+      strain = any(solves_heat(model%steps%analysis))
+      do i = 1, size(model%steps)
+         if (.not. allocated(model%steps(i)%loads)) cycle
+         strain = strain .or. any(model%steps(i)%loads%kind == load_temperature)
+      end do
+      strain = strain .and. any(solves_mechanics(model%steps%analysis))
+   end function temperatures_strain
 
    !> Assembles the matrices of the bodies alone, once.
    subroutine assemble(self, model, with_mechanics, with_heat, with_strain)

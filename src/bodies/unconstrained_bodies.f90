@@ -3,13 +3,12 @@
 module unconstrained_bodies
    use mesh_bodies, only: body_name
    use conductance_laws, only: law_none
-   use constraint_joints, only: joints_of
    use contact_states, only: contact_open, contact_slip, contact_stick
    use dense, only: null_space
    use kinds, only: dp
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type
-   use rigid_motions, only: find_free_motions, free_motion_type, joint_type
+   use rigid_motions, only: find_free_motions, free_motion_type, joint_type, joints_of
    use steps, only: load_film_coefficient
    use text, only: append, string_type, to_text
    implicit none

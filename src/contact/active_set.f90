@@ -10,11 +10,11 @@
 !> is unconstrained.
 module active_set
    use contact_states, only: state_code, contact_state_type, contact_open, contact_slip, &
-      contact_stick
+      contact_stick, &
+      next_contact_state, response_type, rounding_type
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
-   use friction, only: next_contact_state, response_type, rounding_type
    use friction_laws, only: friction_law_type
    use idle_points, only: find_idle_points
    use kinds, only: dp
@@ -236,11 +236,11 @@ contains
       next(2, :) = state%direction
       excess = 0.0_dp
       do k = 1, size(state%contact_state)
-         if (system%removed(k)) cycle
+         if (work%removed(k)) cycle
          response = response_type(state%gap(k), state%force(k), state%shear_force(k), &
             work%slip(system, state, k))
          call next_contact_state(next(1, k), next(2, k), response, &
-            friction_law_type(system%friction(k), work%largest_shear(k)), &
+            friction_law_type(work%friction(k), work%largest_shear(k)), &
             system%tangent(k) > 0, rounding, excess(k))
       end do
    end subroutine judge

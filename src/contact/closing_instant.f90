@@ -138,7 +138,7 @@ contains
          end if
       end do
       ! An active set satisfies its conditions to rounding.
-      where (.not. system%removed) state%gap = max(state%gap, 0.0_dp)
+      where (.not. work%removed) state%gap = max(state%gap, 0.0_dp)
    end subroutine settle_laws
 
    !> Closing laws of the contact points that are closed now and were open at the start of the

@@ -46,9 +46,6 @@ module contact_system
       integer, allocatable :: normal(:)           !! (m) row of d_n on the tail
       integer, allocatable :: tangent(:) !! (m) row of d_t, 0 without friction or held
       real(dp), allocatable :: schur(:, :)        !! (tail, tail) S [force/length]
-      real(dp), allocatable :: friction(:)        !! (m) mu [-]
-      real(dp), allocatable :: largest_shear(:)   !! (m) largest friction [force]
-      logical, allocatable :: removed(:)          !! (m) open whatever the gap
       !> (m) of stuck contact points, not zero in cycles [length/force]
       real(dp), allocatable :: compliance(:)
       !> (m) normal stiffness of a contact point alone [force/length]
@@ -77,8 +74,9 @@ module contact_system
 contains
 
    !> The rows of an active set.
-   pure function rows_of(system, state, closing) result(rows)
+   pure function rows_of(system, friction, state, closing) result(rows)
       type(contact_system_type), intent(in) :: system     !! the reduced system
+      real(dp), intent(in) :: friction(:)                 !! (m) mu [-]
       type(contact_state_type), intent(in) :: state       !! states and directions
       type(closing_law_type), intent(in) :: closing(:)    !! (m) laws of closing contact points
       type(contact_rows_type) :: rows
@@ -103,7 +101,7 @@ contains
             else if (state%contact_state(k) == contact_slip) then
                if (is_capped(state%direction(k))) cycle
                rows%partner(row) = system%normal(k)
-               rows%share(row) = state%direction(k)*system%friction(k)
+               rows%share(row) = state%direction(k)*friction(k)
             else if (law%acts) then
                c = c + 1
                rows%own(row) = system%alone(k)*compliance

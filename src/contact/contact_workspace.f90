@@ -28,7 +28,9 @@ module contact_workspace
    !> Data of the increment, and the factors for the active set of the last solution.
    type :: contact_workspace_type
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
-      real(dp), allocatable :: largest_shear(:) !! (m) largest friction [force]
+      real(dp), allocatable :: friction(:)        !! (m) mu [-]
+      real(dp), allocatable :: largest_shear(:)   !! (m) largest friction [force]
+      logical, allocatable :: removed(:)          !! (m) open whatever the gap
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
       !> Largest sum of the terms that make a force of the last solution, S d - c, without their
       !> signs: what its rounding goes by where they cancel, as in a body that contact moves [force]
@@ -70,14 +72,19 @@ module contact_workspace
 
 contains
 
-   !> A workspace for contact points with these gaps, on which nothing acts.
-   pure function new_workspace(system, initial_gap) result(work)
+   !> A workspace for contact points with these gaps and laws, on which nothing acts.
+   pure function new_workspace(system, initial_gap, friction, largest_shear, removed) result(work)
       type(contact_system_type), intent(in) :: system  !! the reduced system
       real(dp), intent(in) :: initial_gap(:)           !! (m) h [length]
+      real(dp), intent(in) :: friction(:)              !! (m) mu [-]
+      real(dp), intent(in) :: largest_shear(:)         !! (m) largest friction [force]
+      logical, intent(in) :: removed(:)                !! (m) open whatever the gap
       type(contact_workspace_type) :: work             !! nothing closed, nothing factored
 
       work%initial_gap = initial_gap
-      work%largest_shear = system%largest_shear
+      work%friction = friction
+      work%largest_shear = largest_shear
+      work%removed = removed
       allocate (work%least_drive(size(system%schur, 1)), source=0.0_dp)
       allocate (work%anchor(size(system%schur, 1)), source=0.0_dp)
       allocate (work%closing(size(initial_gap)))
@@ -90,7 +97,9 @@ contains
       type(contact_workspace_type) :: work               !! nothing factored
 
       work%initial_gap = self%initial_gap
+      work%friction = self%friction
       work%largest_shear = self%largest_shear
+      work%removed = self%removed
       work%load_scale = self%load_scale
       work%least_drive = self%least_drive
       work%closing = self%closing
@@ -184,7 +193,7 @@ contains
          case (contact_open)
             state%shear_force(k) = 0.0_dp
          case (contact_slip)
-            state%shear_force(k) = slip_force(state%direction(k), system%friction(k), &
+            state%shear_force(k) = slip_force(state%direction(k), self%friction(k), &
                self%largest_shear(k), state%force(k))
          case default
             state%shear_force(k) = lambda(system%tangent(k))
@@ -213,7 +222,7 @@ contains
       do k = 1, size(state%contact_state)
          if (state%contact_state(k) /= contact_slip .or. .not. is_capped(state%direction(k))) cycle
          if (system%tangent(k) > 0) lambda(system%tangent(k)) = slip_force(state%direction(k), &
-            system%friction(k), self%largest_shear(k), state%force(k))
+            self%friction(k), self%largest_shear(k), state%force(k))
       end do
    end function capped_forces
 
@@ -292,7 +301,7 @@ contains
       logical :: singular
 
       if (is_factored(self, state)) return
-      self%rows = rows_of(system, state, self%closing)
+      self%rows = rows_of(system, self%friction, state, self%closing)
       if (self%hold > 0.0_dp) then
          self%unconstrained = reshape([real(dp) ::], [size(self%rows%free), 0])
       else

@@ -91,7 +91,8 @@ contains
       path%closing%start = work%closing%start
       call path%solve_set(system, load, piece%base, error)
       if (allocated(error)) return
-      call measure(system, path, piece%base, piece%slip(:, 1), piece%slack(:, :, 1))
+      call measure(system, path, work%largest_shear < unlimited, piece%base, piece%slip(:, 1), &
+         piece%slack(:, :, 1))
       rate = state
       rate%reference = 0.0_dp
       path%initial_gap = piece%cover
@@ -99,7 +100,8 @@ contains
       path%closing%start = 0.0_dp
       call path%solve_set(system, 0.0_dp*load, rate, error)
       if (allocated(error)) return
-      call measure(system, path, rate, piece%slip(:, 2), piece%slack(:, :, 2))
+      call measure(system, path, work%largest_shear < unlimited, rate, piece%slip(:, 2), &
+         piece%slack(:, :, 2))
    end subroutine solve_piece
 
    !> The contact point whose state ends first along a piece, 0 for none, and how far away that is.
@@ -132,9 +134,10 @@ contains
    !> slip against friction, and the distance to the largest friction or back to the cone; or the
    !> distances to both sides of the cone and to the largest friction both ways. Those that are
    !> missing are zero.
-   pure subroutine measure(system, path, state, slip, slack)
+   pure subroutine measure(system, path, is_limited, state, slip, slack)
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(in) :: path
+      logical, intent(in) :: is_limited(:)       ! whether friction has a largest force
       type(contact_state_type), intent(in) :: state
       real(dp), intent(out) :: slip(:)
       real(dp), intent(out) :: slack(:, :)
@@ -144,18 +147,18 @@ contains
       slack = 0.0_dp
       do k = 1, size(slip)
          slip(k) = path%slip(system, state, k)
-         cone = system%friction(k)*state%force(k)
+         cone = path%friction(k)*state%force(k)
          largest = path%largest_shear(k)
          if (state%contact_state(k) == contact_open) then
-            if (.not. system%removed(k)) slack(1, k) = state%gap(k)
+            if (.not. path%removed(k)) slack(1, k) = state%gap(k)
          else if (state%contact_state(k) == contact_slip) then
             slack(:3, k) = [state%force(k), -state%direction(k)*slip(k), largest - cone]
             if (is_capped(state%direction(k))) slack(3, k) = -slack(3, k)
-            if (system%largest_shear(k) >= unlimited) slack(3, k) = 0.0_dp
+            if (.not. is_limited(k)) slack(3, k) = 0.0_dp
          else
             slack(:, k) = [cone - state%shear_force(k), cone + state%shear_force(k), &
                largest - state%shear_force(k), largest + state%shear_force(k)]
-            if (system%largest_shear(k) >= unlimited) slack(3:, k) = 0.0_dp
+            if (.not. is_limited(k)) slack(3:, k) = 0.0_dp
          end if
       end do
    end subroutine measure
@@ -174,7 +177,7 @@ contains
       case (contact_open)
          state%contact_state(k) = contact_slip
          state%direction(k) = 0
-         if (system%tangent(k) == 0 .or. system%friction(k) <= 0.0_dp) return
+         if (system%tangent(k) == 0) return
          state%direction(k) = merge(-1, 1, slip > 0.0_dp)
       case (contact_slip)
          select case (event)

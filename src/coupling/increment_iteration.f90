@@ -24,7 +24,7 @@ module increment_iteration
    public :: iterate
 
    integer, parameter :: most_turns = 4  !! openings and closings of a contact point whose law jumps
-   integer, parameter :: path_share = 9   !! passes on a path, over those of the method itself
+   integer, parameter :: on_path = 10     !! passes with a path, over those of the method itself
    real(dp), parameter :: no_strain = 1.0_dp  !! thermal strain that is none of the small ones
    integer, parameter :: most_away = 5    !! passes with larger ones from which no method returns
 
@@ -162,20 +162,18 @@ contains
       class(accelerator_type), allocatable :: accelerator
       type(iteration_record_type), allocatable :: passes(:)
       type(contact_state_type) :: good
-      integer :: turns(size(next%omega)), away, before, i
+      integer :: turns(size(next%omega)), away, i
       real(dp) :: wanted
 
-      before = size(workspace%record%iterations)
       turns = 0
       away = 0
       wanted = controls%tolerance
-      allocate (passes(64))
+      allocate (passes(0))
       call begin_passes(bodies, data, next%omega, workspace)
       call make_accelerator(controls, size(next%omega), accelerator)
       associate (pass => workspace%pass, record => workspace%record)
          do i = 1, huge(i) - 1
-            if (i > controls%max_iterations .and. .not. accelerator%follows_path) exit
-            if ((i - 1)/(1 + path_share) >= controls%max_iterations) exit
+            if ((i - 1)/merge(on_path, 1, accelerator%follows_path) >= controls%max_iterations) exit
             ! Where the edge goes over a contact point U jumps, and there is no path.
             if (workspace%cuts_hats .and. accelerator%follows_path) exit
             call check_overdue(error)
@@ -186,11 +184,10 @@ contains
                bodies%points%weight, pass%omega)
             call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, &
                error)
-            if (i > size(passes)) call double(passes)
-            passes(i) = iteration_record_type(increment=record%increment, iteration=before + i, &
-               residual=real(huge(1.0), dp), g_min=minval(accelerator%g), &
-               g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
-               pairs_changed=count(next%contact%contact_state /= good%contact_state))
+            passes = [passes, iteration_record_type(increment=record%increment, &
+               iteration=size(record%iterations) + i, residual=real(huge(1.0), dp), &
+               g_min=minval(accelerator%g), g_max=maxval(accelerator%g), g_kept=accelerator%kept, &
+               pairs_changed=count(next%contact%contact_state /= good%contact_state))]
             pass%found = .not. allocated(error)
             if (.not. pass%found) then
                if (accelerator%retreats) call accelerator%next(pass)
@@ -211,10 +208,8 @@ contains
             call take_step(bodies, heat, data, next, accelerator, workspace)
          end do
          call close_passes(record, passes, i, wanted, error)
-         if (allocated(error)) return
-         where (bodies%points%weight <= 0.0_dp) next%omega = pass%image
       end associate
-      call settle(next%resting, next%contact)
+      if (.not. allocated(error)) call settle(next%resting, next%contact)
    end subroutine use_method
 
    !> Starts passes from omega*^0 without anything that passes of another method left.
@@ -248,7 +243,7 @@ contains
          residual = max(residual, cut_residual(workspace%cut, cut_hats_at(workspace%edge_hats, &
             bodies%points%weight, workspace%pass%image)))
       end if
-      next%omega = workspace%pass%omega
+      next%omega = merge(workspace%pass%omega, workspace%pass%image, bodies%points%weight > 0.0_dp)
       next%cut = workspace%cut
       workspace%record%residual_floor = residual_floor(bodies, data, workspace%pass, next%contact)
    end subroutine measure_pass
@@ -272,7 +267,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer :: n
 
-      n = min(last, count(passes%iteration > 0))
+      n = min(last, size(passes))
       if (allocated(error)) n = last - 1
       record%iterations = [record%iterations, passes(:n)]
       if (allocated(error) .or. n == 0) return
@@ -281,16 +276,6 @@ contains
          counted(n, 'iteration')//'; last residual '//to_text(passes(n)%residual)//', required '// &
          to_text(wanted))
    end subroutine close_passes
-
-   !> Makes room for as many passes again.
-   pure subroutine double(passes)
-      type(iteration_record_type), allocatable, intent(inout) :: passes(:)
-      type(iteration_record_type), allocatable :: longer(:)
-
-      allocate (longer(2*size(passes)))
-      longer(:size(passes)) = passes
-      call move_alloc(longer, passes)
-   end subroutine double
 
    !> The next omega*, from the derivative of the pass where the accelerator asks for it.
    subroutine take_step(bodies, heat, data, next, accelerator, workspace)

@@ -339,8 +339,11 @@ contains
          next%force_load + thermal, loads%displacement%value)
       call bodies%equilibrium%condense_load(bodies%mechanical, workspace%force, &
          workspace%known(of_mechanics))
-      workspace%contact = contact_workspace_type(bodies%equilibrium%contact, &
-         loads%present_gaps(bodies%points))
+      associate (points => bodies%points)
+         workspace%contact = contact_workspace_type(bodies%equilibrium%contact, &
+            loads%present_gaps(points), points%friction%coefficient, points%largest_friction(), &
+            points%removed)
+      end associate
       workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       associate (applied => next%force_load, rigid => bodies%rigid, &
          contact => bodies%equilibrium%contact)

@@ -10,16 +10,33 @@ module increment_checks
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
+   use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    use unconstrained_bodies, only: unconstrained_now, undetermined_now
    implicit none
    private
-   public :: check_balance, check_heat, check_values, check_violation, warn_of_choices
+   public :: check_balance, check_heat, check_record, check_values, check_violation, warn_of_choices
 
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
    real(dp), parameter :: sound_imbalance = 1.0e-6_dp !! of heat and forces in discrete equations
 
 contains
+
+   !> The values of an increment are numbers, its rates and forces balance, and contact keeps its
+   !> conditions.
+   !> Error: status_no_convergence, they do not.
+   subroutine check_record(record, analysis, error)
+      type(increment_record_type), intent(in) :: record
+      integer, intent(in) :: analysis      !! one of the analysis_* constants of steps
+      type(error_type), allocatable, intent(out) :: error
+
+      call check_values(record, error)
+      if (allocated(error)) return
+      if (solves_heat(analysis)) call check_balance(record%heat_imbalance, 'heat rates', error)
+      if (allocated(error) .or. .not. solves_mechanics(analysis)) return
+      call check_balance(record%force_imbalance, 'forces', error)
+      if (.not. allocated(error)) call check_violation(record, error)
+   end subroutine check_record
 
    !> The recovered displacements keep the contact conditions.
    !> Error: they do not.

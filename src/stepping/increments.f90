@@ -6,8 +6,7 @@ module increments
    use field_problem, only: solved_loads_type
    use heat_balance, only: sound_imbalance
    use heat_reduction, only: heat_reduction_type
-   use increment_checks, only: check_balance, check_heat, check_values, check_violation, &
-      warn_of_choices
+   use increment_checks, only: check_heat, check_record, warn_of_choices
    use increment_control, only: increment_control_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use increment_records, only: complete_record
@@ -19,10 +18,9 @@ module increments
    use model, only: model_type
    use records, only: add_attempts, increment_record_type, note_failure
    use reduced_bodies, only: reduced_bodies_type
+   use run_sizes, only: measure_factors, measure_steps, run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
-   use step_reduction, only: assemble_bodies, measure_factors, measure_steps, reduce_bodies, &
-      run_seconds_type, run_size_type, step_reduction_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: counted, to_text
    use thermal_matrix, only: heat_equation_type
@@ -38,7 +36,6 @@ module increments
    type :: simulation_type
       type(reduced_bodies_type) :: bodies   !! the bodies reduced to their contact unknowns
       type(heat_reduction_type) :: heat     !! their heat likewise, for the films of the increment
-      type(step_reduction_type) :: reduction        !! what of them is numbered
       type(recovery_type) :: recovery               !! stress and flux with their errors
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
@@ -63,7 +60,7 @@ module increments
 contains
 
    !> Prepares a run, sees whether its steps can all be numbered, and enters the first.
-   !> Errors: as reduced_bodies' prepare and number.
+   !> Errors: as reduced_bodies' prepare and enter_step.
    subroutine start(self, model, error)
       class(simulation_type), intent(inout) :: self       !! a fresh run
       type(model_type), intent(in) :: model
@@ -84,48 +81,62 @@ contains
    end subroutine start
 
    !> Enters the next step.
-   !> Errors: as reduced_bodies' number.
+   !> Errors: as reduced_bodies' enter_step.
    subroutine enter_step(self, model, error)
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
 
       call self%control%enter_step(model)
-      associate (step => model%steps(self%control%step))
-         call self%loads%begin_step(step, self%state%displacement, self%state%temperature)
-         call self%bodies%points%enter_step(model, self%control%step)
-         call self%reduction%number(model, step, self%loads, self%bodies, error)
-      end associate
+      call self%loads%begin_step(model%steps(self%control%step), self%state%displacement, &
+         self%state%temperature)
+      call self%bodies%enter_step(model, self%control%step, self%loads, error)
    end subroutine enter_step
 
    !> Assembles the bodies, where that is not done.
    subroutine assemble(self, model)
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
+      real(dp) :: since
 
-      call assemble_bodies(model, self%bodies, self%seconds)
+      since = wall_seconds()
+      call self%bodies%assemble_steps(model)
+      self%seconds%assemble = self%seconds%assemble + (wall_seconds() - since)
    end subroutine assemble
 
    !> Assembles and reduces the bodies for the present step, where that is not done.
-   !> Errors: as step_reduction's reduce_bodies.
+   !> Errors: as reduced_bodies' and heat_reduction's reduce.
    subroutine reduce(self, model, error)
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: of_elimination
       type(heat_equation_type) :: equation
       type(sparse_matrix_type) :: film
+      real(dp) :: since
 
-      associate (step => model%steps(self%control%step))
-         film = self%heat%added
-         if (solves_heat(step%analysis) .and. &
-            self%heat%numbering /= self%bodies%thermal%numbering) then
+      call self%assemble(model)
+      since = wall_seconds()
+      associate (analysis => model%steps(self%control%step)%analysis, bodies => self%bodies, &
+         heat => self%heat)
+         film = heat%added
+         if (solves_heat(analysis) .and. heat%numbering /= bodies%thermal%numbering) then
             call self%loads%move_to(self%control%next_instant(model), model)
-            equation = heat_equation_type(step%scheme, self%state%sources)
+            equation = heat_equation_type(model%steps(self%control%step)%scheme, &
+               self%state%sources)
             equation%new%film = self%loads%film_matrix()
             film = equation%left_film()
          end if
-         call reduce_bodies(model, step, film, self%bodies, self%heat, self%seconds, error)
+         call heat%renumber_both(bodies)
+         ! Both fields are eliminated while neither has factors, for their memory. Where that fails,
+         ! heat%reduce fails again and says so.
+         if (solves_mechanics(analysis)) call bodies%forget_stale()
+         if (solves_heat(analysis)) call heat%eliminate(model, bodies, film, of_elimination)
+         if (solves_mechanics(analysis)) call bodies%reduce(model, heat%node_rank, error)
+         if (solves_heat(analysis) .and. .not. allocated(error)) call heat%reduce(model, bodies, &
+            film, error)
       end associate
+      self%seconds%reduce = self%seconds%reduce + (wall_seconds() - since)
       call measure_factors(self%bodies, self%heat, self%sizes)
    end subroutine reduce
 
@@ -298,15 +309,7 @@ contains
          call recover_fields(bodies, self%heat, self%loads, data, workspace, next)
          call complete_record(bodies, model, self%recovery, self%loads, data, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
-         call check_values(record, error)
-         if (allocated(error)) return
-         if (solves_heat(step%analysis)) call check_balance(record%heat_imbalance, 'heat rates', &
-            error)
-         if (allocated(error)) return
-         if (solves_mechanics(step%analysis)) call check_balance(record%force_imbalance, &
-            'forces', error)
-         if (allocated(error)) return
-         if (solves_mechanics(step%analysis)) call check_violation(record, error)
+         call check_record(record, step%analysis, error)
          if (allocated(error)) return
          call move_alloc(workspace%known, self%known)
       end associate

@@ -4,7 +4,7 @@ that all decks need, which exist for that part only."""
 CONTACT_FOLDER = {
     "active_set", "contact_tractions", "chain_geometry", "closing_instant", "lemke_path",
     "contact_factors", "contact_pairs", "contact_states", "contact_system", "contact_tangent",
-    "contact_workspace", "friction", "interface_checks", "interface_warnings", "surface_chains",
+    "contact_workspace", "interface_checks", "interface_warnings", "surface_chains",
     "unconstrained_motions", "zone_edges",
 }
 COUPLING = {
@@ -20,8 +20,7 @@ PARTS = {
         "element_fields:element_heat_flux",
         "field_recovery:recover_heat_flux", "films", "heat_balance",
         "increment_checks:check_heat", "increment_solution:conduct",
-        "increment_solution:load_heat", "reduced_bodies:reduce_heat",
-        "reduced_bodies:set_film", "load_integrals:unit_heat", "loads:card_heat",
+        "increment_solution:load_heat", "heat_reduction", "load_integrals:unit_heat", "loads:card_heat",
         "loads:film_matrix", "loads:heat_load", "unit_loads:location_heat", "point_properties:conductivity_in",
         "scheme_properties", "scheme_start", "thermal_matrix",
     },
@@ -33,7 +32,7 @@ PARTS = {
         # Pairs conduct, whether bodies move or not: these make them and their results.
         "contact_tractions", "chain_geometry", "contact_pairs", "interface_checks",
         "interface_warnings", "surface_chains", "zone_edges"} | {
-        "balances:contact_violation", "balances:force_residual", "contact_reduction",
+        "balances:contact_violation", "balances:force_residual", "equilibrium_reduction",
         "element_elasticity", "element_fields:element_stress", "field_recovery:recover_stress",
         "increment_checks:check_violation", "increment_checks:warn_of_choices",
         "increment_records:balance_forces", "friction_memory",
@@ -42,7 +41,7 @@ PARTS = {
     },
     "contact": CONTACT_FOLDER | COUPLING | {
         "balances:contact_violation", "conductance_laws", "contact_operator:law_conductance",
-        "contact_heat:temperature_jumps", "contact_reduction", "deck_builder_contact",
+        "contact_heat:temperature_jumps", "equilibrium_reduction", "deck_builder_contact",
         "deck_builder_gap_conductance", "deck_builder_gap_laws", "deck_builder_interactions",
         "increment_records:contact_record",
         "friction_memory", "increment_solution:conduct",
@@ -51,7 +50,7 @@ PARTS = {
         "result_fields:find_faces", "zone_diagram",
     },
     "friction": {
-        "contact_system:combine", "friction", "zone_edges:stick_edges",
+        "contact_states:next_contact_state", "contact_system:combine", "zone_edges:stick_edges",
     },
     "coupling": COUPLING,
     "cycles of contact points": {"contact_constraints:stiffness_alone", "linear_constraints:links",

@@ -1,0 +1,105 @@
+!> How large the problems of a run are, and where its time goes.
+module run_sizes
+   use all_contact_points, only: all_contact_points_type
+   use equation_checks, only: check_equations
+   use errors, only: error_type
+   use heat_reduction, only: heat_reduction_type
+   use kinds, only: dp, long
+   use linear_solver, only: linear_solver_type
+   use load_histories, only: end_of_step
+   use loads, only: loads_type
+   use model, only: model_type
+   use reduced_bodies, only: reduced_bodies_type
+   use solution_state, only: solution_state_type
+   use steps, only: solves_heat, solves_mechanics
+   use text, only: to_text
+   use tie_checks, only: check_prescribed_ties
+   implicit none
+   private
+   public :: measure_steps, measure_factors, run_seconds_type, run_size_type
+
+   !> Where the time goes.
+   type :: run_seconds_type
+      real(dp) :: assemble = 0.0_dp   !! matching and matrices of the bodies [s]
+      real(dp) :: reduce = 0.0_dp     !! factors and reduction to the contact points [s]
+      real(dp) :: iterate = 0.0_dp    !! increments on the contact points [s]
+      real(dp) :: recover = 0.0_dp    !! fields and balances [s]
+   end type run_seconds_type
+
+   !> The largest problems of a run.
+   type :: run_size_type
+      integer :: equations_thermal = 0      !! unknown temperatures, largest of the steps
+      integer :: equations_mechanical = 0   !! unknown displacements, largest of the steps
+      integer :: contact_unknowns = 0       !! unknowns on the contact points, largest of the steps
+      integer(long) :: factor_bytes = 0     !! bytes of factors, largest so far
+      real(dp) :: smallest_pivot = 1.0_dp   !! over its diagonal entry, smallest so far [-]
+   end type run_size_type
+
+contains
+
+   !> Numbers every step in turn, for the largest problems and for mistakes in its supports.
+   !> Error: as reduced_bodies' enter_step; mistakes in equations and ties.
+   subroutine measure_steps(model, points, loads, state, sizes, error)
+      type(model_type), intent(in) :: model
+      type(all_contact_points_type), intent(in) :: points   !! contact points of all interfaces
+      type(loads_type), intent(in) :: loads                 !! loads before the first step
+      type(solution_state_type), intent(in) :: state        !! state before it
+      type(run_size_type), intent(inout) :: sizes           !! receives the numbers of unknowns
+      type(error_type), allocatable, intent(out) :: error
+      type(reduced_bodies_type) :: trial
+      type(loads_type) :: given
+      integer :: step, unknowns
+
+      ! Supports say which contact points are held; those of later steps must not show in the first.
+      trial%points = points
+      given = loads
+      do step = 1, size(model%steps)
+         call given%begin_step(model%steps(step), state%displacement, state%temperature)
+         call trial%enter_step(model, step, given, error)
+         if (.not. allocated(error)) then
+            call given%move_to(end_of_step(model%steps, step), model)
+            call check_equations(model, trial, given, step, error)
+            if (.not. allocated(error)) call check_prescribed_ties(model, trial, given, step, &
+               error)
+         end if
+         if (allocated(error)) then
+            if (size(model%steps) > 1) error%message = 'step '//to_text(step)//': '//error%message
+            return
+         end if
+         unknowns = 0
+         associate (analysis => model%steps(step)%analysis, thermal => trial%thermal%map, &
+            mechanical => trial%mechanical%map)
+            if (solves_heat(analysis)) then
+               sizes%equations_thermal = max(sizes%equations_thermal, thermal%equations)
+               unknowns = thermal%tail
+            end if
+            if (solves_mechanics(analysis)) then
+               sizes%equations_mechanical = max(sizes%equations_mechanical, mechanical%equations)
+               unknowns = unknowns + mechanical%tail
+            end if
+            sizes%contact_unknowns = max(sizes%contact_unknowns, unknowns)
+         end associate
+      end do
+   end subroutine measure_steps
+
+   !> Notes the memory of the factors that are, and their smallest pivot.
+   subroutine measure_factors(bodies, heat, sizes)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(run_size_type), intent(inout) :: sizes               !! receives both
+      integer(long) :: bytes
+
+      bytes = 0
+      if (allocated(bodies%equilibrium%solver)) call measure(bodies%equilibrium%solver)
+      if (allocated(heat%solver)) call measure(heat%solver)
+      sizes%factor_bytes = max(sizes%factor_bytes, bytes)
+   contains
+      subroutine measure(solver)
+         class(linear_solver_type), intent(in) :: solver
+
+         bytes = bytes + solver%factor_bytes
+         sizes%smallest_pivot = min(sizes%smallest_pivot, solver%smallest_pivot)
+      end subroutine measure
+   end subroutine measure_factors
+
+end module run_sizes
