@@ -7,7 +7,7 @@ module run_summaries
    use kinds, only: dp, long
    use model, only: model_type
    use model_words, only: from_to, material_words, section_words, step_words
-   use step_reduction, only: run_seconds_type, run_size_type
+   use run_sizes, only: run_seconds_type, run_size_type
    use text, only: string_type, to_text
    implicit none
    private
