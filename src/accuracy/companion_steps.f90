@@ -1,10 +1,10 @@
-!> A step as solutions beside the run take it.
+!> A step as solutions beside the run solve it.
 module companion_steps
    use controls, only: implicit_scheme, start_type
    use errors, only: error_type
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
-   use increment_solution, only: begin_increment, recover_fields, solve_points
+   use increment_solution, only: begin_increment, solve_points
    use increments, only: simulation_type
    use kinds, only: dp
    use model, only: model_type
@@ -38,7 +38,7 @@ contains
       implicit_step%scheme = implicit_scheme
    end function implicit_step
 
-   !> Solves the end of an increment.
+   !> Solves the end of an increment on the contact points; the displacements stay.
    !> Error: it has no solution.
    subroutine implicit_state(simulation, own, model, step, previous, state, error)
       type(simulation_type), intent(in) :: simulation
@@ -67,8 +67,6 @@ contains
 
          call begin_increment(simulation%bodies, step, previous, state, data)
          call solve_points(simulation%bodies, heat, simulation%loads, data, workspace, state, error)
-         if (allocated(error)) return
-         call recover_fields(simulation%bodies, heat, simulation%loads, data, workspace, state)
       end subroutine solve_end
    end subroutine implicit_state
 

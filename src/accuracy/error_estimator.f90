@@ -5,22 +5,19 @@ module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_definitions, only: pairing_surfaces
    use contact_quantities, only: estimated
-   use divided_faces, only: divided_faces_type
+   use divided_mesh, only: divided_mesh_type
    use doubled_increments, only: doubled_increments_type
-   use error_marking, only: largest_part, squared_errors
+   use error_marking, only: squared_errors
    use errors, only: error_type
    use increment_quantities, only: history_value
    use increments, only: simulation_type
    use interface_quantities, only: quantities_of, quantities_of_state
    use kinds, only: dp
    use mesh_bounds, only: bounds_of_mesh, locked_in
-   use local_refinement, only: choose_neighbours, elements_at_surfaces
    use model, only: model_type
    use quantity_types, only: find_quantity
    use records, only: increment_record_type, interface_errors_type
    use recovered_error, only: error_record_type
-   use refined_model, only: refined_model_type
-   use refinement_error, only: find_change_by_refinement
    use solution_state, only: solution_state_type
    use text, only: append
    use value_courses, only: value_courses_type
@@ -33,27 +30,19 @@ module error_estimator
    !> once does where round faces meet, and with it the friction that is locked in there.
    real(dp), parameter :: of_doubled_increments = 1.0_dp, of_doubled_in_peak = 1 + sqrt(2.0_dp)
 
-   !> Part of the squared error of stress and heat flux in the elements that the finer mesh divides,
-   !> and what it must be at the end of later steps so that it serves there, too.
-   real(dp), parameter :: in_divided = 0.9_dp, still_in_divided = 0.8_dp
-
    !> Part of the change from the round before that is left: one that divides elements leaves less.
    real(dp), parameter :: left_by_round = 0.5_dp
 
    !> What the bounds are made with.
    type :: error_estimator_type
       private
-      !> Whether the finer mesh is relaxed; else its increments are solved, with divided faces
-      logical :: relaxes = .true.
-      type(refined_model_type) :: refined          !! the model, divided where it errs
-      type(divided_faces_type) :: divided          !! the one with divided faces
+      type(divided_mesh_type) :: divided           !! the model with divided elements
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
       type(value_courses_type) :: courses          !! quantities at the increments before
       real(dp), allocatable :: most_locked(:)      !! (interfaces) largest of locked_in so far
       integer :: step = 0                          !! step of the present increment
       logical :: is_on = .false.                   !! whether there is anything to estimate
-      character(:), allocatable :: why_not         !! why there is no finer mesh; else ''
    contains
       procedure :: start
       procedure :: begin_increment
@@ -68,19 +57,9 @@ contains
       class(error_estimator_type), intent(inout) :: self  !! fresh
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation     !! the run, started
-      type(error_type), allocatable :: error
 
       self%is_on = model%estimates_errors .and. size(model%contacts) > 0
       if (.not. self%is_on) return
-      self%why_not = ''
-      self%relaxes = .not. (any(simulation%bodies%interfaces%pairing == pairing_surfaces) .or. &
-         size(model%ties) > 0)
-      if (size(model%equations) > 0) then
-         self%why_not = 'no finer mesh with equations, couplings or transformed axes'
-      else if (.not. self%relaxes) then
-         call self%divided%start(model, error)
-      end if
-      if (allocated(error)) self%why_not = error%message
       allocate (self%most_locked(size(model%contacts)), source=0.0_dp)
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
@@ -102,7 +81,6 @@ contains
       !> (steps) at their ends in the round before, empty in the first; receives the present ones
       type(value_courses_type), intent(inout) :: courses(:)
       real(dp) :: values(size(estimated), size(record%contacts))
-      type(error_type), allocatable :: error
       character(:), allocatable :: no_mesh
       integer :: i, q
 
@@ -111,10 +89,6 @@ contains
          self%step = record%step
          call self%courses%begin_step(size(estimated), size(record%contacts), &
             simulation%loads%corners(model%amplitudes, simulation%control%step_start))
-         if (self%why_not == '' .and. .not. self%relaxes) then
-            call self%divided%begin_step(record%step, self%before, error)
-            if (allocated(error)) self%why_not = error%message
-         end if
       end if
       call self%doubled%follow(model, simulation, record)
       do i = 1, size(record%contacts)
@@ -127,9 +101,7 @@ contains
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
       call store(values, record%errors)
-      no_mesh = self%why_not
-      if (no_mesh == '') call bound_mesh(self, model, simulation, record, &
-         courses(record%step), no_mesh)
+      call bound_mesh(self, model, simulation, record, courses(record%step), no_mesh)
       if (no_mesh /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
          'estimated: '//no_mesh)
       courses(record%step) = self%courses
@@ -197,71 +169,28 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record
       type(value_courses_type), intent(in) :: before         ! courses in the round before
-      character(:), allocatable, intent(inout) :: why_not    ! why there are none; else it stays
+      character(:), allocatable, intent(out) :: why_not      ! why there are none; else ''
       type(error_type), allocatable :: error
       real(dp) :: change(size(estimated), size(record%errors))
-      real(dp) :: energy(2), left
+      real(dp) :: energy
       integer :: i
 
-      if (self%relaxes) then
-         call divide_where_it_errs(self%refined, model, simulation, record, left, error)
-         energy = left
-         if (.not. allocated(error)) call find_change_by_refinement(self%refined, simulation, &
-            model, self%before, change, error)
-      else
-         call self%divided%find_change(simulation, model, self%before, change, error)
-         energy = [energy_error(record%stress_error), energy_error(record%heat_flux_error)]
-      end if
+      why_not = ''
+      call self%divided%find_change(simulation, model, self%before, change, error)
       if (allocated(error)) then
          why_not = error%message
          return
       end if
+      energy = sum(squared_errors(model%mesh, record), mask=.not. self%divided%is_divided)
       do i = 1, size(record%errors)
          associate (bounds => record%errors(i)%mesh)
             bounds = bounds_of_mesh(simulation%bodies%interfaces(i), record%contacts(i), &
-               change(:, i), self%courses%scatter(i, before), self%most_locked(i), &
-               .not. self%relaxes, energy)
+               change(:, i), self%courses%scatter(i, before), self%most_locked(i), energy)
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
                left_by_round*abs(self%courses%change_since(i, before)))
          end associate
       end do
    end subroutine bound_mesh
-
-   !> Prepares the finer mesh, unless the one of the step before divides nearly all that errs.
-   !> Error: as refined_model's prepare.
-   subroutine divide_where_it_errs(refined, model, simulation, record, left, error)
-      type(refined_model_type), intent(inout) :: refined
-      type(model_type), intent(in) :: model
-      type(simulation_type), intent(in) :: simulation
-      type(increment_record_type), intent(in) :: record
-      real(dp), intent(out) :: left      ! squared error of both fields in the other elements
-      type(error_type), allocatable, intent(out) :: error
-      real(dp) :: squares(size(model%mesh%element_kind))
-      logical :: is_divided(size(squares)), serves
-
-      left = 0.0_dp
-      squares = squared_errors(model%mesh, record)
-      serves = .false.
-      if (allocated(refined%is_divided)) serves = sum(squares, mask=refined%is_divided) >= &
-         still_in_divided*sum(squares)
-      if (.not. serves) then
-         is_divided = largest_part(squares, in_divided) .or. elements_at_surfaces(model%mesh, &
-            [model%contacts%slave, model%contacts%master])
-         call choose_neighbours(model, is_divided)
-         call refined%prepare(model, simulation%bodies%points, is_divided, error)
-         if (allocated(error)) return
-      end if
-      left = sum(squares, mask=.not. refined%is_divided)
-   end subroutine divide_where_it_errs
-
-   !> Largest squared relative error of the energy norm of a body; 0 of what is not solved.
-   pure real(dp) function energy_error(estimate)
-      type(error_record_type), intent(in) :: estimate
-
-      energy_error = 0.0_dp
-      if (allocated(estimate%body)) energy_error = maxval([0.0_dp, estimate%body**2], &
-         mask=.not. ieee_is_nan([0.0_dp, estimate%body]))
-   end function energy_error
 
    !> Bounds of the errors of the increments, from those of twice the size.
    subroutine bound_increments(self, simulation, errors)

@@ -1,11 +1,11 @@
 !> Bounds of the errors that the mesh makes in the quantities of an interface.
 !>
-!> They take what halving the elements changes as for errors that fall with h only. At a single load
-!> this is partly chance, for errors change their sign as the edge of contact passes a node; so how
-!> much a quantity scatters over the increments before is added. What friction locked in while the
-!> contact grew over the nodes is known from the old mesh only: its error is a part of the stuck
-!> shear forces that falls with the spacing. An edge lies anywhere within a part of the spacing, and
-!> moves by as large a part of the contact as the force is uncertain by.
+!> They follow from the change that halved elements make, as for errors that fall with h only. At a
+!> single load this is partly chance, for errors change their sign as the edge of contact passes a
+!> node; so the scatter of a quantity over the increments before is added. What friction locked in
+!> while the contact grew over the nodes is known from the old mesh only: its error is a part of the
+!> stuck shear forces that falls with the spacing. An edge lies anywhere within a part of the
+!> spacing, and moves by as large a part of the contact as the force is uncertain by.
 !>
 !> docs/accuracy.md says on which decks the constants were chosen and which judge them.
 module mesh_bounds
@@ -23,15 +23,13 @@ module mesh_bounds
    public :: bounds_of_mesh, locked_in
 
    !> Error in the change that halved elements make: errors that fall with h are just twice as
-   !> large, and need some room; and where too few increments tell no scatter, or only elements at
-   !> the faces are halved.
+   !> large, and need some room; with hats, and where too few increments tell no scatter, more.
    real(dp), parameter :: of_change = 2.1_dp, of_change_alone = 3.0_dp
    !> The same where contact ends at a corner: stresses there vary nearly as the inverse root of the
    !> distance, and errors fall with the root of h: 1/(1 - 2^(-1/2)).
    real(dp), parameter :: of_change_at_corner = 3.4_dp
-   !> Error of the heat rate in its scatter, and of an edge of stick, unless faces alone are halved;
-   !> else, and of others, it is the scatter itself.
-   real(dp), parameter :: of_scatter_in_heat = 0.7_dp, of_scatter_in_stick = 0.0_dp
+   !> Error of the heat rate in its scatter without hats.
+   real(dp), parameter :: of_scatter_in_heat = 0.7_dp
    !> Error of shear force, that with hats, and that of peak pressure in what friction locked in.
    real(dp), parameter :: of_locked = 0.4_dp, of_locked_with_hats = 0.6_dp
    real(dp), parameter :: of_locked_in_peak = 0.15_dp
@@ -50,32 +48,22 @@ module mesh_bounds
 contains
 
    !> The bounds, for the quantities with an estimate; NaN where none can be given.
-   pure function bounds_of_mesh(points, contact, change, scatter, most_locked, faces_alone, &
-      energy) result(bounds)
+   pure function bounds_of_mesh(points, contact, change, scatter, most_locked, energy) &
+      result(bounds)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       type(contact_record_type), intent(in) :: contact   !! its state
       real(dp), intent(in) :: change(:)                  !! of the quantities by halved elements
       real(dp), intent(in) :: scatter(:)                 !! over increments; NaN: unknown
       real(dp), intent(in) :: most_locked                !! largest of locked_in so far
-      logical, intent(in) :: faces_alone                 !! whether only elements there were halved
-      !> Squared relative errors of the energy norm [-] left in elements that were not halved: what
-      !> counts for normal force and for heat rate
-      real(dp), intent(in) :: energy(2)
+      !> Squared relative error of the energy norms left in elements that were not halved [-]
+      real(dp), intent(in) :: energy
       real(dp) :: bounds(size(estimated))
-      real(dp) :: known_scatter(size(estimated)), length, locked, of_contact, shift
-      integer :: q
+      real(dp) :: known_scatter(size(estimated)), length, locked
+      logical :: has_hats
 
-      ! Without contact no edge passes a node; its end is a corner of the course, and no scatter.
-      known_scatter = merge(0.0_dp, scatter, ieee_is_nan(scatter) .or. &
-         all(contact%contact_state == contact_open))
-      if (.not. faces_alone) then
-         associate (heat => known_scatter(find_quantity(estimated, 'heat_rate')), &
-            stick => known_scatter(find_quantity(estimated, 'edge_stick')))
-            heat = of_scatter_in_heat*heat
-            stick = of_scatter_in_stick*stick
-         end associate
-      end if
-      bounds = merge(of_change_alone, of_change, faces_alone .or. ieee_is_nan(scatter))
+      has_hats = points%pairing == pairing_surfaces
+      known_scatter = known(scatter, contact, has_hats)
+      bounds = merge(of_change_alone, of_change, has_hats .or. ieee_is_nan(scatter))
       if (any(points%at_corner .and. contact%contact_state([1, size(points%arc_length)]) /= &
          contact_open)) bounds = max(bounds, of_change_at_corner)
       bounds = bounds*abs(change) + known_scatter
@@ -83,49 +71,75 @@ contains
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
       if (length > 0.0_dp) locked = most_locked/length
-      shift = 0.0_dp
-      if (contact%normal_force > 0.0_dp) shift = length/contact%normal_force* &
-         bounds(find_quantity(estimated, 'normal_force'))
-      of_contact = estimated(find_quantity(estimated, 'edge_contact'))%resolution* &
-         merge(of_hats, 1.0_dp, points%pairing == pairing_surfaces)
-      if (is_behind_corner(points, contact%edge_contact)) of_contact = behind_corner*of_contact
-      do q = 1, size(bounds)
-         select case (estimated(q)%name)
-         case ('shear_force')
-            bounds(q) = bounds(q) + locked*merge(of_locked_with_hats, of_locked, &
-               points%pairing == pairing_surfaces) + missing_friction(points, contact)
-         case ('peak_pressure')
-            if (locked > 0.0_dp) bounds(q) = bounds(q) + of_locked_in_peak*locked* &
-               maxval(contact%pressure)/contact%normal_force
-            bounds(q) = bounds(q) + rise_on_axis(points, contact%pressure)
-            if (peaks_at_corner(points, contact)) bounds(q) = ieee_value(1.0_dp, ieee_quiet_nan)
-         case ('edge_contact')
-            bounds(q) = edge_bound(points, contact%edge_contact, of_contact, change(q)) + shift
-         case ('edge_stick')
-            if (ends_with_contact(points, contact)) then
-               bounds(q) = edge_bound(points, contact%edge_stick, max(of_both, of_contact), &
-                  change(q)) + shift
-            else
-               bounds(q) = edge_bound(points, contact%edge_stick, estimated(q)%resolution, &
-                  change(q)) + known_scatter(q) + shift
-            end if
-         case default
-            cycle
-         end select
-      end do
+      associate (shear => bounds(find_quantity(estimated, 'shear_force')), &
+         peak => bounds(find_quantity(estimated, 'peak_pressure')))
+         shear = shear + locked*merge(of_locked_with_hats, of_locked, has_hats) + &
+            missing_friction(points, contact)
+         if (locked > 0.0_dp) peak = peak + of_locked_in_peak*locked*maxval(contact%pressure)/ &
+            contact%normal_force
+         peak = peak + rise_on_axis(points, contact%pressure)
+         if (peaks_at_corner(points, contact)) peak = ieee_value(1.0_dp, ieee_quiet_nan)
+      end associate
+      call bound_edges(points, contact, change, known_scatter, bounds)
    end function bounds_of_mesh
+
+   !> How far scatter counts. Without contact no edge passes a node; its end is a corner of the
+   !> history, and no scatter. An edge of stick between node pairs lies within its part of the
+   !> spacing without.
+   pure function known(scatter, contact, has_hats)
+      real(dp), intent(in) :: scatter(:)
+      type(contact_record_type), intent(in) :: contact
+      logical, intent(in) :: has_hats
+      real(dp) :: known(size(scatter))
+
+      known = merge(0.0_dp, scatter, ieee_is_nan(scatter) .or. &
+         all(contact%contact_state == contact_open))
+      if (has_hats) return
+      associate (heat => known(find_quantity(estimated, 'heat_rate')))
+         heat = of_scatter_in_heat*heat
+      end associate
+      known(find_quantity(estimated, 'edge_stick')) = 0.0_dp
+   end function known
+
+   !> The bounds of both edges, from that of the normal force.
+   pure subroutine bound_edges(points, contact, change, scatter, bounds)
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+      real(dp), intent(in) :: change(:), scatter(:)
+      real(dp), intent(inout) :: bounds(:)
+      real(dp) :: of_contact, shift
+
+      shift = 0.0_dp
+      if (contact%normal_force > 0.0_dp) shift = bounds(find_quantity(estimated, &
+         'normal_force'))*closed_length(contact, points%arc_length)/contact%normal_force
+      associate (outer => find_quantity(estimated, 'edge_contact'), &
+         inner => find_quantity(estimated, 'edge_stick'))
+         of_contact = estimated(outer)%resolution*merge(of_hats, 1.0_dp, &
+            points%pairing == pairing_surfaces)
+         if (is_behind_corner(points, contact%edge_contact)) of_contact = behind_corner*of_contact
+         bounds(outer) = shift + edge_bound(points, contact%edge_contact, of_contact, &
+            change(outer))
+         if (ends_with_contact(points, contact)) then
+            bounds(inner) = shift + edge_bound(points, contact%edge_stick, &
+               max(of_both, of_contact), change(inner))
+         else
+            bounds(inner) = shift + scatter(inner) + edge_bound(points, contact%edge_stick, &
+               estimated(inner)%resolution, change(inner))
+         end if
+      end associate
+   end subroutine bound_edges
 
    !> What elements that are not halved add: where displacements and temperatures are prescribed,
    !> force and heat rate err as the energy, by the square of its norm's error.
    pure subroutine add_energy(contact, energy, bounds)
       type(contact_record_type), intent(in) :: contact
-      real(dp), intent(in) :: energy(2)
+      real(dp), intent(in) :: energy
       real(dp), intent(inout) :: bounds(:)
 
       associate (force => bounds(find_quantity(estimated, 'normal_force')), &
          heat => bounds(find_quantity(estimated, 'heat_rate')))
-         force = force + of_energy*energy(1)*abs(contact%normal_force)
-         heat = heat + of_energy*energy(2)*abs(contact%heat_rate)
+         force = force + of_energy*energy*abs(contact%normal_force)
+         heat = heat + of_energy*energy*abs(contact%heat_rate)
       end associate
    end subroutine add_energy
 

@@ -8,7 +8,6 @@ module hanging_nodes
    implicit none
    private
    public :: hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, place_hanging
-   public :: at_level_changes
 
 contains
 
@@ -79,20 +78,6 @@ contains
          end associate
       end do
    end function hanging_rows
-
-   !> Nodes of the sides where elements of two sizes meet.
-   pure function at_level_changes(mesh) result(at)
-      type(mesh_type), intent(in) :: mesh
-      logical :: at(size(mesh%node_number))         !! (nodes)
-      integer :: h
-
-      at = .false.
-      do h = 1, hanging_count(mesh)
-         associate (side => mesh%hanging_sides(:, h))
-            at(pack(side, side > 0)) = .true.
-         end associate
-      end do
-   end function at_level_changes
 
    !> Moves hanging nodes onto their sides, which were curved before they lost their midside nodes.
    !> Ends that hang themselves go first.

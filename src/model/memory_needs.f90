@@ -5,7 +5,6 @@
 !> nested dissection have 31/4 n log2 n entries (A. George, Nested dissection of a regular finite
 !> element mesh, 1973). How often entries are held at a time was measured, docs/theory.md.
 module memory_needs
-   use contact_definitions, only: pairing_nodes
    use controls, only: default_solver, solver_by_size, solver_mumps
    use element_kinds, only: element_node_count, linear_kind
    use kinds, only: dp
@@ -65,9 +64,8 @@ contains
             levels)
       end if
       bytes = bytes + real_bytes*factors
-      ! Beside mortar points and ties they factor a mesh with divided faces.
-      if (bounds_errors .and. (any(model%contacts%pairing /= pairing_nodes) .or. &
-         size(model%ties) > 0)) bytes = bytes + real_bytes*factors
+      ! The bounds factor a mesh with divided elements.
+      if (bounds_errors) bytes = bytes + real_bytes*factors
    end function memory_needed
 
    !> Entries of the matrices of all elements.

@@ -60,8 +60,8 @@ PARTS = {
                                   "unconstrained_motions"},
     "films": {"films", "loads:film_matrix", "unit_loads:film_matrix", "unit_loads:film_sides"},
     "estimated errors": {
-        "companion_steps", "divided_faces", "doubled_increments", "error_estimator",
-        "interface_quantities", "linked_relaxation", "mesh_bounds", "refined_model", "refined_points", "refinement_error", "value_courses",
+        "companion_steps", "divided_mesh", "doubled_increments", "error_estimator",
+        "interface_quantities", "mesh_bounds", "value_courses",
     },
     "refinement": {"child_elements", "hanging_nodes", "load_refinement", "local_refinement",
                    "mesh_division", "refinement"},

@@ -1,0 +1,297 @@
+!> The change of the quantities of an increment where elements at its contact are divided into four:
+!> the increment is solved on the divided mesh, from the displacements and temperatures that the run
+!> had before it. Contact points, operators and reduction of the divided mesh are its own; nothing
+!> that the run reads is written.
+module divided_mesh
+   use all_contact_points, only: all_contact_points_type
+   use companion_steps, only: implicit_state, implicit_step
+   use contact_states, only: contact_open
+   use element_kinds, only: element_node_count
+   use equations, only: equation_nodes
+   use errors, only: error_type
+   use heat_reduction, only: heat_reduction_type
+   use increments, only: simulation_type
+   use initial_state, only: make_initial_state
+   use interface_quantities, only: quantities_of_state
+   use kinds, only: dp
+   use load_histories, only: end_of_step
+   use local_refinement, only: choose_neighbours, elements_at_surfaces
+   use mesh_division, only: divide, division_type
+   use model, only: model_type
+   use refinement, only: divide_model
+   use solution_state, only: solution_state_type
+   use steps, only: solves_heat
+   use thermal_matrix, only: heat_equation_type
+   implicit none
+   private
+   public :: divided_mesh_type
+
+   integer, parameter :: margin = 1   !! sides beyond the closed ones whose elements are divided
+
+   !> The divided model and its run, of which only the ends of steps are solved.
+   type :: divided_mesh_type
+      logical, allocatable :: is_divided(:)             !! (elements) once prepared
+      type(model_type), private :: model                !! the divided one
+      type(division_type), private :: division
+      type(simulation_type), private :: run
+      type(solution_state_type), private :: initial     !! state before the first increment
+      !> heat of both meshes with the films at the end, where the runs' have others
+      type(heat_reduction_type), private :: heat, coarse_heat
+   contains
+      procedure :: find_change
+      procedure :: release
+   end type divided_mesh_type
+
+contains
+
+   !> The change of the quantities of the interfaces at the end of a step, in the equilibrium of
+   !> heat on both meshes. A scheme of (3.4) with a past is solved anew without one on the mesh as
+   !> it is.
+   !> Errors: as reduced_bodies' prepare and reduce, or the increment has no solution.
+   subroutine find_change(self, simulation, model, previous, change, error)
+      class(divided_mesh_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation     !! the run at the end
+      type(model_type), intent(in) :: model
+      type(solution_state_type), intent(in) :: previous   !! state before the last increment
+      real(dp), intent(out) :: change(:, :)               !! (quantities, interfaces)
+      type(error_type), allocatable, intent(out) :: error
+      type(solution_state_type) :: state
+      type(heat_equation_type) :: equation
+      real(dp) :: values(size(change, 1), size(change, 2))
+
+      call divide_at_contact(self, simulation, model, error)
+      if (.not. allocated(error)) call solve_end(self, simulation, previous, change, error)
+      if (allocated(error)) return
+      state = simulation%state
+      associate (step => model%steps(simulation%control%step))
+         equation = heat_equation_type(step%scheme)
+         if (solves_heat(step%analysis) .and. .not. equation%is_steady()) then
+            call implicit_state(simulation, self%coarse_heat, model, implicit_step(step), &
+               previous, state, error)
+            if (allocated(error)) return
+         end if
+      end associate
+      call quantities_of_state(simulation%bodies, state, values)
+      change = change - values
+   end subroutine find_change
+
+   !> Frees the factors.
+   subroutine release(self)
+      class(divided_mesh_type), intent(inout) :: self
+
+      call self%run%release()
+      call self%heat%release()
+      call self%coarse_heat%release()
+   end subroutine release
+
+   !> Divides the elements at the contact, unless that is done.
+   !> Errors: as prepare.
+   subroutine divide_at_contact(self, simulation, model, error)
+      type(divided_mesh_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      logical :: chosen(size(model%mesh%element_number))
+
+      chosen = elements_at_contact(model, simulation%bodies%points, &
+         simulation%state%contact%contact_state /= contact_open)
+      call choose_neighbours(model, chosen)
+      if (allocated(self%is_divided)) then
+         if (all(self%is_divided .eqv. chosen)) return
+         call self%release()
+      end if
+      call prepare(self, model, chosen, error)
+   end subroutine divide_at_contact
+
+   !> Elements at closed contact points, with those next to them on the faces, and at ties; all of
+   !> the faces where nothing is closed.
+   pure function elements_at_contact(model, points, is_closed) result(chosen)
+      type(model_type), intent(in) :: model
+      type(all_contact_points_type), intent(in) :: points
+      logical, intent(in) :: is_closed(:)                 ! (m)
+      logical :: chosen(size(model%mesh%element_number))
+      logical :: at_face(size(chosen)), is_near(size(model%mesh%node_number))
+      integer :: beyond, e, k
+
+      at_face = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
+      is_near = .false.
+      do k = 1, size(is_closed)
+         if (is_closed(k)) is_near(points%nodes_of(k)) = .true.
+      end do
+      if (.not. any(is_closed)) is_near = .true.
+      do beyond = 0, margin
+         do e = 1, size(chosen)
+            chosen(e) = at_face(e) .and. any(is_near(nodes_of(e)))
+         end do
+         do e = 1, size(chosen)
+            if (chosen(e)) is_near(nodes_of(e)) = .true.
+         end do
+      end do
+      if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
+         [model%ties%faces%slave, model%ties%faces%master])
+
+   contains
+
+      pure function nodes_of(element) result(nodes)
+         integer, intent(in) :: element
+         integer, allocatable :: nodes(:)
+
+         associate (mesh => model%mesh)
+            nodes = mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element)
+         end associate
+      end function nodes_of
+
+   end function elements_at_contact
+
+   !> Divides some elements, and prepares what solving increments takes of a run.
+   !> Errors: as reduced_bodies' prepare.
+   subroutine prepare(self, model, chosen, error)
+      type(divided_mesh_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: chosen(:)                    ! (elements) as choose_neighbours asks
+      type(error_type), allocatable, intent(out) :: error
+
+      self%is_divided = chosen
+      self%model = model
+      self%division = divide(model%mesh, chosen)
+      call divide_model(self%model, chosen)
+      call keep_to_equations(self%division, self%model)
+      self%run = simulation_type()
+      self%heat = heat_reduction_type()
+      call self%run%bodies%prepare(self%model, error)
+      if (allocated(error)) then
+         deallocate (self%is_divided)
+         return
+      end if
+      call self%run%loads%prepare(self%model)
+      call self%run%bodies%points%enter_step(self%model, 1)
+      self%initial = make_initial_state(self%model, self%run%bodies)
+      self%run%state = self%initial
+   end subroutine prepare
+
+   !> Sides whose nodes the deck's equations name stay as they are, for these do not name the new
+   !> nodes, which hang there and follow from the others. Couplings and axes include them.
+   pure subroutine keep_to_equations(division, model)
+      type(division_type), intent(in) :: division
+      type(model_type), intent(inout) :: model            ! the divided one
+      logical :: is_named(0:division%nodes)
+      integer :: between(2), ends(3), s
+
+      if (model%deck_equations == 0) return
+      is_named(0) = .true.
+      is_named(1:) = equation_nodes(model%equations(:model%deck_equations), division%nodes)
+      do s = 1, division%sides%count
+         ends = division%sides%ends(:, s)
+         between = division%between(:, s)
+         if (between(1) <= division%nodes .or. .not. all(is_named(ends))) cycle
+         if (any(model%mesh%hanging_sides([2, 4], :) == between(1))) cycle
+         model%mesh%hanging_sides = reshape([model%mesh%hanging_sides, merge([ends, between], &
+            [ends(1), between(1), ends(3), 0, 0], ends(2) > 0)], &
+            [5, size(model%mesh%hanging_sides, 2) + 1])
+      end do
+   end subroutine keep_to_equations
+
+   !> The quantities of the interfaces at the end of the run's step.
+   !> Errors: as simulation_type's enter_step and reduce, or the increment has no solution.
+   subroutine solve_end(self, simulation, previous, values, error)
+      type(divided_mesh_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation
+      type(solution_state_type), intent(in) :: previous
+      real(dp), intent(out) :: values(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      type(solution_state_type) :: before, next
+
+      associate (run => self%run, number => simulation%control%step)
+         call enter_step(self, number, error)
+         if (.not. allocated(error)) call run%reduce(self%model, error)
+         if (allocated(error)) return
+         call run%loads%move_to(end_of_step(self%model%steps, number), self%model)
+         before = prolonged(self, simulation%bodies%points, previous)
+         next = before
+         next%increment_size = simulation%state%increment_size
+         next%sources%load = run%loads%heat_load()
+         next%sources%film = run%loads%film_matrix()
+         next%force_load = run%loads%nodal_forces()
+         call implicit_state(run, self%heat, self%model, implicit_step(self%model%steps(number)), &
+            before, next, error)
+         if (allocated(error)) return
+         call quantities_of_state(run%bodies, next, values)
+      end associate
+   end subroutine solve_end
+
+   !> Enters a step as the run did. The run's state at the start of steps shows in loads that ramp
+   !> from there only, and not at the end of a step.
+   !> Errors: as simulation_type's enter_step.
+   subroutine enter_step(self, step, error)
+      type(divided_mesh_type), intent(inout) :: self
+      integer, intent(in) :: step
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (run => self%run)
+         do while (run%control%step < step)
+            if (run%control%step > 0) call run%loads%move_to(end_of_step(self%model%steps, &
+               run%control%step), self%model)
+            run%state%displacement = run%loads%displacement%value
+            run%state%temperature = run%loads%temperature%value
+            call run%enter_step(self%model, error)
+            if (allocated(error)) return
+         end do
+      end associate
+   end subroutine enter_step
+
+   !> The state of the run on the divided mesh: fields, and contact states of the nearest contact
+   !> points; friction counts from the relative displacements of the fields.
+   function prolonged(self, points, state) result(divided)
+      type(divided_mesh_type), intent(in) :: self
+      type(all_contact_points_type), intent(in) :: points  !! of the run
+      type(solution_state_type), intent(in) :: state
+      type(solution_state_type) :: divided
+      integer, allocatable :: nearest(:)
+
+      divided = self%initial
+      ! Partners of new nodes with axes of their own come last; nothing is taken of what they have.
+      associate (n => self%division%nodes_after)
+         divided%temperature(:n) = self%division%prolong(state%temperature, 1)
+         divided%displacement(:2*n) = self%division%prolong(state%displacement, 2)
+      end associate
+      if (.not. state%has_mechanics) return
+      divided%has_mechanics = .true.
+      divided%increment_size = state%increment_size
+      associate (fine => self%run%bodies%points, contact => divided%contact)
+         nearest = nearest_points(self, points)
+         contact%contact_state = state%contact%contact_state(nearest)
+         contact%direction = state%contact%direction(nearest)
+         associate (relative => fine%relative(divided%displacement))
+            contact%tangential = sum(fine%tangent*relative, dim=1)
+            contact%approach = sum(fine%normal*relative, dim=1)
+         end associate
+         contact%reference = contact%tangential
+         contact%slip_origin = contact%tangential
+         contact%gap = merge(0.0_dp, max(0.0_dp, self%run%loads%present_gaps(fine) - &
+            contact%approach), contact%contact_state /= contact_open)
+         divided%omega = state%omega(nearest)
+         divided%omega_before = divided%omega
+         divided%jump = fine%jumps(divided%temperature)
+      end associate
+   end function prolonged
+
+   !> The contact point of the run that is nearest to each one of the divided mesh.
+   pure function nearest_points(self, points) result(nearest)
+      type(divided_mesh_type), intent(in) :: self
+      type(all_contact_points_type), intent(in) :: points
+      integer :: nearest(size(self%run%bodies%points%slave))
+      integer :: first, i, k, last
+
+      associate (row => self%run%bodies%points, x => self%model%mesh%coordinates)
+         do i = 1, size(row%interface_start) - 1
+            first = points%interface_start(i)
+            last = points%interface_start(i + 1) - 1
+            do k = row%interface_start(i), row%interface_start(i + 1) - 1
+               nearest(k) = first - 1 + minloc(norm2(x(:, points%slave(first:last)) - &
+                  spread(x(:, row%slave(k)), 2, last - first + 1), dim=1), dim=1)
+            end do
+         end do
+      end associate
+   end function nearest_points
+
+end module divided_mesh
