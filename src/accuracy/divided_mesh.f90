@@ -16,11 +16,11 @@ module divided_mesh
    use kinds, only: dp
    use load_histories, only: end_of_step
    use local_refinement, only: choose_neighbours, elements_at_surfaces
-   use mesh_division, only: divide, division_type
+   use mesh_division, only: divide, division_type, refined_members
    use model, only: model_type
    use refinement, only: divide_model
    use solution_state, only: solution_state_type
-   use steps, only: solves_heat
+   use steps, only: boundary_type, solves_heat
    use thermal_matrix, only: heat_equation_type
    implicit none
    private
@@ -155,6 +155,7 @@ contains
       self%model = model
       self%division = divide(model%mesh, chosen)
       call divide_model(self%model, chosen)
+      call hold_new_nodes(self%division, self%model)
       call keep_to_equations(self%division, self%model)
       self%run = simulation_type()
       self%heat = heat_reduction_type()
@@ -168,6 +169,55 @@ contains
       self%initial = make_initial_state(self%model, self%run%bodies)
       self%run%state = self%initial
    end subroutine prepare
+
+   !> Prescribes what all nodes of a side or element have prescribed at the new nodes on it, too:
+   !> the deck may name nodes one by one.
+   subroutine hold_new_nodes(division, model)
+      type(division_type), intent(in) :: division
+      type(model_type), intent(inout) :: model            ! the divided one
+      type(boundary_type), allocatable :: given(:)
+      real(dp) :: values(division%nodes)
+      logical :: is_member(division%nodes)
+      logical, allocatable :: is_like(:), waits(:)
+      integer :: first, s
+
+      do s = 1, size(model%steps)
+         given = model%steps(s)%boundaries
+         values = 0.0_dp
+         waits = given%node <= division%nodes
+         do while (any(waits))
+            first = findloc(waits, .true., dim=1)
+            is_like = waits .and. given%dof == given(first)%dof .and. &
+               given%amplitude == given(first)%amplitude
+            waits = waits .and. .not. is_like
+            is_member = .false.
+            is_member(pack(given%node, is_like)) = .true.
+            values(pack(given%node, is_like)) = pack(given%value, is_like)
+            call add(given(first))
+         end do
+      end do
+
+   contains
+
+      subroutine add(like)
+         type(boundary_type), intent(in) :: like
+         type(boundary_type) :: support
+         logical :: is_held(division%nodes_after)
+         real(dp) :: value(division%nodes_after)
+         integer :: node
+
+         is_held = refined_members(division, is_member)
+         value = division%weights%multiply(merge(values, 0.0_dp, is_member))
+         support = like
+         do node = division%nodes + 1, division%nodes_after
+            if (.not. is_held(node) .or. any(given%node == node .and. given%dof == like%dof)) cycle
+            support%node = node
+            support%value = value(node)
+            model%steps(s)%boundaries = [model%steps(s)%boundaries, support]
+         end do
+      end subroutine add
+
+   end subroutine hold_new_nodes
 
    !> Sides whose nodes the deck's equations name stay as they are, for these do not name the new
    !> nodes, which hang there and follow from the others. Couplings and axes include them.
