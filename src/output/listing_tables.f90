@@ -253,7 +253,8 @@ contains
       more(:size(columns, 1), :) = columns
       more(size(columns, 1) + 1:, :) = values
       call move_alloc(more, columns)
-      heads = [heads, pack(print_heads(:, quantity), print_heads(:, quantity) /= '')]
+      heads = [character(head_length) :: heads, &
+         print_heads(:count(print_heads(:, quantity) /= ''), quantity)]
    end subroutine add
 
    !> Table of the integration points of the elements of a set.
