@@ -150,6 +150,8 @@ contains
       type(model_type), intent(in) :: model
       logical, intent(in) :: chosen(:)                    ! (elements) as choose_neighbours asks
       type(error_type), allocatable, intent(out) :: error
+      type(simulation_type) :: fresh_run
+      type(heat_reduction_type) :: fresh_heat
 
       self%is_divided = chosen
       self%model = model
@@ -157,8 +159,8 @@ contains
       call divide_model(self%model, chosen)
       call hold_new_nodes(self%division, self%model)
       call keep_to_equations(self%division, self%model)
-      self%run = simulation_type()
-      self%heat = heat_reduction_type()
+      self%run = fresh_run
+      self%heat = fresh_heat
       call self%run%bodies%prepare(self%model, error)
       if (allocated(error)) then
          deallocate (self%is_divided)

@@ -15,14 +15,13 @@ COUPLING = {
 }
 PARTS = {
     "heat": {
-        "balances:heat_residual", "balances:scheme_contact_heat", "cut_hats:supplied_heat",
-        "element_conduction",
+        "balances:heat_residual", "cut_hats:supplied_heat", "element_conduction",
         "element_fields:element_heat_flux",
-        "field_recovery:recover_heat_flux", "films", "heat_balance",
+        "field_recovery:recover_heat_flux", "heat_balance",
         "increment_checks:check_heat", "increment_solution:conduct",
         "increment_solution:load_heat", "heat_reduction", "load_integrals:unit_heat", "loads:card_heat",
         "loads:film_matrix", "loads:heat_load", "unit_loads:location_heat", "point_properties:conductivity_in",
-        "scheme_properties", "scheme_start", "thermal_matrix",
+        "thermal_matrix",
     },
     "strain by heat": {
         "contact_operator:unstrained_forces", "element_elasticity:element_thermal_load",
@@ -58,13 +57,12 @@ PARTS = {
     "paths to a contact zone": {"lemke_path"},
     "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",
                                   "unconstrained_motions"},
-    "films": {"films", "loads:film_matrix", "unit_loads:film_matrix", "unit_loads:film_sides"},
+    "films": {"loads:film_matrix", "unit_loads:film_matrix", "unit_loads:film_sides"},
     "estimated errors": {
         "companion_steps", "divided_mesh", "doubled_increments", "error_estimator",
         "interface_quantities", "mesh_bounds", "value_courses",
     },
-    "refinement": {"child_elements", "hanging_nodes", "load_refinement", "local_refinement",
-                   "mesh_division", "refinement"},
+    "refinement": {"hanging_nodes", "local_refinement", "mesh_division", "refinement"},
     "printed tables": {"element_points", "listing_tables:print_contact_table",
                        "listing_tables:print_nodes", "listing_tables:print_points"},
     "checks of the deck": {"deck_builder_verify", "interface_reports:check_arc_lengths",
